@@ -231,7 +231,7 @@ impl Engine {
         let casters = Casters { boxes, moves: &self.scene.moves };
         let frame = SunFrame::new(&views, vec3(SUNLIGHT), boxes, casters).with_origin(dvec3(cell));
         self.sun.update(&self.gpu.queue, &frame)?;
-        debug_assert!(self.sun.verify(&frame)?.is_proven(), "a map has a hole");
+        debug_assert!(self.sun.prove(&frame)?.is_proven(), "a map has a hole");
 
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut drawn = 0;
@@ -244,7 +244,7 @@ impl Engine {
 
         self.scene_pass(&mut encoder);
         // STEP 10: count what the depth buffer shows, for the next frames. Nothing waits for it.
-        self.sun.record_need(&mut encoder, &self.targets.depth, mat4(clip_from_eye), DepthConvention::Reversed)?;
+        self.sun.record_demand(&mut encoder, &self.targets.depth, mat4(clip_from_eye), DepthConvention::Reversed)?;
 
         self.tone_pass(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);

@@ -27,8 +27,8 @@ fn main() -> Result<(), FitError> {
         for (map, casters) in maps.iter().zip(maps.caster_volumes(&views, &technique)?) {
             let casters = casters.relative_to(boxes.origin);
             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
-            println!("draw {drawn} of {} objects with {}", objects.len(), map.fit.clip_from_world);
-            println!("look the map up with {}, biased by {}", map.fit.uv_from_world, map.bias.constant_depth);
+            println!("draw {drawn} of {} objects with {}", objects.len(), map.projection.clip_from_world);
+            println!("look the map up with {}, biased by {}", map.projection.uv_from_world, map.bias.constant_depth);
         }
     }
     Ok(())

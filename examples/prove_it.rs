@@ -9,11 +9,10 @@
 use shadowfit::demand::DepthBounds;
 use shadowfit::fewest_maps;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::proof::{Certificate, CoverageQuery, Margins, verify};
+use shadowfit::proof::{CoverageProof, CoverageQuery, Margins, prove};
 use shadowfit::settings::SplitScheme;
 use shadowfit::{
-    Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, FitError, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique, ViewFrustum,
 };
 
 const FRAMES: u32 = 120;
@@ -23,18 +22,18 @@ const SUN: Vec3 = Vec3::new(0.55, -0.6, -0.4);
 fn main() -> Result<(), FitError> {
     let objects = columns();
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), 1)];
-    let mut workspace = Workspace::new(&mut storage);
+    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), 1)];
+    let mut workspace = Scratch::new(&mut storage);
 
-    let (mut fitter, technique) = (MapFitter::new(), Technique::default());
+    let (mut fitter, technique) = (FitState::new(), Technique::default());
     let mut least = Margins { planes: [f32::INFINITY; 6], casters: f32::INFINITY };
     for frame in 0..FRAMES {
         let views = [camera(frame).frustum()?];
         let input = input(&views, boxes);
         let maps = fitter.fit(&input, &technique, &mut workspace)?;
-        for (index, certificate) in certificates(&input, &technique, &maps, &mut workspace)?.into_iter().enumerate() {
-            match certificate {
-                Certificate::Proven(margins) => least = least_of(least, margins),
+        for (index, proof) in proofs(&input, &technique, &maps, &mut workspace)?.into_iter().enumerate() {
+            match proof {
+                CoverageProof::Proven(margins) => least = least_of(least, margins),
                 hole => println!("frame {frame}, map {index}: {hole:?}"),
             }
         }
@@ -58,9 +57,9 @@ fn main() -> Result<(), FitError> {
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
         let input = FitInput { receivers: None, depth_bounds, ..input };
-        let maps = MapFitter::new().fit(&input, &logarithmic, &mut workspace)?;
+        let maps = FitState::new().fit(&input, &logarithmic, &mut workspace)?;
         let ends: Vec<f32> = maps.iter().rev().skip(1).rev().map(|map| map.far).collect();
-        let is_proven = certificates(&input, &logarithmic, &maps, &mut workspace)?.iter().all(Certificate::is_proven);
+        let is_proven = proofs(&input, &logarithmic, &maps, &mut workspace)?.iter().all(CoverageProof::is_proven);
         println!("{depth_bounds:?}: slices end at {ends:?} m, no holes: {is_proven}");
     }
     Ok(())
@@ -68,19 +67,19 @@ fn main() -> Result<(), FitError> {
 
 /// What is proven of each map: all receivers that it serves are in it with all that the filter reads, and no caster is
 /// lost.
-fn certificates(
+fn proofs(
     input: &FitInput,
     technique: &Technique,
     maps: &FittedMaps,
-    workspace: &mut Workspace,
-) -> Result<Vec<Certificate>, FitError> {
-    let mut certificates = Vec::new();
+    workspace: &mut Scratch,
+) -> Result<Vec<CoverageProof>, FitError> {
+    let mut proofs = Vec::new();
     for map in maps.iter() {
-        let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.fit))
+        let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
             .with_normal_offset(map.bias.normal_offset);
-        certificates.push(verify(input, &map.fit, &query, workspace)?);
+        proofs.push(prove(input, &map.projection, &query, workspace)?);
     }
-    Ok(certificates)
+    Ok(proofs)
 }
 
 fn least_of(a: Margins, b: Margins) -> Margins {

@@ -10,7 +10,7 @@
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::scroll::Scroll;
-use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{Aabb, Boxes, FitError, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique};
 use shadowfit_params::tool::LightSettings;
 
 const SECONDS: u32 = 60;
@@ -24,8 +24,8 @@ fn main() -> Result<(), FitError> {
     let technique = Technique::default();
     let objects = street();
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), 1)];
-    let (mut fitter, mut light_steps) = (MapFitter::new(), LightSteps::default());
+    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), 1)];
+    let (mut fitter, mut light_steps) = (FitState::new(), LightSteps::default());
     let mut before = FittedMaps::default();
     let mut total = Redrawn::default();
     println!("second  texels drawn anew  whole maps  sun");
@@ -40,7 +40,7 @@ fn main() -> Result<(), FitError> {
             let views = [camera(seconds).frustum()?];
             let input =
                 FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, light.direction) };
-            let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
+            let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage))?;
             redrawn.add(&before, &maps);
             before = maps;
         }
@@ -69,7 +69,7 @@ struct Redrawn {
 impl Redrawn {
     fn add(&mut self, before: &FittedMaps, now: &FittedMaps) {
         for (index, map) in now.iter().enumerate() {
-            let texels = u64::from(map.fit.resolution.element_product());
+            let texels = u64::from(map.projection.resolution.element_product());
             self.all += texels;
             let scroll = before.get(index).map(|before| Scroll::between(before, map));
             if let Some(scroll) = scroll.filter(|scroll| !scroll.is_redraw()) {

@@ -4,7 +4,7 @@
 use shadowfit::Preset;
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::settings::{BiasSettings, FitSettings, MapFormat};
-use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera, Technique, fit};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, PerspectiveCamera, Technique, fit};
 use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
@@ -33,12 +33,12 @@ fn camera() -> PerspectiveCamera {
     fly().perspective(&CameraSettings::default(), 1.6)
 }
 
-fn fitted(light: &LightSettings, depth: DepthConvention) -> LightFit {
+fn fitted(light: &LightSettings, depth: DepthConvention) -> LightProjection {
     let frustum = camera().frustum().expect("a good camera");
     fit(&frustum, light.direction(), &FitSettings::default().with_depth(depth)).expect("a good fit")
 }
 
-fn map(fit: &LightFit) -> FittedMap {
+fn map(fit: &LightProjection) -> FittedMap {
     FittedMap::new(*fit, Bias::from_texels(&BiasSettings::default(), MapFormat::Depth32Float, fit))
 }
 

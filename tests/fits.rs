@@ -39,11 +39,13 @@ fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
     let (windows, slices) = (Maps::default(), Maps::from(Slices::default()));
     for maps in KINDS.map(|kind| slices.with_kind(kind)).into_iter().chain([windows]) {
         let kind = maps.shape().map(|shape| shape.kind);
-        for casters in [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp] {
+        for casters in
+            [CasterPolicy::Extend, CasterPolicy::PerObject, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp]
+        {
             let technique = stage.settings.technique;
             stage.settings.technique = technique.with_maps(maps).with_fit(technique.fit.with_casters(casters));
             let [hole, other] = wrong(&mut stage);
-            let fit = stage.maps(SIZE)[0].fit;
+            let fit = stage.maps(SIZE)[0].projection;
             println!("{kind:?} {casters:?}: hole {hole}, false {other}, {} {}", fit.texel_size, fit.depth_range);
             assert!(hole < STRAY && other < STRAY, "{kind:?} {casters:?}: hole {hole}, false light or shadow {other}");
         }
@@ -69,12 +71,12 @@ fn gpu_texels_are_finest_with_the_focused_fit_and_depth_is_shortest_with_depth_c
     let mut fit = |kind, casters| {
         let one = OneMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
         stage.settings.technique = single.with_maps(one).with_fit(single.fit.with_casters(casters));
-        let fit = stage.maps(SIZE)[0].fit;
+        let fit = stage.maps(SIZE)[0].projection;
         (fit.texel_size.x * fit.texel_size.y, fit.depth_range)
     };
-    let [boxed, oriented, sphere, focused] = KINDS.map(|kind| fit(kind, CasterPolicy::List).0);
+    let [boxed, oriented, sphere, focused] = KINDS.map(|kind| fit(kind, CasterPolicy::PerObject).0);
     assert!(focused < oriented && oriented < boxed && boxed < sphere, "{focused} {oriented} {boxed} {sphere}");
-    let policies = [CasterPolicy::DepthClamp, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::Extend];
+    let policies = [CasterPolicy::DepthClamp, CasterPolicy::PerObject, CasterPolicy::SceneBounds, CasterPolicy::Extend];
     let [clamped, list, bounds, extended] = policies.map(|casters| fit(FitKind::Focused, casters).1);
     assert!(clamped < list && list <= bounds && bounds < extended, "{clamped} {list} {bounds} {extended}");
 }

@@ -1,4 +1,4 @@
-//! Workspace-level tests: what no crate can prove alone.
+//! Scratch-level tests: what no crate can prove alone.
 //!
 //! Tests that need a graphics device have `gpu` or `golden` in their path, by which `cargo xtask test` leaves them out
 //! where there is none.

@@ -1,10 +1,14 @@
 //! The WGSL of the workspace: every file is used and valid, names and features stay within what engines can paste, and
 //! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`],
-//! [`culling_gpu`] and [`need_gpu`].
+//! [`culling_gpu`] and [`demand_gpu`].
 
 mod acne_gpu;
+mod cached_maps_gpu;
 mod clamp_gpu;
 mod culling_gpu;
+mod demand_gpu;
+mod demand_picture;
+mod demand_reference;
 mod door_gpu;
 mod exact_counts_gpu;
 mod fade_gpu;
@@ -13,12 +17,8 @@ mod frames_gpu;
 mod harness;
 mod heat_map_gpu;
 mod judged_gpu;
-mod kept_maps_gpu;
 mod kept_scene_gpu;
 mod layout;
-mod need_gpu;
-mod need_picture;
-mod need_reference;
 mod parity_gpu;
 mod penumbra_gpu;
 mod pictures;
@@ -35,12 +35,12 @@ use std::path::PathBuf;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
-use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
+use shadowfit::settings::{FilterKind, MapFormat, MapSelection};
 use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_classics::mapped::SampleFrame;
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
 use shadowfit_render::{Overlay, shaders};
-use shadowfit_wgpu::need::need_wgsl;
+use shadowfit_wgpu::demand::demand_wgsl;
 use shadowfit_wgpu::{
     MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl, stored_wgsl,
 };
@@ -53,8 +53,8 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
     for format in MapFormat::ALL {
         for filter in FilterKind::ALL {
             for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
-                for choice in [MapChoice::default(), MapChoice::ViewDepth { overlap: 0.0 }] {
-                    all.push(ShadowMapDescriptor { format, filter, depth, choice, ..Default::default() });
+                for choice in [MapSelection::default(), MapSelection::ViewDepth { overlap: 0.0 }] {
+                    all.push(ShadowMapDescriptor { format, filter, depth, selection: choice, ..Default::default() });
                 }
             }
         }
@@ -80,8 +80,8 @@ fn modules() -> Vec<(String, String)> {
         ("occlusion view".to_owned(), occlusion::shaders::view()),
         ("sky box".to_owned(), sky_box::WGSL.to_owned()),
         ("culling piece".to_owned(), culling_wgsl(&WgslOptions::group(0))),
-        ("need, compute".to_owned(), need_wgsl(1)),
-        ("need of four samples, compute".to_owned(), need_wgsl(4)),
+        ("need, compute".to_owned(), demand_wgsl(1)),
+        ("need of four samples, compute".to_owned(), demand_wgsl(4)),
     ];
     for format in MapFormat::ALL {
         let map = ShadowMapDescriptor { format, ..Default::default() };
@@ -94,7 +94,7 @@ fn modules() -> Vec<(String, String)> {
     }
     all.extend(sample_modules());
     for map in descriptors() {
-        let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
+        let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.selection);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));

@@ -155,7 +155,7 @@ impl<'a> Engine<'a> {
         }
         drop(pass);
         let convention = DepthConvention::Reversed;
-        self.sun.record_need(encoder, &self.depth, camera.clip_from_world(convention), convention)?;
+        self.sun.record_demand(encoder, &self.depth, camera.clip_from_world(convention), convention)?;
         Ok(())
     }
 
@@ -173,7 +173,7 @@ impl<'a> Engine<'a> {
     /// The maps of this frame, as they are drawn into other layers.
     pub(crate) fn maps(&self) -> (Vec<FittedMap>, MapView) {
         let maps: Vec<FittedMap> = self.sun.fitted().to_vec();
-        let origin = maps.first().map_or(glam::DVec3::ZERO, |map| map.fit.origin);
+        let origin = maps.first().map_or(glam::DVec3::ZERO, |map| map.projection.origin);
         (maps, MapView::from_eye(origin, Vec3::NEG_Z))
     }
 }

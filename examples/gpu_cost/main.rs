@@ -63,7 +63,7 @@ enum Part {
     /// Culling of 10,000 instances
     Culling,
     /// The pass over the depth buffer
-    Need,
+    Demand,
     /// Rays and classes on the GPU
     Rays,
 }
@@ -118,8 +118,8 @@ fn main() -> Result<()> {
     if wants(Part::Filters) {
         add(filters::time(&bench, &scenes[0])?);
     }
-    if wants(Part::Need) {
-        add(passes::time_need(&bench, &scenes)?);
+    if wants(Part::Demand) {
+        add(passes::time_demand(&bench, &scenes)?);
     }
     if wants(Part::Rays) {
         add(rays::time(&bench, &args.scenes)?);

@@ -7,7 +7,7 @@ use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
 use shadowfit::{Aabb, Seen, Technique, demand};
 use shadowfit_render::GpuProfilerQuery;
-use shadowfit_wgpu::need::{NeedPass, NeedView};
+use shadowfit_wgpu::demand::{DemandPass, DemandView};
 use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
 
 use crate::Bench;
@@ -65,7 +65,7 @@ impl Bench {
 fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
     let gpu = &bench.gpu;
     let mut engine = Engine::new(gpu, scene, &bench.technique())?;
-    engine.sun.set_keeps(way.keeps);
+    engine.sun.set_caching(way.keeps);
     engine.sun.set_culling(way.culling);
     engine.sun.set_schedule(way.schedule);
     let mut timer = Timer::new(gpu);
@@ -85,7 +85,7 @@ fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
             Ok(())
         })?;
         timer.frame(gpu, |encoder, _| engine.seen_pass(encoder, &camera))?;
-        engine.sun.wait_for_need()?;
+        engine.sun.wait_for_demand()?;
         if frame >= bench.warm_up() {
             let pieces = || engine.sun.passes().flat_map(|pass| pass.pieces());
             taken.gpu.push(time);
@@ -175,7 +175,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
     let side = if bare.is_quarter { bench.map / 2 } else { bench.map };
     let technique = bench.technique().with_format(bare.format).with_resolution(side, side);
     let mut engine = Engine::new(gpu, scene, &technique)?;
-    engine.sun.set_keeps(false);
+    engine.sun.set_caching(false);
     let mut map = ShadowMap::new(&gpu.device, &ShadowMapDescriptor::from(&technique))?;
     let mut timer = Timer::new(gpu);
     let mut times = Vec::new();
@@ -199,7 +199,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
                     Order::AsStored => casters.sort_unstable(),
                 }
                 if bare.is_cut {
-                    let rect = TexelRect::of_box(&maps[shadow.map()].fit, &seen, camera.eye);
+                    let rect = TexelRect::of_box(&maps[shadow.map()].projection, &seen, camera.eye);
                     pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
                 }
                 engine.draw(&mut pass, if bare.is_empty { &[] } else { &casters });
@@ -212,7 +212,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
             engine.shadow_passes(encoder, None);
             engine.seen_pass(encoder, &camera)
         })?;
-        engine.sun.wait_for_need()?;
+        engine.sun.wait_for_demand()?;
         if frame >= bench.warm_up() {
             times.push(time);
         }
@@ -249,12 +249,12 @@ pub(crate) fn time_fill(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
 }
 
 /// The pass over the depth buffer.
-pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
+pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     let gpu = &bench.gpu;
     let mut rows = Vec::new();
     for scene in scenes {
         let mut engine = Engine::new(gpu, scene, &bench.technique())?;
-        let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1)?;
+        let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1)?;
         let mut timer = Timer::new(gpu);
         let (mut times, mut counted) = (Vec::new(), Vec::new());
         for frame in 0..bench.frames + bench.frames / 5 {
@@ -265,7 +265,7 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
             let settings = engine.sun.technique().fit;
             let direction = BenchScene::direction();
             let depth = shadowfit::DepthConvention::Reversed;
-            let view = NeedView::from_camera(&camera, depth, direction, &settings, SIZE)?;
+            let view = DemandView::from_camera(&camera, depth, direction, &settings, SIZE)?;
             let time = timer.frame(gpu, |encoder, times| {
                 let query = times.begin("need", encoder);
                 let writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
@@ -284,7 +284,7 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
         rows.push([vec![scene.name.clone(), ms(median(times))], counted.to_vec()].concat());
     }
     Ok(Table {
-        title: "The grid of need",
+        title: "The demand grid",
         note: "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows: points, cells of the grid that \
                have some, and octaves of texels that do."
             .to_owned(),
@@ -295,7 +295,7 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
 
 /// Points in the grid, cells that have some, and octaves of texels that do.
 fn counts(seen: &Seen) -> [f64; 3] {
-    let counts = seen.need().counts;
+    let counts = seen.demand().counts;
     let has_some = |counts: &[u32]| counts.iter().any(|count| *count > 0);
     let points: u32 = counts.iter().sum();
     let cells = counts.iter().filter(|count| **count > 0).count();

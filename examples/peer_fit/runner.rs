@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::Clusters;
 use shadowfit::NormalCone;
 use shadowfit::selection::MapOrder;
-use shadowfit::settings::MapChoice;
+use shadowfit::settings::MapSelection;
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, Seen, ShadowFitter, Technique, ViewFrustum};
 use shadowfit_params::BoxSource;
 use shadowfit_study::{NamedTechnique, fit_map, see_by_rays};
@@ -162,13 +162,13 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
 /// The maps of a frame as the fit file has them, in the order in which points try them: that of their ends, or by
 /// coverage from the finest on, without ends and without those that are empty.
 fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
-    let choice = technique.maps.choice();
-    let fits = maps.iter().map(|map| &map.fit);
+    let choice = technique.maps.selection();
+    let fits = maps.iter().map(|map| &map.projection);
     let in_order = MapOrder::new(choice, fits);
     let fitted = in_order.iter().map(|index| fit_map_of(&maps[index]));
     match choice {
-        MapChoice::ViewDepth { .. } => fitted.collect(),
-        MapChoice::Coverage { .. } => fitted.map(|map| FitMap { split_far: FitMap::NO_END, ..map }).collect(),
+        MapSelection::ViewDepth { .. } => fitted.collect(),
+        MapSelection::Coverage { .. } => fitted.map(|map| FitMap { split_far: FitMap::NO_END, ..map }).collect(),
     }
 }
 

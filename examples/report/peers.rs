@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit::settings::{BiasSettings, FilterKind, MapChoice, MapFormat};
-use shadowfit::{Bias, FittedMap, LightFit, Technique};
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, MapSelection};
+use shadowfit::{Bias, FittedMap, LightProjection, Technique};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
@@ -203,7 +203,7 @@ fn descriptor(
         format,
         filter,
         softness: Technique::default().softness,
-        choice: choice(maps),
+        selection: choice(maps),
         depth,
         depth_clamp: file.depth_clamp,
         ..ShadowMapDescriptor::default()
@@ -212,9 +212,13 @@ fn descriptor(
 
 /// How the maps of a file are read: by coverage where no map ends, which is what a file of maps that are no slices of
 /// the view says; else by view depth.
-fn choice(maps: &[Vec<FitMap>]) -> MapChoice {
+fn choice(maps: &[Vec<FitMap>]) -> MapSelection {
     let has_no_end = |map: &FitMap| map.split_far >= FitMap::NO_END;
-    if maps.iter().flatten().all(has_no_end) { MapChoice::default() } else { MapChoice::ViewDepth { overlap: 0.0 } }
+    if maps.iter().flatten().all(has_no_end) {
+        MapSelection::default()
+    } else {
+        MapSelection::ViewDepth { overlap: 0.0 }
+    }
 }
 
 fn view(frame: &Frame, is_first: bool) -> View {
@@ -231,11 +235,11 @@ fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat
     maps.iter().map(fitted).collect()
 }
 
-fn light_fit(map: &FitMap, view: &View) -> Result<LightFit> {
+fn light_fit(map: &FitMap, view: &View) -> Result<LightProjection> {
     let size = map.size();
     let resolution = UVec2::new(size.x as u32, size.y as u32);
     ensure!(size.max_element() <= 8192.0, "a map of {} by {} texels is too large to be drawn", size.x, size.y);
-    Ok(LightFit::from_clip_from_world(&map.clip_from_world(), view.direction, resolution, view.camera.eye)?)
+    Ok(LightProjection::from_clip_from_world(&map.clip_from_world(), view.direction, resolution, view.camera.eye)?)
 }
 
 fn write(file: &Path, text: &str) -> Result<()> {

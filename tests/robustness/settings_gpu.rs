@@ -278,7 +278,7 @@ fn absurd_places_of_the_eye_are_drawn_without_a_panic() {
             for angle in [f32::NAN, f32::INFINITY, 0.0, 1e30] {
                 stage.reset();
                 let technique = &mut stage.settings.technique;
-                (technique.maps, technique.fit.casters) = (of_kind(technique.maps, kind), CasterPolicy::List);
+                (technique.maps, technique.fit.casters) = (of_kind(technique.maps, kind), CasterPolicy::PerObject);
                 stage.camera.position = eye;
                 (stage.camera.yaw, stage.camera.pitch) = (angle, angle);
                 frame(&mut stage);

@@ -17,7 +17,7 @@ fn each_split_has_coarser_texels_than_the_one_before() {
         let view = View { camera, direction: bench.sample.direction.normalize(), is_first: true };
         let maps = bench.scene.fit_alone(&mut ShadowFitter::new(&technique), Inputs::default(), &view).expect("maps");
         assert_eq!(maps.len(), 4);
-        let texels: Vec<f32> = maps.iter().map(|map| map.fit.texel_size.max_element()).collect();
+        let texels: Vec<f32> = maps.iter().map(|map| map.projection.texel_size.max_element()).collect();
         assert!(texels.is_sorted(), "{splits}: {texels:?}");
         assert!(texels[3] > 1.5 * texels[0], "{splits}: {texels:?}");
     }

@@ -4,7 +4,7 @@ use shadowfit::Slices;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, MapSettings, Shape};
 use shadowfit::{
-    Bias, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace,
+    Bias, DepthConvention, FitInput, FitState, FittedMap, LightProjection, PerspectiveCamera, Scratch, Technique,
 };
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Renderer};
 use shadowfit_scene::builtin;
@@ -35,7 +35,7 @@ fn descriptor(format: MapFormat, depth: DepthConvention) -> ShadowMapDescriptor 
 }
 
 /// Triangles all over the map, many of them through the near plane or the far one.
-fn casters(fit: &LightFit) -> Vec<Vec3> {
+fn casters(fit: &LightProjection) -> Vec<Vec3> {
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
     let share = |i: u16, step: f32| (f32::from(i) * step).fract();
@@ -98,9 +98,9 @@ fn picture(gpu: &Gpu, format: MapFormat) -> Vec<u8> {
     };
     let direction = Vec3::new(0.5, -0.6, -0.4).normalize();
     let views = [camera.frustum().expect("a camera")];
-    let mut storage = vec![DVec2::ZERO; Workspace::required(0, 2)];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(0, 2)];
     let input = FitInput::new(&views, direction);
-    let fitted = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
+    let fitted = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).expect("maps");
     let maps: Vec<FittedMap> = fitted.to_vec();
     let mut renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&technique), 1).expect("a renderer");
     let scene = builtin::default_scene();

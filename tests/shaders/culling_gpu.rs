@@ -3,7 +3,7 @@
 
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
-use shadowfit::{Aabb, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{Aabb, CasterVolume, FitInput, FitState, PerspectiveCamera, Scratch, Technique};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{CullingUniform, WgslOptions, culling_wgsl};
 use wgpu::util::DeviceExt;
@@ -64,14 +64,14 @@ fn volumes() -> Vec<CasterVolume> {
         far: 100.0,
     };
     let views = [camera.frustum().expect("a good camera")];
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let settings = Technique::preset("calm-4").expect("a preset").with_count(2);
     let input = FitInput::new(&views, Vec3::new(0.4, -0.8, 0.3));
-    let maps = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view");
+    let maps = FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("a good view");
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
-    let swept = maps.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
+    let swept = maps.iter().map(|map| CasterVolume::swept(&map.projection, &sweep(map.covered_near, map.far)));
     let swept = swept.map(|volume| volume.expect("a good sweep"));
-    swept.chain(maps.iter().map(|map| map.fit.caster_volume())).collect()
+    swept.chain(maps.iter().map(|map| map.projection.caster_volume())).collect()
 }
 
 /// Numbers in 0..1 that fill the cube evenly.

@@ -38,14 +38,14 @@ fn gpu_the_default_technique_runs_on_a_device_of_webgl2_limits_without_an_error(
         let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
         let frame = SunFrame::new(&views, SUN, boxes, Casters { boxes, moves: &moves }).with_origin(DVec3::ZERO);
         sun.update(&device.queue, &frame).expect("a good frame");
-        assert!(sun.verify(&frame).expect("a good frame").is_proven());
+        assert!(sun.prove(&frame).expect("a good frame").is_proven());
         let picture = painter.draw(&device, &[(&sun, boxes.boxes)]);
         assert_eq!([picture.at(IN_SUN_SHADOW)[0], picture.at(LIT)[0]], [0, 255], "frame {step}");
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let convention = shadowfit::DepthConvention::Reversed;
-        let recorded = sun.record_need(&mut encoder, &depth, camera.clip_from_world(convention), convention);
+        let recorded = sun.record_demand(&mut encoder, &depth, camera.clip_from_world(convention), convention);
         assert_eq!(recorded, Ok(false), "such a device cannot count");
-        assert_eq!(sun.wait_for_need(), Ok(()));
+        assert_eq!(sun.wait_for_demand(), Ok(()));
     }
     quiet.assert("WebGL2's limits");
 }
@@ -135,7 +135,7 @@ fn gpu_a_frame_that_makes_no_sense_is_refused_with_its_value_and_the_next_one_is
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let convention = shadowfit::DepthConvention::Reversed;
         let clip_from_world = camera(EYE).clip_from_world(convention);
-        assert_eq!(sun.record_need(&mut encoder, &depth, clip_from_world, convention), Ok(false), "{word}");
+        assert_eq!(sun.record_demand(&mut encoder, &depth, clip_from_world, convention), Ok(false), "{word}");
         sun.update(&device.queue, &good).expect("a good frame");
         let picture = painter.draw(&device, &[(&sun, &BOXES)]);
         assert_eq!([picture.at(IN_SUN_SHADOW)[0], picture.at(LIT)[0]], [0, 255], "after {error}");
@@ -210,7 +210,7 @@ fn gpu_a_proof_fails_where_shaders_take_positions_from_too_far_away() {
     let quiet = Quiet::new(&device);
     let mut sun = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
     let nothing = frame_of(&[], SUN, &BOXES);
-    assert_eq!(sun.verify(&nothing), Err(SunShadowsError::NoFrame));
+    assert_eq!(sun.prove(&nothing), Err(SunShadowsError::NoFrame));
     // The f32 numbers there are half a metre apart.
     let place = DVec3::X * 8_000_000.0;
     let views = [ViewFrustum { origin: EYE + place, ..camera(EYE).frustum().expect("a camera") }];
@@ -218,8 +218,8 @@ fn gpu_a_proof_fails_where_shaders_take_positions_from_too_far_away() {
     let frame = SunFrame::new(&views, SUN, boxes, Casters::fixed(boxes));
     for (frame, is_proven) in [(frame, true), (frame.with_origin(DVec3::ZERO), false)] {
         sun.update(&device.queue, &frame).expect("a good frame");
-        let certificate = sun.verify(&frame).expect("a good frame");
-        assert_eq!(certificate.is_proven(), is_proven, "{certificate:?}");
+        let proof = sun.prove(&frame).expect("a good frame");
+        assert_eq!(proof.is_proven(), is_proven, "{proof:?}");
     }
     quiet.assert("proofs");
 }

@@ -9,7 +9,7 @@
 
 use shadowfit::glam::{DVec3, UVec2, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapFormat};
-use shadowfit::{DepthConvention, LightFit, ViewFrustum, fit};
+use shadowfit::{DepthConvention, LightProjection, ViewFrustum, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::harness::{Answer, Harness, Point, ROW};
@@ -30,7 +30,7 @@ const HEIGHT: f32 = 2.0;
 const SHADOWED: usize = 80 * 48;
 
 /// The fit of a box of 16 m × 5 m × 16 m around the origin, seen from the box's middle along -z.
-pub(super) fn box_fit(depth: DepthConvention) -> LightFit {
+pub(super) fn box_fit(depth: DepthConvention) -> LightProjection {
     let corner = |x: f32, y: f32, z: f32| Vec3::new(x * 8.0, if y > 0.0 { 4.0 } else { -1.0 }, z * 8.0);
     let face = |z| [corner(-1.0, 1.0, z), corner(1.0, 1.0, z), corner(1.0, -1.0, z), corner(-1.0, -1.0, z)];
     let [near, far] = [face(1.0), face(-1.0)];

@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::FilterKind;
-use shadowfit::{Bias, DepthConvention, FittedMap, LightFit};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection};
 use shadowfit_wgpu::{MapView, ShadowMapDescriptor};
 
 use super::exact_counts_gpu::box_fit;
@@ -10,7 +10,7 @@ use super::harness::{Harness, Point, ROW};
 use crate::support::software_gpu;
 
 /// A triangle before the whole map, at the near plane.
-fn lid(fit: &LightFit) -> Vec<Vec3> {
+fn lid(fit: &LightProjection) -> Vec<Vec3> {
     let c = fit.corners();
     let (right, below) = (c[1] - c[0], c[3] - c[0]);
     let start = c[0] + (c[4] - c[0]) * 0.01 - right - below;

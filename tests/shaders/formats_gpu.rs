@@ -136,7 +136,7 @@ fn a_million_packed_depths_come_back_bit_for_bit_and_denormals_as_they_are_or_as
     let (format, filter) = (MapFormat::Rgba8Packed, FilterKind::Point);
     let descriptor = ShadowMapDescriptor { resolution: [SIDE; 2], maps: 1, format, filter, ..Default::default() };
     let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
-    let whole = shadowfit::LightFit { resolution: [SIDE; 2].into(), ..fit };
+    let whole = shadowfit::LightProjection { resolution: [SIDE; 2].into(), ..fit };
     let maps = [FittedMap::new(whole, shadowfit::Bias::default())];
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps).expect("a good map");
     let source = [&caster_wgsl(&descriptor, &WgslOptions::group(0)), BITS_OF, WRITE].concat();

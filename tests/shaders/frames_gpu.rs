@@ -2,7 +2,7 @@
 //! every kind of map.
 
 use shadowfit::glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit::settings::{FilterKind, MapChoice};
+use shadowfit::settings::{FilterKind, MapSelection};
 use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_render::{
     Culling, Frame, Inset, JudgedPicture, Marks, Overlay, ProbeTargets, Quad, Statistics, classes_texture,
@@ -211,14 +211,14 @@ fn quadrilaterals_cover_their_pixels_and_no_others() {
 #[test]
 fn every_overlay_can_be_drawn_with_every_kind_of_map() {
     // Looked up with the most branches, and with the fewest.
-    let by_view_depth = MapChoice::ViewDepth { overlap: 0.0 };
-    for (filter, choice) in [(FilterKind::Point, by_view_depth), (FilterKind::Pcss, MapChoice::default())] {
+    let by_view_depth = MapSelection::ViewDepth { overlap: 0.0 };
+    for (filter, choice) in [(FilterKind::Point, by_view_depth), (FilterKind::Pcss, MapSelection::default())] {
         let technique = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256);
         let floor = [[-60.0, -60.0], [-60.0, 60.0], [60.0, 60.0], [60.0, -60.0]].map(|[x, z]| Vec3::new(x, 0.0, z));
         let [a, b, c, d] = floor;
         let scene = Scene::from_objects("floor", &[vec![[a, b, c], [a, c, d]]]);
         let (mut pictures, seen) = Pictures::of(
-            &technique.with_filter(filter).with_maps(technique.maps.as_slices().with_choice(choice)),
+            &technique.with_filter(filter).with_maps(technique.maps.as_slices().with_selection(choice)),
             1,
             scene,
         );

@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::BiasSettings;
-use shadowfit::{Bias, FittedMap, LightFit};
+use shadowfit::{Bias, FittedMap, LightProjection};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
@@ -132,12 +132,13 @@ impl<'a> Harness<'a> {
         gpu: &'a Gpu,
         descriptor: &ShadowMapDescriptor,
         origin: DVec3,
-        fits: &[LightFit],
+        fits: &[LightProjection],
         bias: &BiasSettings,
         casters: &[Vec<Vec3>],
     ) -> Self {
-        let map =
-            |fit: &LightFit| FittedMap::new(*fit, Bias::from_texels(bias, descriptor.format, fit)).ending_at(f32::MAX);
+        let map = |fit: &LightProjection| {
+            FittedMap::new(*fit, Bias::from_texels(bias, descriptor.format, fit)).ending_at(f32::MAX)
+        };
         let maps: Vec<FittedMap> = fits.iter().map(map).collect();
         Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, casters)
     }

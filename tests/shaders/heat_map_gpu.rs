@@ -32,7 +32,7 @@ fn expected(pictures: &mut Pictures, seen: &Seen) -> Vec<Option<f32>> {
         let (point, normal) = pictures.point(camera, pixel, (*probed)?.triangle);
         let depth = point.dot(camera.forward.as_dvec3());
         let read = seen.fitted.read(&seen.technique, camera.eye + point, depth)?;
-        let fit = seen.fitted[read.main()].fit.relative_to(camera.eye);
+        let fit = seen.fitted[read.main()].projection.relative_to(camera.eye);
         let figures = diagnostics::pixels_per_texel(&fit, &clip, UVec2::from(SIZE), point.as_vec3(), normal.as_vec3());
         Some(figures.expect("finite")?.worse_axis)
     };

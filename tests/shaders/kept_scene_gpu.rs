@@ -40,7 +40,7 @@ fn assert_same_pictures(technique: &Technique) {
     let descriptor = ShadowMapDescriptor::from(technique);
     let evaluator = |keeps: bool| {
         let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
-        renderer.sun_mut().set_keeps(keeps);
+        renderer.sun_mut().set_caching(keeps);
         Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() })
     };
     let [mut kept, mut anew] = [true, false].map(evaluator);

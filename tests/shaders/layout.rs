@@ -12,7 +12,7 @@ use shadowfit_render::{
     BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform, MaterialUniform,
     Overlay, QuadVertex, shaders,
 };
-use shadowfit_wgpu::need::{NeedUniform, need_wgsl};
+use shadowfit_wgpu::demand::{DemandUniform, demand_wgsl};
 use shadowfit_wgpu::{
     CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions,
     culling_wgsl,
@@ -183,8 +183,8 @@ fn the_volumes_of_the_culling_uniform_lie_as_in_wgsl() {
 
 #[test]
 fn the_uniform_of_the_need_pass_lies_as_in_wgsl() {
-    let need = layout!(
-        "Need" = NeedUniform {
+    let demand = layout!(
+        "Demand" = DemandUniform {
             world_from_pixel,
             view,
             direction,
@@ -204,7 +204,7 @@ fn the_uniform_of_the_need_pass_lies_as_in_wgsl() {
             pixel_width,
         }
     );
-    assert_same(&parse("need", &need_wgsl(1)), &need);
+    assert_same(&parse("need", &demand_wgsl(1)), &demand);
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Judged",
         "Marks",
         "Block",
-        "Need",
+        "Demand",
         "Occlusion",
         "Sample",
         "SkyBox",

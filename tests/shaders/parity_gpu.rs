@@ -1,8 +1,8 @@
 //! The look-up's formulas in WGSL against their twins in Rust: projection, biases, choice of the map, comparison.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat, Softness};
-use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, fit};
+use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat, MapSelection, Softness};
+use shadowfit::{Bias, DepthConvention, LightProjection, PerspectiveCamera, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::harness::{Harness, Point};
@@ -31,7 +31,7 @@ fn evenly(index: usize, axis: i32) -> f64 {
     (0.5 + (index as f64 + 1.0) * 1.167_303_978_261_418_7_f64.powi(-axis)).fract()
 }
 
-fn two_fits(origin: DVec3, depth: DepthConvention) -> [LightFit; 2] {
+fn two_fits(origin: DVec3, depth: DepthConvention) -> [LightProjection; 2] {
     let camera = PerspectiveCamera {
         eye: origin,
         forward: Vec3::new(0.3, -0.2, -1.0),
@@ -53,7 +53,7 @@ fn two_fits(origin: DVec3, depth: DepthConvention) -> [LightFit; 2] {
 }
 
 /// Points in and around the far map's box, with normals all around, relative to the fits' origin.
-fn points(fits: &[LightFit; 2]) -> Vec<Point> {
+fn points(fits: &[LightProjection; 2]) -> Vec<Point> {
     let corners = fits[1].corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
     (0..POINTS)
@@ -74,13 +74,13 @@ fn points(fits: &[LightFit; 2]) -> Vec<Point> {
 }
 
 /// Texture coordinates and depth of a position, in f64 with the fit's own numbers.
-fn uv(fit: &LightFit, position: DVec3) -> DVec3 {
+fn uv(fit: &LightProjection, position: DVec3) -> DVec3 {
     let m = fit.uv_from_world.as_dmat4();
     (m.x_axis * position.x + m.y_axis * position.y + m.z_axis * position.z + m.w_axis).truncate()
 }
 
 /// What `shadowfit_project` promises, from the core's own `Bias`.
-fn projected(fit: &LightFit, point: &Point) -> DVec3 {
+fn projected(fit: &LightProjection, point: &Point) -> DVec3 {
     let bias = Bias::from_texels(&BIAS, MapFormat::Depth32Float, fit);
     let (position, normal) = (Vec3::from(point.position).as_dvec3(), Vec3::from(point.normal).as_dvec3());
     let cosine = normal.dot(-fit.direction.as_dvec3()).clamp(MIN_COSINE, 1.0);
@@ -94,7 +94,7 @@ fn projected(fit: &LightFit, point: &Point) -> DVec3 {
 }
 
 /// Change of a plane's depth over a texel along u and v: its height falls by n·x / n·z along x, and v runs against y.
-fn gradient(fit: &LightFit, normal: DVec3, cosine: f64) -> DVec2 {
+fn gradient(fit: &LightProjection, normal: DVec3, cosine: f64) -> DVec2 {
     let along = |row: usize| fit.light_from_world.row(row).truncate().as_dvec3().dot(normal);
     let away_from_light = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
     let texel = fit.texel_size.as_dvec2();
@@ -111,7 +111,7 @@ fn is_at_border(uv: DVec3) -> bool {
 }
 
 /// A triangle that covers the whole map at half its depth, relative to the fit's origin.
-fn half_way(fit: &LightFit) -> Vec<Vec3> {
+fn half_way(fit: &LightProjection) -> Vec<Vec3> {
     let c = fit.corners();
     let [corner, right, below] = [0, 1, 3].map(|i: usize| (c[i] + c[i + 4]) * 0.5);
     let margin = (right - corner) + (below - corner);
@@ -129,14 +129,14 @@ fn cases() -> impl Iterator<Item = ShadowMapDescriptor> {
         format,
         filter: FilterKind::Point,
         softness: Softness::default(),
-        choice: MapChoice::ViewDepth { overlap: 0.0 },
+        selection: MapSelection::ViewDepth { overlap: 0.0 },
         depth,
         ..ShadowMapDescriptor::default()
     })
 }
 
 /// The fits, moved, with the points.
-fn moved(depth: DepthConvention) -> (DVec3, [LightFit; 2], Vec<Point>) {
+fn moved(depth: DepthConvention) -> (DVec3, [LightProjection; 2], Vec<Point>) {
     let (eye, origin) = (DVec3::new(1000.0, 20.0, -3000.0), DVec3::new(1004.0, 18.0, -3002.0));
     let fits = two_fits(eye, depth).map(|fit| fit.relative_to(origin));
     (origin, fits, points(&fits))

@@ -11,7 +11,7 @@
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapFormat, SoftRadius, Softness};
-use shadowfit::{DepthConvention, LightFit, ViewFrustum, fit};
+use shadowfit::{DepthConvention, LightProjection, ViewFrustum, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::harness::{Harness, Point, ROW};
@@ -23,7 +23,7 @@ const TEXELS: u32 = 512;
 const ROWS: usize = 160;
 
 /// A box of 6 m under a vertical light, with texels of a size, turned about the light by an angle in radians.
-fn turned_fit(texel: f32, angle: f32, depth: DepthConvention) -> LightFit {
+fn turned_fit(texel: f32, angle: f32, depth: DepthConvention) -> LightProjection {
     let half = texel * TEXELS as f32 * 0.5;
     let (sine, cosine) = angle.sin_cos();
     let corner = |x: f32, y: f32, z: f32| {

@@ -129,7 +129,7 @@ const STEP: DVec3 = DVec3::new(0.35, 0.0, -0.25);
 fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapped_texels_are_found() {
     let technique = Technique::preset("stable-4").expect("a preset").with_resolution(SIDE, SIDE);
     let (mut pictures, mut seen) = Pictures::new(&technique, 1);
-    pictures.renderer.sun_mut().set_keeps(true);
+    pictures.renderer.sun_mut().set_caching(true);
     let scene = default_scene();
     let mut before: Option<Vec<Vec<u8>>> = None;
     let (mut met, mut changes) = ([false; 4], 0);
@@ -152,7 +152,7 @@ fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapp
             met[update.content as usize] = true;
         }
         for (map, (now, before)) in now.iter().zip(before.iter().flatten()).enumerate() {
-            assert!(kept.is_kept(map));
+            assert!(kept.is_cached(map));
             let mut is_drawn = vec![false; (SIDE * SIDE) as usize];
             let rects = updates.iter().filter(|update| update.map == map);
             let parts = rects.flat_map(|update| update.rect.stored(kept.maps()[map].wrap, UVec2::splat(SIDE)));

@@ -2,8 +2,10 @@
 //! the index and the value. And that a refusal changes nothing.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{MapChoice, SplitScheme};
-use shadowfit::{Bias, FitError, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::settings::{MapSelection, SplitScheme};
+use shadowfit::{
+    Bias, FitError, FitInput, FitState, FittedMap, LightProjection, PerspectiveCamera, Scratch, Technique,
+};
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::exact_counts_gpu::box_fit;
@@ -12,7 +14,7 @@ use crate::support::software_gpu;
 /// Layers of the shadow map.
 const LAYERS: u32 = 3;
 
-fn fit() -> LightFit {
+fn fit() -> LightProjection {
     box_fit(shadowfit::DepthConvention::ZeroToOne)
 }
 
@@ -21,15 +23,15 @@ fn maps(far: &[f32]) -> Vec<FittedMap> {
     far.iter().map(|far| FittedMap::new(fit(), Bias::default()).ending_at(*far)).collect()
 }
 
-fn descriptor(choice: MapChoice) -> ShadowMapDescriptor {
-    ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], choice, ..ShadowMapDescriptor::default() }
+fn descriptor(choice: MapSelection) -> ShadowMapDescriptor {
+    ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], selection: choice, ..ShadowMapDescriptor::default() }
 }
 
 /// Prepares a shadow map with maps for a view along `forward`.
 fn prepared(maps: &[FittedMap], forward: Vec3) -> Result<usize, ShadowMapError> {
     let gpu = software_gpu();
-    let mut map =
-        ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth { overlap: 0.0 })).expect("a possible shadow map");
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapSelection::ViewDepth { overlap: 0.0 }))
+        .expect("a possible shadow map");
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, forward), maps)?;
     Ok(map.volumes().len())
 }
@@ -110,7 +112,7 @@ fn maps_out_of_order_are_an_error_and_those_without_a_range_are_not() {
 #[test]
 fn maps_that_are_read_by_coverage_have_no_order() {
     let gpu = software_gpu();
-    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::default())).expect("a possible shadow map");
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapSelection::default())).expect("a possible shadow map");
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     assert_eq!(map.prepare(&gpu.queue, &view, &maps(&[2.0, 1.0, f32::NAN])), Ok(()));
 }
@@ -119,7 +121,7 @@ fn maps_that_are_read_by_coverage_have_no_order() {
 fn a_blend_that_is_out_of_range_or_no_number_is_an_error() {
     let gpu = software_gpu();
     for blend in [-0.1, 64.1, f32::NAN, f32::INFINITY] {
-        let error = ShadowMap::new(&gpu.device, &descriptor(MapChoice::Coverage { blend })).expect_err("no map");
+        let error = ShadowMap::new(&gpu.device, &descriptor(MapSelection::Coverage { blend })).expect_err("no map");
         assert!(matches!(error, ShadowMapError::Blend(_)) && error.to_string().contains(&blend.to_string()), "{error}");
     }
 }
@@ -144,9 +146,9 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
         let mut settings =
             slices.with_maps(slices.maps.as_slices().with_count(LAYERS).with_splits(SplitScheme::Manual(manual)));
         settings.fit.resolution = UVec2::splat(256);
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));
-        let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("maps");
+        let fitted = FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("maps");
         let maps: Vec<FittedMap> = fitted.to_vec();
         assert_eq!(prepared(&maps, Vec3::NEG_Z), Ok(3), "{ends:?}");
     }
@@ -155,8 +157,8 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
 #[test]
 fn a_refused_frame_leaves_the_volumes_of_the_last_one() {
     let gpu = software_gpu();
-    let mut map =
-        ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth { overlap: 0.0 })).expect("a possible shadow map");
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapSelection::ViewDepth { overlap: 0.0 }))
+        .expect("a possible shadow map");
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     map.prepare(&gpu.queue, &view, &maps(&[1.0, 2.0])).expect("good maps");
     let before = map.volumes().to_vec();

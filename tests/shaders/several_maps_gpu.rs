@@ -3,8 +3,8 @@
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapChoice};
-use shadowfit::{Bias, FittedMap, LightFit, PerspectiveCamera, fit};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapSelection};
+use shadowfit::{Bias, FittedMap, LightProjection, PerspectiveCamera, fit};
 use shadowfit_wgpu::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
 use super::harness::{Choice, Harness, Point};
@@ -16,7 +16,7 @@ const NO_BIAS: BiasSettings =
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
 
 /// A map around the first so many metres of a view along -z.
-fn map_to(distance: f32, texels: u32) -> LightFit {
+fn map_to(distance: f32, texels: u32) -> LightProjection {
     let camera = PerspectiveCamera {
         eye: DVec3::ZERO,
         forward: Vec3::NEG_Z,
@@ -34,7 +34,7 @@ fn map_to(distance: f32, texels: u32) -> LightFit {
 }
 
 /// A triangle before the whole map, at the near plane.
-fn lid(fit: &LightFit) -> Vec<Vec3> {
+fn lid(fit: &LightProjection) -> Vec<Vec3> {
     let c = fit.corners();
     let down = (c[4] - c[0]) * 0.01;
     let (corner, right, below) = (c[0] + down, c[1] - c[0], c[3] - c[0]);
@@ -43,7 +43,7 @@ fn lid(fit: &LightFit) -> Vec<Vec3> {
 }
 
 /// A map without biases that ends at a view depth.
-fn map_fit(fit: &LightFit, far: f32) -> FittedMap {
+fn map_fit(fit: &LightProjection, far: f32) -> FittedMap {
     FittedMap::new(*fit, Bias::default()).ending_at(far)
 }
 
@@ -52,7 +52,7 @@ fn descriptor(maps: &[FittedMap]) -> ShadowMapDescriptor {
         resolution: [256; 2],
         maps: maps.len() as u32,
         filter: FilterKind::Point,
-        choice: MapChoice::ViewDepth { overlap: 0.0 },
+        selection: MapSelection::ViewDepth { overlap: 0.0 },
         ..ShadowMapDescriptor::default()
     }
 }
@@ -64,7 +64,7 @@ fn ground(points: &[Vec3]) -> Vec<Point> {
 
 /// Casters that cover one of the maps.
 fn lids(maps: &[FittedMap], shadowed: usize) -> Vec<Vec<Vec3>> {
-    maps.iter().enumerate().map(|(i, map)| if i == shadowed { lid(&map.fit) } else { Vec::new() }).collect()
+    maps.iter().enumerate().map(|(i, map)| if i == shadowed { lid(&map.projection) } else { Vec::new() }).collect()
 }
 
 fn ask(view: &MapView, maps: &[FittedMap], shadowed: usize, points: &[Vec3]) -> Vec<f32> {
@@ -99,7 +99,7 @@ fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it
 
 #[test]
 fn as_many_maps_as_there_may_be_are_told_apart() {
-    let fits: Vec<LightFit> = (1..=MAX_MAPS).map(|i| map_to(i as f32 * 5.0, 256)).collect();
+    let fits: Vec<LightProjection> = (1..=MAX_MAPS).map(|i| map_to(i as f32 * 5.0, 256)).collect();
     let maps: Vec<FittedMap> = fits.iter().enumerate().map(|(i, fit)| map_fit(fit, (i + 1) as f32 * 5.0)).collect();
     let points: Vec<Vec3> = (0..MAX_MAPS).map(|i| Vec3::NEG_Z * (i as f32 * 5.0 + 2.5)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
@@ -169,14 +169,14 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
             "{position}: {view_depth}, not {expected_depth}"
         );
         let is_at_a_border = maps.iter().any(|map| {
-            let near = |point: DVec3| map.fit.covers(point);
+            let near = |point: DVec3| map.projection.covers(point);
             (expected_depth - f64::from(map.far)).abs() < 1e-3
                 || [DVec3::X, DVec3::Y, DVec3::Z]
                     .iter()
                     .any(|axis| near(world + axis * 1e-3) != near(world - axis * 1e-3))
         });
         if !is_at_a_border {
-            let reads = |map: &FittedMap| expected_depth < f64::from(map.far) && map.fit.covers(world);
+            let reads = |map: &FittedMap| expected_depth < f64::from(map.far) && map.projection.covers(world);
             let expected = maps.iter().position(reads).map_or(-1, |index| i32::try_from(index).expect("one of eight"));
             assert_eq!(map, expected, "{position} at view depth {expected_depth}");
             met[(expected + 1) as usize] += 1;
@@ -256,11 +256,11 @@ fn assert_read(
 fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_toward_its_border() {
     let maps = crossing_maps();
     for (filter, blend) in [(FilterKind::Pcf5x5, 8.0), (FilterKind::Point, 0.0), (FilterKind::Pcf3x3, 64.0)] {
-        let choice = MapChoice::Coverage { blend };
-        let descriptor = ShadowMapDescriptor { filter, choice, ..descriptor(&maps) };
-        let order = MapOrder::new(choice, maps.iter().map(|map| &map.fit));
+        let choice = MapSelection::Coverage { blend };
+        let descriptor = ShadowMapDescriptor { filter, selection: choice, ..descriptor(&maps) };
+        let order = MapOrder::new(choice, maps.iter().map(|map| &map.projection));
         let read = |point: DVec3| {
-            let free = |map: usize| maps[map].fit.free_texels(point);
+            let free = |map: usize| maps[map].projection.free_texels(point);
             by_coverage(order.iter(), filter.reach().into(), blend.into(), free)
         };
         let (alone, blended) = assert_read(&descriptor, &maps, &scattered(), read);
@@ -284,7 +284,7 @@ fn by_view_depth_points_are_blended_where_maps_overlap() {
         .collect();
     let read = |point: DVec3| {
         let ranges = ranges.map(|(blend_near, far)| DepthRange { blend_near: blend_near.into(), far: far.into() });
-        by_view_depth(ranges, -point.z, |map| maps[map].fit.covers(point))
+        by_view_depth(ranges, -point.z, |map| maps[map].projection.covers(point))
     };
     let (alone, blended) = assert_read(&descriptor(&maps), &maps, &scattered(), read);
     assert!(alone.iter().all(|count| *count > 30) && blended > 100, "{alone:?}, {blended} blended");

@@ -4,12 +4,12 @@
 use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapChoice, MapFormat, MapSettings, Shape,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat, MapSelection, MapSettings, Shape,
     SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Bias, Boxes, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, Maps, PerspectiveCamera, Slices,
-    Technique, Workspace, fit,
+    Aabb, Bias, Boxes, DepthConvention, FitInput, FitState, FittedMap, LightProjection, Maps, PerspectiveCamera,
+    Scratch, Slices, Technique, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
 use shadowfit_scene::{Scene, builtin, load_gltf};
@@ -35,20 +35,20 @@ struct Case {
     technique: Technique,
     filter: FilterKind,
     format: MapFormat,
-    bias: fn(&LightFit, FilterKind) -> Bias,
+    bias: fn(&LightProjection, FilterKind) -> Bias,
     /// Whether all but the last map leave out the sides of their slices, as the fits of other code may.
     is_narrow: bool,
 }
 
-fn in_texels(fit: &LightFit, filter: FilterKind) -> Bias {
+fn in_texels(fit: &LightProjection, filter: FilterKind) -> Bias {
     Bias::from_texels(&BiasSettings::automatic(filter), MapFormat::Depth32Float, fit)
 }
 
-fn automatic(fit: &LightFit, filter: FilterKind) -> Bias {
+fn automatic(fit: &LightProjection, filter: FilterKind) -> Bias {
     Bias::automatic(filter, shadowfit::diagnostics::DepthStorage::from(MapFormat::Depth32Float), fit).expect("a bias")
 }
 
-fn away_from_the_light(_: &LightFit, _: FilterKind) -> Bias {
+fn away_from_the_light(_: &LightProjection, _: FilterKind) -> Bias {
     Bias::fixed(-XNA_DEPTH_BIAS).expect("a bias")
 }
 
@@ -58,7 +58,7 @@ fn cases() -> Vec<Case> {
         let slices = Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() };
         Technique::default().with_maps(slices).with_fit(fit)
     };
-    let list = CasterPolicy::List;
+    let list = CasterPolicy::PerObject;
     let case = |name, maps| Case {
         name,
         technique: maps,
@@ -73,13 +73,13 @@ fn cases() -> Vec<Case> {
     reversed.fit.depth = DepthConvention::Reversed;
     let clamped = maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off, CasterPolicy::DepthClamp);
     let chosen = |technique: Technique, choice| match technique.maps {
-        Maps::Slices(slices) => technique.with_maps(slices.with_choice(choice)),
+        Maps::Slices(slices) => technique.with_maps(slices.with_selection(choice)),
         _ => technique,
     };
     let mut all = vec![
         case("focused", focused),
         case("held", maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::default(), list)),
-        case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap { waste: 1.8 }, list)),
+        case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap { max_waste: 1.8 }, list)),
         case("boxes of the slices", aabb),
         Case { bias: automatic, ..case("boxes of the slices, normal offset", aabb) },
         Case { bias: away_from_the_light, filter: FilterKind::Point, ..case("focused, biased away", focused) },
@@ -87,7 +87,7 @@ fn cases() -> Vec<Case> {
         case("focused, depth clamp", clamped),
         Case { is_narrow: true, ..case("narrow", aabb) },
         case("one map", aabb.with_count(1)),
-        case("without a blend", chosen(focused, MapChoice::Coverage { blend: 0.0 })),
+        case("without a blend", chosen(focused, MapSelection::Coverage { blend: 0.0 })),
         Case { filter: FilterKind::Vogel16, ..case("focused, soft", focused) },
         Case {
             filter: FilterKind::Pcss,
@@ -99,10 +99,10 @@ fn cases() -> Vec<Case> {
     let others: Vec<Case> = all
         .iter()
         .filter(|case| also.contains(&case.name))
-        .map(|case| Case { technique: chosen(case.technique, MapChoice::ViewDepth { overlap: 0.0 }), ..*case })
+        .map(|case| Case { technique: chosen(case.technique, MapSelection::ViewDepth { overlap: 0.0 }), ..*case })
         .collect();
     all.extend(others);
-    all.push(case("overlapping", chosen(aabb, MapChoice::ViewDepth { overlap: 0.3 })));
+    all.push(case("overlapping", chosen(aabb, MapSelection::ViewDepth { overlap: 0.3 })));
     all
 }
 
@@ -184,7 +184,7 @@ fn descriptor(case: &Case) -> ShadowMapDescriptor {
         format: case.format,
         filter: case.filter,
         softness: case.technique.softness,
-        choice: case.technique.maps.choice(),
+        selection: case.technique.maps.selection(),
         depth: case.technique.fit.depth,
         depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
         ..ShadowMapDescriptor::default()
@@ -197,8 +197,8 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
     let input =
         FitInput { views: &[frustum], receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&[], direction) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
-    let fitted = MapFitter::new().fit(&input, &case.technique, &mut Workspace::new(&mut storage)).expect("maps");
+    let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.boxes.len(), 3)];
+    let fitted = FitState::new().fit(&input, &case.technique, &mut Scratch::new(&mut storage)).expect("maps");
     let narrow = PerspectiveCamera { fov_y: camera.fov_y * 0.5, ..*camera }.frustum().expect("a camera");
     let last = fitted.len() - 1;
     let map = |(index, map): (usize, &FittedMap)| {
@@ -206,9 +206,9 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
         let shape = case.technique.maps.shape().expect("slices or one map");
         let settings = FitSettings { shape, map: case.technique.fit };
         let settings = settings.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
-        let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
+        let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.projection };
         let converted = *map;
-        FittedMap { fit: light, bias: (case.bias)(&light, case.filter), ..converted }
+        FittedMap { projection: light, bias: (case.bias)(&light, case.filter), ..converted }
     };
     fitted.iter().enumerate().map(map).collect()
 }
@@ -250,7 +250,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
                 let frame = Frame::new(&camera, direction, &maps, &atmosphere);
                 let [swept, all] = [Culling::Swept, Culling::WholeMap]
                     .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &frame, culling));
-                let at = (case.name, case.technique.maps.choice(), view.name, direction);
+                let at = (case.name, case.technique.maps.selection(), view.name, direction);
                 let count = different(&swept.pixels, &all.pixels);
                 assert_eq!(count, 0, "{at:?}: pixels with another factor");
                 let shadowed = all.pixels.iter().flatten().filter(|pixel| pixel.factor < 0.5).count();
@@ -260,7 +260,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
                 whole += casters(&all);
                 assert!(swept.statistics.maps.iter().zip(&all.statistics.maps).all(|(a, b)| a.casters <= b.casters));
             }
-            println!("{}, {:?}, {}: {kept} of {whole} casters", case.name, case.technique.maps.choice(), view.name);
+            println!("{}, {:?}, {}: {kept} of {whole} casters", case.name, case.technique.maps.selection(), view.name);
             assert!(kept < whole, "{}, {}: nothing was left out", case.name, view.name);
         }
     }
@@ -293,7 +293,7 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
             Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, atmosphere) };
         let [swept, all] =
             [Culling::Swept, Culling::WholeMap].map(|culling| drawn(gpu, &mut renderer, &mut scene, &frame, culling));
-        let choice = case.technique.maps.choice();
+        let choice = case.technique.maps.selection();
         assert_eq!(different(&swept.pixels, &all.pixels), 0, "{choice:?}, from {eye} along {forward}");
     }
 }

@@ -1,6 +1,6 @@
 //! The tents of look-ups and the discs of them against their definitions, texel by texel, on a map of squares.
 
-use shadowfit::LightFit;
+use shadowfit::LightProjection;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, SoftRadius, Softness};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -20,7 +20,7 @@ fn is_covered(x: i32, y: i32) -> bool {
 }
 
 /// Squares over the covered texels, at the height where nothing else is.
-fn casters(fit: &LightFit) -> Vec<Vec3> {
+fn casters(fit: &LightProjection) -> Vec<Vec3> {
     let corners = fit.corners();
     let (right, down) = ((corners[1] - corners[0]) / ROW as f32, (corners[3] - corners[0]) / ROW as f32);
     let start = corners[0] + (corners[4] - corners[0]) * 0.3;
@@ -81,7 +81,7 @@ fn texels() -> Vec<DVec2> {
 }
 
 /// Points of the plane below the squares at those places.
-fn points(fit: &LightFit) -> Vec<Point> {
+fn points(fit: &LightProjection) -> Vec<Point> {
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
     let point = |texel: DVec2| {

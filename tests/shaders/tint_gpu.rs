@@ -2,8 +2,8 @@
 //! computation here finds for it.
 
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::{MapChoice, SplitScheme};
-use shadowfit::{Bias, FitInput, FittedMap, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::settings::{MapSelection, SplitScheme};
+use shadowfit::{Bias, FitInput, FitState, FittedMap, PerspectiveCamera, Scratch, Technique};
 use shadowfit_params::figures::MAP_TINTS;
 use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
@@ -38,11 +38,11 @@ fn maps(camera: &PerspectiveCamera) -> Vec<FittedMap> {
     let mut settings = slices.with_maps(slices.maps.as_slices().with_count(8).with_splits(SplitScheme::Manual(ENDS)));
     (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, shadowfit::glam::UVec2::splat(256));
     let views = [camera.frustum().expect("a camera")];
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let input = FitInput::new(&views, DIRECTION);
-    let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("eight maps");
+    let fitted = FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("eight maps");
     let ends = fitted.iter().map(|map| map.far.min(LAST_END));
-    fitted.iter().zip(ends).map(|(map, far)| FittedMap::new(map.fit, Bias::default()).ending_at(far)).collect()
+    fitted.iter().zip(ends).map(|(map, far)| FittedMap::new(map.projection, Bias::default()).ending_at(far)).collect()
 }
 
 /// What the floor's point behind a position in the picture reads, in pixels.
@@ -69,7 +69,7 @@ fn seen_at(camera: &PerspectiveCamera, maps: &[FittedMap], [x, y]: [f64; 2]) -> 
     if ray.y >= 0.0 || depth >= f64::from(camera.far) {
         return Seen::Sky;
     }
-    let read = maps.iter().position(|map| depth < f64::from(map.far) && map.fit.covers(point));
+    let read = maps.iter().position(|map| depth < f64::from(map.far) && map.projection.covers(point));
     read.map_or(Seen::NoMap, Seen::Map)
 }
 
@@ -79,7 +79,7 @@ fn picture(camera: &PerspectiveCamera, maps: &[FittedMap], overlay: Overlay) -> 
     let descriptor = ShadowMapDescriptor {
         resolution: [256; 2],
         maps: 8,
-        choice: MapChoice::ViewDepth { overlap: 0.0 },
+        selection: MapSelection::ViewDepth { overlap: 0.0 },
         ..ShadowMapDescriptor::default()
     };
     let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");

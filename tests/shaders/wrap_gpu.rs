@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius, Softness};
-use shadowfit::{Bias, DepthConvention, FittedMap, LightFit};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection};
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::exact_counts_gpu::box_fit;
@@ -13,7 +13,7 @@ use crate::support::software_gpu;
 const WRAPS: [[u32; 2]; 4] = [[100, 0], [0, 37], [200, 131], [1, ROW - 1]];
 
 /// Squares of three texels over the whole map, at two heights.
-fn casters(fit: &LightFit) -> Vec<Vec3> {
+fn casters(fit: &LightProjection) -> Vec<Vec3> {
     let corners = fit.corners();
     let (right, down) = ((corners[1] - corners[0]) / ROW as f32, (corners[3] - corners[0]) / ROW as f32);
     let square = |(x, y): (u32, u32)| {
@@ -27,7 +27,7 @@ fn casters(fit: &LightFit) -> Vec<Vec3> {
 }
 
 /// Points all over the map below the squares, up to its very borders.
-fn points(fit: &LightFit) -> Vec<Point> {
+fn points(fit: &LightProjection) -> Vec<Point> {
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
     let share = |step: u16| (f32::from(step) / 99.0).clamp(1e-6, 1.0 - 1e-6);

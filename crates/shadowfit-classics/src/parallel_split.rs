@@ -5,7 +5,7 @@
 use core::f32::consts::FRAC_PI_4;
 
 use glam::{DVec3, UVec2, Vec3};
-use shadowfit::settings::{FitKind, MapChoice, Shape, SplitScheme, Stabilise};
+use shadowfit::settings::{FitKind, MapSelection, Shape, SplitScheme, Stabilise};
 use shadowfit::{FitError, PerspectiveCamera, Slices, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
@@ -147,7 +147,7 @@ fn drawing(values: &SampleValues, _: &PerspectiveCamera) -> Result<SampleDrawing
     let slices = Slices::default()
         .with_shape(Shape::new(FitKind::FrustumAabb))
         .with_splits(splits)
-        .with_choice(MapChoice::ViewDepth { overlap: values.get("blend") })
+        .with_selection(MapSelection::ViewDepth { overlap: values.get("blend") })
         .with_stabilise(Stabilise::Off);
     let count = values.choice("maps").parse().unwrap_or(4);
     let mut technique = Technique::default().with_maps(slices).with_count(count);

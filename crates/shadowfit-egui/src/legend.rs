@@ -40,7 +40,7 @@ fn has_marks(view: &ViewSettings) -> bool {
 pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
     match view.mode {
         ViewMode::PixelsPerTexel => ramp(ui, "pixels per texel"),
-        ViewMode::Need => {
+        ViewMode::Demand => {
             ramp(ui, "pixels per texel where the picture looks");
             maps(ui, figures);
         }
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn views_with_colours_or_marks_have_a_legend() {
-        let with = [ViewMode::Error, ViewMode::PixelsPerTexel, ViewMode::Maps, ViewMode::Need, ViewMode::Updates];
+        let with = [ViewMode::Error, ViewMode::PixelsPerTexel, ViewMode::Maps, ViewMode::Demand, ViewMode::Updates];
         for mode in ViewMode::ALL {
             let view = ViewSettings { mode, ..ViewSettings::default() };
             assert_eq!(has_legend(&view), with.contains(&mode), "{mode:?}");

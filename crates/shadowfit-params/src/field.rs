@@ -2,7 +2,9 @@
 
 use glam::UVec2;
 use shadowfit::Technique;
-use shadowfit::settings::{FitKind, HoldSettings, MapChoice, RectangleKind, Shape, SoftRadius, SplitScheme, Stabilise};
+use shadowfit::settings::{
+    FitKind, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius, SplitScheme, Stabilise,
+};
 use shadowfit::{Maps, OneMap, Slices, Windows};
 
 use crate::Value;
@@ -152,11 +154,11 @@ impl Expression for RectangleKind {
     }
 }
 
-impl Expression for MapChoice {
+impl Expression for MapSelection {
     fn expression(&self) -> String {
         match self {
-            Self::Coverage { blend } => format!("MapChoice::Coverage {{ blend: {} }}", blend.expression()),
-            Self::ViewDepth { overlap } => format!("MapChoice::ViewDepth {{ overlap: {} }}", overlap.expression()),
+            Self::Coverage { blend } => format!("MapSelection::Coverage {{ blend: {} }}", blend.expression()),
+            Self::ViewDepth { overlap } => format!("MapSelection::ViewDepth {{ overlap: {} }}", overlap.expression()),
         }
     }
 }
@@ -165,7 +167,7 @@ impl Expression for Stabilise {
     fn expression(&self) -> String {
         match self {
             Self::Off => "Stabilise::Off".to_owned(),
-            Self::Snap { waste } => format!("Stabilise::Snap {{ waste: {} }}", waste.expression()),
+            Self::Snap { max_waste } => format!("Stabilise::Snap {{ max_waste: {} }}", max_waste.expression()),
             Self::Hysteresis(hold) => format!("Stabilise::Hysteresis({})", hold.expression()),
         }
     }
@@ -195,11 +197,11 @@ macro_rules! literals {
 }
 
 literals! {
-    Windows { count, blend, depth_waste }
-    Slices { count, shape, splits, choice, stabilise }
+    Windows { count, blend, max_depth_waste }
+    Slices { count, shape, splits, selection, stabilise }
     OneMap { shape, stabilise }
     Shape { kind, rectangle, max_texel_ratio }
-    HoldSettings { margin, growth, waste, horizon }
+    Hysteresis { margin, max_growth, max_waste, look_ahead }
 }
 
 /// A struct by the names of its fields, their values and their defaults.

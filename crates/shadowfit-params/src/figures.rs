@@ -110,9 +110,9 @@ pub struct MapFigures {
     /// Width and height of what the map holds, across the light, in metres.
     pub extent: [f32; 2],
     /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
-    /// [`LightFit::set_by`](shadowfit::LightFit::set_by).
+    /// [`LightProjection::set_by`](shadowfit::LightProjection::set_by).
     pub set_by: [Constraint; 6],
-    /// Whether no receiver is in view, see [`LightFit::is_empty`](shadowfit::LightFit::is_empty).
+    /// Whether no receiver is in view, see [`LightProjection::is_empty`](shadowfit::LightProjection::is_empty).
     pub is_empty: bool,
     /// Size of one texel across the light, in metres, along u and v.
     pub texel_size: [f32; 2],
@@ -138,7 +138,7 @@ impl MapFigures {
     /// The figures of a fitted map that is stored in `format`, with nothing drawn yet. `end` is the
     /// view depth at which shadows end, in metres, since the last map itself has no end.
     pub fn new(map: &FittedMap, end: f32, format: MapFormat) -> Self {
-        let FittedMap { fit, near, far, .. } = map;
+        let FittedMap { projection: fit, near, far, .. } = map;
         let view_depths = [*near, far.min(end)];
         let is_window = fit.set_by[0] == Constraint::Window;
         Self {
@@ -164,7 +164,7 @@ mod tests {
     use glam::{UVec2, Vec2};
 
     use super::*;
-    use shadowfit::LightFit;
+    use shadowfit::LightProjection;
 
     #[test]
     fn tints_are_linear_by_the_srgb_curve() {
@@ -190,8 +190,8 @@ mod tests {
     fn a_window_has_an_extent_and_no_view_depths() {
         let map = |set_by| {
             let (texel_size, resolution) = (Vec2::new(0.5, 0.25), UVec2::new(8, 12));
-            let fit = LightFit { set_by: [set_by; 6], texel_size, resolution, ..LightFit::default() };
-            let map = FittedMap { near: 1.0, far: 9.0, fit, ..FittedMap::default() };
+            let fit = LightProjection { set_by: [set_by; 6], texel_size, resolution, ..LightProjection::default() };
+            let map = FittedMap { near: 1.0, far: 9.0, projection: fit, ..FittedMap::default() };
             MapFigures::new(&map, 80.0, MapFormat::default())
         };
         let (window, other) = (map(Constraint::Window), map(Constraint::View));

@@ -82,8 +82,8 @@ pub enum ViewMode {
     Maps,
     /// The texels of the maps, drawn on the surfaces that read them.
     TexelGrid,
-    /// The scene as the light sees it, with the grid of need and the outlines of the maps over it.
-    Need,
+    /// The scene as the light sees it, with the demand grid and the outlines of the maps over it.
+    Demand,
     /// All maps side by side, with what was kept in them, what was drawn anew and what moves.
     Updates,
     /// The camera from outside, with its frustum, the boxes of the maps, and what casts into them.
@@ -99,14 +99,14 @@ impl ViewMode {
         Self::PixelsPerTexel,
         Self::Maps,
         Self::TexelGrid,
-        Self::Need,
+        Self::Demand,
         Self::Updates,
         Self::Outside,
     ];
 
     /// Whether it shows what the camera sees, and not the maps, or the scene from elsewhere.
     pub const fn shows_camera(self) -> bool {
-        !matches!(self, Self::Need | Self::Updates | Self::Outside)
+        !matches!(self, Self::Demand | Self::Updates | Self::Outside)
     }
 
     /// Whether rays are needed to show it.

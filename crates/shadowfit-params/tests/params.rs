@@ -9,7 +9,7 @@ use shadowfit::settings::Shape;
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat, RectangleKind, SoftRadius, SplitScheme, Stabilise,
 };
-use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, Maps, PRESETS, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, Maps, PRESETS, PerspectiveCamera, Scratch, Technique};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{
     self as params, BoxSource, Group, Kind, Number, PARAMETERS, Parameter, Value, format_value, set_from_str,
@@ -183,7 +183,7 @@ fn option_names_select_their_variants() {
     ];
     check("fit.rectangle", |t| t.maps.as_slices().shape.rectangle, &rectangles);
     let casters = [
-        ("list", CasterPolicy::List),
+        ("list", CasterPolicy::PerObject),
         ("extend", CasterPolicy::Extend),
         ("scene_bounds", CasterPolicy::SceneBounds),
         ("depth_clamp", CasterPolicy::DepthClamp),
@@ -199,7 +199,7 @@ fn option_names_select_their_variants() {
         ("manual", SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])),
     ];
     check("splits.scheme", |t| t.maps.as_slices().splits, &splits);
-    let snap = Stabilise::Snap { waste: Stabilise::default().waste() };
+    let snap = Stabilise::Snap { max_waste: Stabilise::default().max_waste() };
     let modes = [("hysteresis", Stabilise::default()), ("snap", snap), ("off", Stabilise::Off)];
     check("stabilise.mode", |t| t.maps.as_slices().stabilise, &modes);
     let depths = [
@@ -637,12 +637,12 @@ fn a_parameter_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
     let input =
         FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
     let map = |settings: &Settings| {
-        let mut storage = [Default::default(); Workspace::required(3, 1)];
+        let mut storage = [Default::default(); Scratch::required(3, 1)];
         // What all windows together hold.
         let whole = Shape::default().with_rectangle(RectangleKind::AxisAligned);
         let shape = settings.technique.maps.shape().unwrap_or(whole);
         let settings = FitSettings { shape, map: settings.technique.fit };
-        shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage)).expect("a fit")
+        shadowfit::fit_scene(&input, &settings, &mut Scratch::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = row("fit.kind").kind else { panic!("fits are options") };
     // y alone is up already, at any length.

@@ -59,7 +59,7 @@ impl Renderer {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
         let mut sun = SunShadows::from_descriptor(device, &gpu.queue, shadow_map)?;
-        sun.set_keeps(false);
+        sun.set_caching(false);
         let pipelines = Pipelines::new(device, &layouts, sun.map(), samples);
         let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
         let resources = [frame_uniform.as_entire_binding()];

@@ -126,7 +126,7 @@ pub fn see_by_rays(
                 seen.count_depth(hit.distance, -texel.log2());
             }
             let [right, down] = [right, down].map(|step| (step * (pixel * depth)).as_vec3());
-            if let Some(cell) = space.need.index((ray * depth).as_vec3(), normal.as_vec3(), right, down) {
+            if let Some(cell) = space.demand.index((ray * depth).as_vec3(), normal.as_vec3(), right, down) {
                 seen.count_cell(cell);
             }
         }
@@ -232,8 +232,8 @@ mod tests {
         let seen = see_by_rays(&Tracer::new([ground]), &camera, Vec3::NEG_Y, &Technique::default());
         let origin = DVec3::new(1e5, 0.0, -2e5);
         let seen = seen.expect("a camera that makes sense").moved(origin);
-        assert_eq!(seen.need().space.origin, origin + camera.eye);
-        assert!(seen.need().counts.iter().sum::<u32>() > 100);
+        assert_eq!(seen.demand().space.origin, origin + camera.eye);
+        assert!(seen.demand().counts.iter().sum::<u32>() > 100);
         assert!(seen.histogram().bins.iter().sum::<u32>() > 100);
         let from_below = see_by_rays(&Tracer::new([ground]), &camera, Vec3::Y, &Technique::default());
         let from_below = from_below.expect("a camera that makes sense");

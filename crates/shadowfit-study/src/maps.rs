@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, Vec3};
 use shadowfit::FittedMap;
 use shadowfit::selection::MapOrder;
-use shadowfit::settings::MapChoice;
+use shadowfit::settings::MapSelection;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -12,8 +12,9 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 pub fn fit_map(map: &FittedMap) -> FitMap {
     FitMap {
         view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
-        resolution: map.fit.resolution.x,
-        resolution_xy: (map.fit.resolution.x != map.fit.resolution.y).then(|| map.fit.resolution.to_array()),
+        resolution: map.projection.resolution.x,
+        resolution_xy: (map.projection.resolution.x != map.projection.resolution.y)
+            .then(|| map.projection.resolution.to_array()),
         split_near: 0.0,
         split_far: map.depth_range().far.min(FitMap::NO_END),
     }
@@ -29,7 +30,7 @@ pub(crate) fn measured(
 ) -> Vec<MeasuredMap> {
     let from_origin = |map: &FittedMap| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
     let measured = |map: &FittedMap| {
-        let reach = descriptor.softness.reach_in(descriptor.filter, &map.fit).per_axis();
+        let reach = descriptor.softness.reach_in(descriptor.filter, &map.projection).per_axis();
         let measured = from_origin(map).measured(-direction.as_dvec3());
         measured.with_blend_near(map.depth_range().blend_near).with_reach(reach)
     };
@@ -42,10 +43,10 @@ pub(crate) fn picture_maps<'a>(
     fits: &[FittedMap],
     descriptor: &ShadowMapDescriptor,
 ) -> PictureMaps<'a> {
-    let reading = match descriptor.choice {
-        MapChoice::ViewDepth { .. } => MapReading::ViewDepth,
-        choice @ MapChoice::Coverage { blend } => {
-            MapReading::Coverage { order: MapOrder::new(choice, fits.iter().map(|map| &map.fit)), blend }
+    let reading = match descriptor.selection {
+        MapSelection::ViewDepth { .. } => MapReading::ViewDepth,
+        choice @ MapSelection::Coverage { blend } => {
+            MapReading::Coverage { order: MapOrder::new(choice, fits.iter().map(|map| &map.projection)), blend }
         }
     };
     let reach = descriptor.softness.reach(descriptor.filter);
@@ -54,5 +55,5 @@ pub(crate) fn picture_maps<'a>(
 
 /// Clip space from positions relative to a world position.
 fn clip_from(map: &FittedMap, origin: DVec3) -> DMat4 {
-    map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.fit.origin)
+    map.projection.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.projection.origin)
 }

@@ -143,7 +143,7 @@ fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::settings::{FitKind, MapChoice, RectangleKind, Shape, SplitScheme, Stabilise};
+    use shadowfit::settings::{FitKind, MapSelection, RectangleKind, Shape, SplitScheme, Stabilise};
     use shadowfit::{OneMap, Slices, Windows};
     use shadowfit_params::BoxSource;
     use shadowfit_params::tool::{ErrorMarks, ViewMode};
@@ -219,12 +219,12 @@ mod tests {
             assert_eq!(settings.technique.fit.max_distance, 80.0);
             settings.technique.maps
         };
-        assert_eq!(read(former("windows", 5)), Windows { count: 5, blend: 4.0, depth_waste: 2.5 }.into());
+        assert_eq!(read(former("windows", 5)), Windows { count: 5, blend: 4.0, max_depth_waste: 2.5 }.into());
         let shape = Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 };
-        let stabilise = Stabilise::Snap { waste: 2.5 };
+        let stabilise = Stabilise::Snap { max_waste: 2.5 };
         assert_eq!(read(former("oriented", 1)), OneMap { shape, stabilise }.into());
         let splits = SplitScheme::Practical(0.25);
-        let slices = Slices { count: 3, shape, splits, choice: MapChoice::ViewDepth { overlap: 0.5 }, stabilise };
+        let slices = Slices { count: 3, shape, splits, selection: MapSelection::ViewDepth { overlap: 0.5 }, stabilise };
         assert_eq!(read(former("oriented", 3)), slices.into());
 
         let mut settings = Settings::default();

@@ -132,7 +132,7 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
         }
         // Take in every caster between the light and the view.
         Artefact::ClippingHole => {
-            technique.fit.casters = CasterPolicy::List;
+            technique.fit.casters = CasterPolicy::PerObject;
             if is_single {
                 *technique = technique.with_maps(technique.maps.with_kind(FitKind::Focused));
             }
@@ -398,7 +398,7 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
     let texel_with = |settings: &Settings| {
         let camera = PerspectiveCamera { far: settings.camera.far, ..*camera };
         let fitted = search.fit(&settings.technique, &camera)?;
-        Some(fitted.maps[fitted.read_at(point)?].fit.texel_size.max_element())
+        Some(fitted.maps[fitted.read_at(point)?].projection.texel_size.max_element())
     };
     let resolution = settings.technique.fit.resolution.max_element() as f32;
     // A margin of half a map's texels alone makes them as large as wanted.

@@ -52,8 +52,8 @@ impl Fitted {
 #[cfg(test)]
 mod tests {
     use glam::{DVec2, Vec3};
-    use shadowfit::settings::{MapChoice, SplitScheme};
-    use shadowfit::{FitInput, MapFitter, Workspace};
+    use shadowfit::settings::{MapSelection, SplitScheme};
+    use shadowfit::{FitInput, FitState, Scratch};
 
     use shadowfit::Slices;
 
@@ -71,18 +71,18 @@ mod tests {
             far: 300.0,
         };
         let manual = SplitScheme::Manual([10.0, 30.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let choice = MapChoice::ViewDepth { overlap: 0.0 };
-        let slices = Slices { count: 3, splits: manual, choice, ..Slices::default() };
+        let choice = MapSelection::ViewDepth { overlap: 0.0 };
+        let slices = Slices { count: 3, splits: manual, selection: choice, ..Slices::default() };
         let technique = Technique::default().with_maps(slices).with_max_distance(80.0);
         let frustum = [camera.frustum().expect("a frustum")];
-        let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];
+        let mut storage = vec![DVec2::ZERO; Scratch::required(0, 3)];
         let input = FitInput::new(&frustum, Vec3::new(0.3, -0.8, 0.2).normalize());
-        let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
+        let maps = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).expect("maps");
         let fitted = Fitted::new(camera, &technique, &maps);
         let at = |depth: f64| fitted.read_at(camera.eye + DVec3::NEG_Z * depth);
         // By coverage the first map is read wherever it holds the point, which is not only in its slice.
         let by_coverage =
-            Fitted { technique: technique.with_maps(slices.with_choice(MapChoice::default())), ..fitted.clone() };
+            Fitted { technique: technique.with_maps(slices.with_selection(MapSelection::default())), ..fitted.clone() };
         let finest = |depth: f64| by_coverage.read_at(camera.eye + DVec3::NEG_Z * depth);
         assert!((10..30).any(|depth| finest(f64::from(depth)) == Some(0)));
         assert_eq!([at(5.0), at(20.0), at(50.0), at(500.0)], [Some(0), Some(1), Some(2), None]);

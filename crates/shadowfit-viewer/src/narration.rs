@@ -17,7 +17,7 @@ pub(crate) fn tell(
     let middle = picture[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize];
     let Some((seen, fitted)) = middle.zip(search.fit(&settings.technique, camera)) else { return String::new() };
     let Some(map) = fitted.read_at(search.world(seen.position.as_dvec3())) else { return String::new() };
-    let fit = fitted.maps[map].fit;
+    let fit = fitted.maps[map].projection;
     let texel = length(fit.texel_size.max_element());
     // Pixels of a picture 720 high that the texel covers where it is looked at head-on.
     let pixels = fit.texel_size.max_element() / (2.0 * (camera.fov_y * 0.5).tan() * seen.distance) * 720.0;

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::culling::{Reader, caster_volumes};
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{CasterVolume, FittedMap, LightFit, PerspectiveCamera};
+use shadowfit::{CasterVolume, FittedMap, LightProjection, PerspectiveCamera};
 use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::{Line, box_lines};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -38,9 +38,14 @@ pub(crate) fn lines(fitted: &Fitted, maps: &[FittedMap], descriptor: &ShadowMapD
         for ((map, volume), tint) in maps.iter().zip(&volumes).zip(linear_map_tints()) {
             let color = (tint * VOLUME_SHARE).extend(1.0);
             // A volume is not bounded toward the light.
-            let end = map.fit.corners().map(|corner| corner.dot(map.fit.direction));
+            let end = map.projection.corners().map(|corner| corner.dot(map.projection.direction));
             let end = end.into_iter().fold(f32::MAX, f32::min);
-            lines.extend(volume_edges(&volume.relative_to(map.fit.origin), map.fit.direction, end, color));
+            lines.extend(volume_edges(
+                &volume.relative_to(map.projection.origin),
+                map.projection.direction,
+                end,
+                color,
+            ));
         }
     }
     lines
@@ -91,8 +96,8 @@ fn boxes(fitted: &Fitted) -> Vec<Line> {
         let color = tint.extend(1.0);
         let slice = slice.slice(slice.near, reach).unwrap_or(slice);
         lines.extend(box_lines(slice.origin, &slice.corners, FRUSTUM_COLOR));
-        lines.extend(box_lines(map.fit.origin, &map.fit.corners(), color));
-        lines.extend(arrow(&map.fit, color));
+        lines.extend(box_lines(map.projection.origin, &map.projection.corners(), color));
+        lines.extend(arrow(&map.projection, color));
     }
     lines
 }
@@ -107,11 +112,11 @@ fn reach(fitted: &Fitted) -> f32 {
 /// Corners of the boxes of all maps that some point reads, world space, in metres.
 fn box_corners(fitted: &Fitted) -> impl Iterator<Item = DVec3> {
     let read = fitted.maps.iter().enumerate().filter(|(index, _)| fitted.slice(*index).is_some());
-    read.flat_map(|(_, map)| map.fit.corners().map(|corner| map.fit.origin + corner.as_dvec3()))
+    read.flat_map(|(_, map)| map.projection.corners().map(|corner| map.projection.origin + corner.as_dvec3()))
 }
 
 /// An arrow along the light from the middle of the box's near face, the one toward the light.
-fn arrow(fit: &LightFit, color: Vec4) -> [Line; 3] {
+fn arrow(fit: &LightProjection, color: Vec4) -> [Line; 3] {
     let mut corners = fit.corners();
     corners.sort_by(|a, b| a.dot(fit.direction).total_cmp(&b.dot(fit.direction)));
     let middle = corners[..4].iter().sum::<Vec3>() / 4.0;
@@ -160,7 +165,7 @@ pub(crate) fn camera(inner: &PerspectiveCamera, fitted: &Fitted) -> PerspectiveC
 #[cfg(test)]
 mod tests {
     use glam::DVec2;
-    use shadowfit::{FitInput, MapFitter, Technique, Workspace};
+    use shadowfit::{FitInput, FitState, Scratch, Technique};
 
     use super::*;
 
@@ -176,10 +181,10 @@ mod tests {
             far: 100.0,
         };
         let views = [camera.frustum().expect("a frustum")];
-        let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];
+        let mut storage = vec![DVec2::ZERO; Scratch::required(0, 3)];
         let technique = Technique::default();
         let input = FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3).normalize());
-        let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
+        let maps = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).expect("maps");
         Fitted::new(camera, &technique, &maps)
     }
 
@@ -200,7 +205,7 @@ mod tests {
 
     #[test]
     fn arrows_begin_at_the_face_toward_the_light_and_point_along_it() {
-        let fit = fitted().maps[2].fit;
+        let fit = fitted().maps[2].projection;
         let depth = |end: DVec3| (end - fit.origin).as_vec3().dot(fit.direction);
         let nearest = fit.corners().iter().map(|corner| corner.dot(fit.direction)).fold(f32::MAX, f32::min);
         let [from, to] = arrow(&fit, Vec4::ONE)[0].ends.map(depth);

@@ -3,12 +3,12 @@
 
 mod boards;
 mod compare;
+mod demand_view;
 mod figures;
 mod home;
 mod inset;
 mod judge;
 mod live;
-mod need_view;
 mod sample;
 mod shot;
 mod shown;

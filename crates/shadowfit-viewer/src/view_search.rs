@@ -118,7 +118,7 @@ impl<'a> ViewSearch<'a> {
     fn is_hole(&self, seen: &Seen, fitted: &Fitted) -> bool {
         let origin = seen.position + seen.normal * self.offset;
         let Some(map) = fitted.read_at(self.world(origin.as_dvec3())) else { return false };
-        let fit = &fitted.maps[map].fit;
+        let fit = &fitted.maps[map].projection;
         let hits = self.tracer.all_hits(origin, self.to_light);
         let inside = |distance: f32| fit.covers(self.world((origin + self.to_light * distance).as_dvec3()));
         !hits.is_empty() && !hits.iter().any(|hit| inside(hit.distance))

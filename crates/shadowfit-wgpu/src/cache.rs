@@ -206,7 +206,7 @@ impl MapCache {
     }
 
     /// Whether the layer of a map holds all static casters over it.
-    pub(crate) fn is_kept(&self, map: usize) -> bool {
+    pub(crate) fn is_cached(&self, map: usize) -> bool {
         self.maps.get(map).is_some_and(|map| map.is_kept)
     }
 
@@ -259,10 +259,15 @@ impl KeptMap {
     /// What is drawn of a map that is fitted now. Where casters move and static ones have no separate layer, nothing is
     /// kept.
     fn decide(&mut self, now: &FittedMap, settings: &CacheSettings, has_moving: bool) -> Decision {
-        let fits_layer = now.fit.resolution == settings.layer;
+        let fits_layer = now.projection.resolution == settings.layer;
         let is_same_grid = self.fitted.is_some_and(|before| !Scroll::between(&before, now).is_new);
         self.renewals = if is_same_grid { 0 } else { self.renewals.saturating_add(1) };
-        if !settings.keeps || now.anchor.is_none() || now.fit.is_empty || has_moving || self.renewals > NEVER_KEPT {
+        if !settings.keeps
+            || now.anchor.is_none()
+            || now.projection.is_empty
+            || has_moving
+            || self.renewals > NEVER_KEPT
+        {
             return Decision::DrawAnew;
         }
         let (Some(drawn), true) = (&self.drawn, self.is_kept) else { return Decision::Renew };
@@ -272,17 +277,17 @@ impl KeptMap {
             return Decision::Renew;
         }
         let changes = self.changed.iter().map(|changed| {
-            let origin = now.fit.origin;
-            TexelRect::of_box(&now.fit, &changed.relative_to(origin), origin)
+            let origin = now.projection.origin;
+            TexelRect::of_box(&now.projection, &changed.relative_to(origin), origin)
         });
         let mut rects: Vec<TexelRect> = scroll.exposed().chain(changes).filter(|rect| !rect.is_empty()).collect();
         if rects.len() > MAX_RECTS {
             rects = rects.into_iter().reduce(TexelRect::union).into_iter().collect();
         }
-        if rects.iter().map(TexelRect::area).sum::<u64>() * 2 > TexelRect::all(now.fit.resolution).area() {
+        if rects.iter().map(TexelRect::area).sum::<u64>() * 2 > TexelRect::all(now.projection.resolution).area() {
             return Decision::Renew;
         }
-        Decision::Keep { wrap: scroll.wrap(self.wrap, now.fit.resolution), rects }
+        Decision::Keep { wrap: scroll.wrap(self.wrap, now.projection.resolution), rects }
     }
 
     /// Whether points may read the map as it was drawn, without losing a shadow. `serves_others`: whether another map
@@ -291,16 +296,19 @@ impl KeptMap {
         let (Some(drawn), Some(anchor)) = (&self.drawn, now.anchor) else { return false };
         let Some(old) = drawn.anchor else { return false };
         let holds_depth = old.depth[0] <= anchor.depth[0] && old.depth[1] >= anchor.depth[1];
-        let is_same_light = drawn.fit.direction == now.fit.direction && drawn.fit.depth == now.fit.depth;
+        let is_same_light =
+            drawn.projection.direction == now.projection.direction && drawn.projection.depth == now.projection.depth;
         let is_in_place = old == anchor && Scroll::between(drawn, now).shift == IVec2::ZERO;
-        let is_empty = drawn.fit.is_empty && !now.fit.is_empty;
+        let is_empty = drawn.projection.is_empty && !now.projection.is_empty;
         self.is_kept && is_same_light && holds_depth && !is_empty && (serves_others || is_in_place)
     }
 
     /// The map that is read: the fitted one, or the one that was drawn.
     fn shown(&self, fitted: &FittedMap, decision: &Decision) -> FittedMap {
         match (&self.drawn, decision) {
-            (Some(drawn), Decision::Wait) => FittedMap { fit: drawn.fit.relative_to(fitted.fit.origin), ..*drawn },
+            (Some(drawn), Decision::Wait) => {
+                FittedMap { projection: drawn.projection.relative_to(fitted.projection.origin), ..*drawn }
+            }
             _ => *fitted,
         }
     }
@@ -312,7 +320,7 @@ impl Decision {
         match self {
             Self::Wait => 0,
             Self::Keep { rects, .. } => rects.iter().map(TexelRect::area).sum(),
-            Self::Renew | Self::DrawAnew => TexelRect::all(map.fit.resolution).area(),
+            Self::Renew | Self::DrawAnew => TexelRect::all(map.projection.resolution).area(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::selection::MapReading;
-use shadowfit::settings::{CasterPolicy, FilterKind, MAX_MAPS, MapChoice, MapFormat, Softness};
+use shadowfit::settings::{CasterPolicy, FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
@@ -25,7 +25,7 @@ pub struct ShadowMapDescriptor {
     pub fade: [f32; 2],
     /// Which of the maps a point reads. By view depth
     /// [`FittedMap::covered_near`](shadowfit::FittedMap::covered_near) says where maps are blended.
-    pub choice: MapChoice,
+    pub selection: MapSelection,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
     /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
@@ -53,7 +53,7 @@ impl From<&Technique> for ShadowMapDescriptor {
             filter: technique.filter,
             softness: technique.softness,
             fade: fade(technique),
-            choice: technique.maps.choice(),
+            selection: technique.maps.selection(),
             depth: technique.fit.depth,
             depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact(),
             first_binding: 0,
@@ -70,8 +70,8 @@ fn fade(technique: &Technique) -> [f32; 2] {
 impl ShadowMapDescriptor {
     /// How points read the maps.
     pub const fn reading(&self) -> MapReading {
-        let Self { choice, filter, softness, .. } = *self;
-        MapReading { choice, filter, softness }
+        let Self { selection: choice, filter, softness, .. } = *self;
+        MapReading { selection: choice, filter, softness }
     }
 
     /// Refuses a descriptor that is impossible, in general or on this device.
@@ -84,8 +84,8 @@ impl ShadowMapDescriptor {
         if !(1..=MAX_MAPS as u32).contains(&self.maps) {
             return Err(ShadowMapError::Maps(self.maps));
         }
-        if !(0.0..=MapChoice::MAX_BLEND).contains(&self.choice.blend()) {
-            return Err(ShadowMapError::Blend(self.choice.blend()));
+        if !(0.0..=MapSelection::MAX_BLEND).contains(&self.selection.blend()) {
+            return Err(ShadowMapError::Blend(self.selection.blend()));
         }
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(ShadowMapError::Depth(self.depth));

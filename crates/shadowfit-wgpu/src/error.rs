@@ -4,7 +4,7 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
-use shadowfit::settings::{MAX_MAPS, MapChoice, MapFormat, Softness};
+use shadowfit::settings::{MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, FitError};
 
 use crate::limits::RESOLUTIONS;
@@ -21,7 +21,7 @@ pub enum ShadowMapError {
     },
     /// Number of maps outside 1..=[`MAX_MAPS`].
     Maps(u32),
-    /// A blend outside 0..=[`MapChoice::MAX_BLEND`], in texels.
+    /// A blend outside 0..=[`MapSelection::MAX_BLEND`], in texels.
     Blend(f32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
@@ -121,7 +121,7 @@ impl fmt::Display for ShadowMapError {
         match self {
             Self::Resolution { resolution, device_limit } => write_resolution(f, *resolution, *device_limit),
             Self::Maps(maps) => write!(f, "{maps} shadow maps: between 1 and {MAX_MAPS} are possible"),
-            Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {} are possible", MapChoice::MAX_BLEND),
+            Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {} are possible", MapSelection::MAX_BLEND),
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }

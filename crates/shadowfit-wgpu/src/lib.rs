@@ -43,7 +43,7 @@
 //!     });
 //!     engine.draw_picture(&mut encoder, sun.receiver_group());
 //!     let depth = DepthConvention::Reversed;
-//!     sun.record_need(&mut encoder, &engine.depth, camera.clip_from_world(depth), depth)?;
+//!     sun.record_demand(&mut encoder, &engine.depth, camera.clip_from_world(depth), depth)?;
 //!     queue.submit([encoder.finish()]);
 //! }
 //! # Ok(()) }
@@ -70,30 +70,30 @@
 //! - [`ShadowMap`] holds the maps on the GPU: textures, layouts, bind groups, states for pipelines, and a pass for each
 //!   map that redraws it. [`ShadowMapDescriptor`] says how large and of which format they are, and [`MapView`] from
 //!   where they are read.
-//! - [`need`] counts the visible points of a depth buffer.
+//! - [`demand`] counts the visible points of a depth buffer.
 //! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
 //!   [`MapUniform`] are the uniforms of the other WGSL, for engines that bind them themselves.
 
 mod bindings;
 mod cache;
+mod cached_maps;
 mod caught;
+pub mod demand;
 mod descriptor;
 mod error;
-mod kept_maps;
 mod layers;
 mod limits;
 mod map;
 mod map_view;
-pub mod need;
 mod shader;
 mod sun_frame;
 mod sun_shadows;
 mod uniform;
 
 pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
+pub use cached_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
 pub use descriptor::ShadowMapDescriptor;
 pub use error::ShadowMapError;
-pub use kept_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
 pub use layers::layers_wgsl;
 pub use limits::RESOLUTIONS;
 pub use map::ShadowMap;

@@ -3,7 +3,7 @@
 use shadowfit::glam::UVec2;
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
-use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
+use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
 
 use crate::bindings;
 use crate::caught::caught;
@@ -180,15 +180,16 @@ impl ShadowMap {
         check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {
             let clamps_in_fragment = self.clamps_in_fragment.into();
-            let uniform = CasterUniform { clamps_in_fragment, ..CasterUniform::new(&map.fit, view.origin) };
+            let uniform = CasterUniform { clamps_in_fragment, ..CasterUniform::new(&map.projection, view.origin) };
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
-            (layer.used, layer.wrap) = (map.fit.resolution, map.wrap);
+            (layer.used, layer.wrap) = (map.projection.resolution, map.wrap);
         }
         let uniform = ReceiverUniform::new(maps, view, &self.descriptor);
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
-        self.volumes.extend(maps.iter().map(|map| stored_casters(&map.fit, depth_clamp).relative_to(view.origin)));
+        self.volumes
+            .extend(maps.iter().map(|map| stored_casters(&map.projection, depth_clamp).relative_to(view.origin)));
         Ok(())
     }
 
@@ -279,7 +280,7 @@ pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, part: &StoredRect, size:
 }
 
 /// The casters that a map can store.
-pub(crate) fn stored_casters(fit: &LightFit, depth_clamp: bool) -> CasterVolume {
+pub(crate) fn stored_casters(fit: &LightProjection, depth_clamp: bool) -> CasterVolume {
     CasterVolume::of_map(fit, if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None })
 }
 

@@ -2,7 +2,7 @@
 
 use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
-use shadowfit::{DepthConvention, FittedMap, LightFit};
+use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
 use crate::{ShadowMapDescriptor, ShadowMapError};
 
@@ -55,12 +55,12 @@ pub(crate) fn check(
     }
     let mut previous = f32::MIN;
     for (index, map) in maps.iter().enumerate() {
-        check_layer(descriptor, index, &map.fit)?;
+        check_layer(descriptor, index, &map.projection)?;
         check_wrap(descriptor, index, map)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
         let far = map.depth_range().far as f32;
         // NaN has no order.
-        let is_in_order = far >= previous || descriptor.choice.is_by_coverage();
+        let is_in_order = far >= previous || descriptor.selection.is_by_coverage();
         if !is_in_order {
             return Err(ShadowMapError::Order { index, far, previous });
         }
@@ -70,7 +70,7 @@ pub(crate) fn check(
 }
 
 /// Refuses a fit that a layer cannot hold.
-fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightFit) -> Result<(), ShadowMapError> {
+fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightProjection) -> Result<(), ShadowMapError> {
     let map: ([u32; 2], DepthConvention) = (descriptor.resolution, descriptor.depth);
     let fit = (fit.resolution.to_array(), fit.depth);
     let suits = fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit));
@@ -79,7 +79,7 @@ fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightFit) -
 
 /// Refuses a map that cannot wrap around in its layer.
 fn check_wrap(descriptor: &ShadowMapDescriptor, index: usize, map: &FittedMap) -> Result<(), ShadowMapError> {
-    let (wrap, fit) = (map.wrap, map.fit.resolution);
+    let (wrap, fit) = (map.wrap, map.projection.resolution);
     let is_whole = fit.to_array() == descriptor.resolution && wrap.cmplt(fit).all();
     if wrap == UVec2::ZERO || is_whole {
         return Ok(());

@@ -1,7 +1,7 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
-use shadowfit::settings::{FilterKind, MapChoice, MapFormat, Softness};
+use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
 use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
@@ -103,7 +103,7 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen. Which map a point reads is
-/// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::selection`]. Reads the bindings from
+/// [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
 /// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
@@ -233,11 +233,11 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
         )
     };
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
-    let rule = match descriptor.choice {
-        MapChoice::Coverage { .. } => include_str!("shaders/choice_coverage.wgsl"),
-        MapChoice::ViewDepth { .. } => include_str!("shaders/choice_view_depth.wgsl"),
+    let rule = match descriptor.selection {
+        MapSelection::Coverage { .. } => include_str!("shaders/choice_coverage.wgsl"),
+        MapSelection::ViewDepth { .. } => include_str!("shaders/choice_view_depth.wgsl"),
     };
-    let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.choice.blend());
+    let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.selection.blend());
     format!(
         "
 const SHADOWFIT_REACH: f32 = {reach:?};

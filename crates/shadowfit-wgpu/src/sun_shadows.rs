@@ -3,19 +3,19 @@
 //! ```text
 //!   update(frame) = fit ──▶ prepare: which parts are kept ──▶ passes: the engine draws casters by number
 //!        ▲                                                        │
-//!        └──── record_need(depth buffer) ◀──── its own passes with receiver_group() and the WGSL
+//!        └──── record_demand(depth buffer) ◀──── its own passes with receiver_group() and the WGSL
 //! ```
 
 mod error;
 
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
-use shadowfit::proof::{Certificate, CoverageQuery, verify};
+use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
 use shadowfit::{
-    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, ShadowFitter, Technique, ViewFrustum, Workspace,
+    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, Scratch, ShadowFitter, Technique, ViewFrustum,
 };
 
-use crate::kept_maps::KeptMaps;
-use crate::need::{NeedPass, NeedPassError, NeedView, supported};
+use crate::cached_maps::CachedMaps;
+use crate::demand::{DemandPass, DemandPassError, DemandView, supported};
 use crate::{
     Casters, Culling, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, ShadowPiece,
     SunFrame, UpdateSchedule,
@@ -26,27 +26,27 @@ pub use error::SunShadowsError;
 /// The shadows of one directional light: its maps, the parts of them that are kept, and what the last frames showed.
 ///
 /// Make one for each sun. It does not know the scene, starts no thread, has no global state, and never waits for the
-/// GPU except in [`Self::wait_for_need`].
+/// GPU except in [`Self::wait_for_demand`].
 #[derive(Debug)]
 pub struct SunShadows {
     device: wgpu::Device,
     queue: wgpu::Queue,
     fitter: ShadowFitter,
-    maps: KeptMaps,
-    need: Need,
+    maps: CachedMaps,
+    demand: Demand,
     last: Option<LastFrame>,
 }
 
 /// Counts the visible points of depth buffers.
 #[derive(Debug)]
-struct Need {
+struct Demand {
     /// Whether the device can do that.
     is_supported: bool,
-    pass: Option<NeedPass>,
+    pass: Option<DemandPass>,
     samples: u32,
 }
 
-/// The view and light of the frame that was prepared last, for [`SunShadows::record_need`].
+/// The view and light of the frame that was prepared last, for [`SunShadows::record_demand`].
 #[derive(Clone, Copy, Debug)]
 struct LastFrame {
     view: ViewFrustum,
@@ -83,8 +83,8 @@ impl SunShadows {
             device: device.clone(),
             queue: queue.clone(),
             fitter: ShadowFitter::default(),
-            maps: KeptMaps::new(device, descriptor)?,
-            need: Need::new(device),
+            maps: CachedMaps::new(device, descriptor)?,
+            demand: Demand::new(device),
             last: None,
         })
     }
@@ -100,7 +100,7 @@ impl SunShadows {
     }
 
     /// The fitter of the maps, for visible points that were [found](ShadowFitter::see) by other means than
-    /// [`Self::record_need`], or for another technique with the same layers, such as one with fewer maps.
+    /// [`Self::record_demand`], or for another technique with the same layers, such as one with fewer maps.
     pub fn fitter_mut(&mut self) -> &mut ShadowFitter {
         &mut self.fitter
     }
@@ -131,7 +131,7 @@ impl SunShadows {
     }
 
     /// Whether static casters are kept from frame to frame. They are by default. Pictures are the same either way.
-    pub fn set_keeps(&mut self, keeps: bool) {
+    pub fn set_caching(&mut self, keeps: bool) {
         self.maps.keeps = keeps;
     }
 
@@ -162,7 +162,7 @@ impl SunShadows {
         if descriptor == self.map().descriptor() {
             return Ok(false);
         }
-        let mut maps = KeptMaps::new(&self.device, descriptor)?;
+        let mut maps = CachedMaps::new(&self.device, descriptor)?;
         (maps.schedule, maps.keeps, maps.culling) = (self.maps.schedule, self.maps.keeps, self.maps.culling);
         self.maps = maps;
         Ok(true)
@@ -177,7 +177,7 @@ impl SunShadows {
     /// Forgets the earlier views and what they showed: after a camera cut. Static casters stay in the maps.
     pub fn cut(&mut self) {
         self.fitter.reset();
-        if let Some(pass) = &mut self.need.pass {
+        if let Some(pass) = &mut self.demand.pass {
             pass.reset();
         }
     }
@@ -200,7 +200,7 @@ impl SunShadows {
     /// # Errors
     ///
     /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Map`] for maps that
-    /// the layers cannot hold; [`SunShadowsError::Need`] if the device was lost. There is nothing to draw then, and the
+    /// the layers cannot hold; [`SunShadowsError::Demand`] if the device was lost. There is nothing to draw then, and the
     /// shaders read the maps of the frame before.
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
         self.skip();
@@ -216,10 +216,10 @@ impl SunShadows {
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Need`] if the device
+    /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Demand`] if the device
     /// was lost.
     pub fn fit(&mut self, input: &FitInput<'_>) -> Result<&FittedMaps, SunShadowsError> {
-        if let Some(pass) = &mut self.need.pass
+        if let Some(pass) = &mut self.demand.pass
             && let Some(seen) = pass.take()?
         {
             self.fitter.see(seen);
@@ -301,8 +301,8 @@ impl SunShadows {
     }
 
     /// Whether the static casters of a map, by its number, are kept for later frames.
-    pub fn is_kept(&self, map: usize) -> bool {
-        self.maps.is_kept(map)
+    pub fn is_cached(&self, map: usize) -> bool {
+        self.maps.is_cached(map)
     }
 
     /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
@@ -312,29 +312,29 @@ impl SunShadows {
     }
 
     /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. Returns
-    /// the certificate of the first map that fails. It takes into account that shaders round positions relative to
+    /// the proof of the first map that fails. It takes into account that shaders round positions relative to
     /// [`SunFrame::origin`].
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] as [`verify`]; [`SunShadowsError::NoFrame`] before the first frame.
-    pub fn verify(&self, frame: &SunFrame<'_>) -> Result<Certificate, SunShadowsError> {
+    /// [`SunShadowsError::Fit`] as [`prove`]; [`SunShadowsError::NoFrame`] before the first frame.
+    pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
         let input = frame.input();
-        let mut storage = vec![DVec2::ZERO; Workspace::required(frame.boxes(), frame.views.len())];
-        let mut certificate = Err(SunShadowsError::NoFrame);
+        let mut storage = vec![DVec2::ZERO; Scratch::required(frame.boxes(), frame.views.len())];
+        let mut proof = Err(SunShadowsError::NoFrame);
         for (fitted, read) in self.fitted().iter().zip(self.maps()) {
             // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
-            let map = FittedMap { fit: read.fit.relative_to(frame.origin), bias: read.bias, ..*fitted };
+            let map = FittedMap { projection: read.projection.relative_to(frame.origin), bias: read.bias, ..*fitted };
             let technique = self.technique();
-            let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.fit))
+            let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.projection))
                 .with_normal_offset(map.bias.normal_offset);
-            let found = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage))?;
+            let found = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage))?;
             if !found.is_proven() {
                 return Ok(found);
             }
-            certificate = Ok(found);
+            proof = Ok(found);
         }
-        certificate
+        proof
     }
 
     /// Counts the visible points of a picture, for the fits of the next frames. Call it after the pass that fills the
@@ -342,25 +342,25 @@ impl SunShadows {
     /// and has the usage `TEXTURE_BINDING`; `clip_from_world` and `convention` are those that it was drawn with, for
     /// positions relative to the eye, [`ViewFrustum::origin`] of the first view.
     ///
-    /// Returns whether it was recorded: never on devices that [cannot count](Self::can_record_need), where maps are placed
+    /// Returns whether it was recorded: never on devices that [cannot count](Self::can_record_demand), where maps are placed
     /// by the boxes; nor for a frame that was refused, nor while many pictures are still on their way.
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Need`] for the matrix, the texture, and a device out of memory.
-    pub fn record_need(
+    /// [`SunShadowsError::Demand`] for the matrix, the texture, and a device out of memory.
+    pub fn record_demand(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         depth: &wgpu::TextureView,
         clip_from_world: Mat4,
         convention: DepthConvention,
     ) -> Result<bool, SunShadowsError> {
-        let Some(LastFrame { view, direction }) = self.last.filter(|_| self.can_record_need()) else {
+        let Some(LastFrame { view, direction }) = self.last.filter(|_| self.can_record_demand()) else {
             return Ok(false);
         };
         let (texture, settings) = (depth.texture(), self.fitter.technique().fit);
-        let pass = self.need.pass(&self.device, &self.queue, texture.sample_count())?;
-        let seen = NeedView {
+        let pass = self.demand.pass(&self.device, &self.queue, texture.sample_count())?;
+        let seen = DemandView {
             frustum: view,
             clip_from_world,
             depth: convention,
@@ -373,8 +373,8 @@ impl SunShadows {
     }
 
     /// Whether the device can count the visible points of depth buffers: those of OpenGL cannot.
-    pub fn can_record_need(&self) -> bool {
-        self.need.is_supported
+    pub fn can_record_demand(&self) -> bool {
+        self.demand.is_supported
     }
 
     /// Waits for the GPU, so that the next [`Self::update`] knows what the last picture showed: for headless runs whose
@@ -382,9 +382,9 @@ impl SunShadows {
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Need`] if the device was lost.
-    pub fn wait_for_need(&mut self) -> Result<(), SunShadowsError> {
-        let seen = self.need.pass.as_mut().map_or(Ok(None), NeedPass::wait)?;
+    /// [`SunShadowsError::Demand`] if the device was lost.
+    pub fn wait_for_demand(&mut self) -> Result<(), SunShadowsError> {
+        let seen = self.demand.pass.as_mut().map_or(Ok(None), DemandPass::wait)?;
         if let Some(seen) = seen {
             self.fitter.see(seen);
         }
@@ -392,7 +392,7 @@ impl SunShadows {
     }
 }
 
-impl Need {
+impl Demand {
     fn new(device: &wgpu::Device) -> Self {
         let is_supported = supported(&device.limits(), device.adapter_info().backend).is_ok();
         Self { is_supported, pass: None, samples: 0 }
@@ -404,10 +404,10 @@ impl Need {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         samples: u32,
-    ) -> Result<&mut NeedPass, NeedPassError> {
+    ) -> Result<&mut DemandPass, DemandPassError> {
         let made = match self.pass.take().filter(|_| self.samples == samples) {
             Some(pass) => pass,
-            None => NeedPass::new(device, queue, samples)?,
+            None => DemandPass::new(device, queue, samples)?,
         };
         self.samples = samples;
         Ok(self.pass.insert(made))

@@ -6,7 +6,7 @@ use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
 use shadowfit::settings::Softness;
-use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
+use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
 
 use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
@@ -138,7 +138,7 @@ impl CullingUniform {
 
 impl CasterUniform {
     /// The uniform for a fit, with positions relative to `origin` (world space, metres).
-    pub fn new(fit: &LightFit, origin: DVec3) -> Self {
+    pub fn new(fit: &LightProjection, origin: DVec3) -> Self {
         Self { clip_from_world: fit.relative_to(origin).clip_from_world.to_cols_array_2d(), ..Self::default() }
     }
 }
@@ -148,7 +148,7 @@ impl MapUniform {
     /// says.
     pub fn new(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let ShadowMapDescriptor { filter, softness, .. } = descriptor;
-        let (fit, bias, range) = (map.fit.relative_to(origin), map.bias, map.depth_range());
+        let (fit, bias, range) = (map.projection.relative_to(origin), map.bias, map.depth_range());
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
         let [u, v] = if bias.receiver_plane == 0.0 { [Vec3::ZERO; 2] } else { depth_per_texel(&fit) };
         Self {
@@ -173,7 +173,7 @@ impl MapUniform {
 /// Vectors whose dot product with a plane's unit normal n gives the change of its depth over one texel along u and
 /// v: the plane's height falls by n·x / n·z along the map's x, and v runs against its y. It is
 /// [`shadowfit::bias::depth_gradient`] without the division by n·z, the cosine.
-fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
+fn depth_per_texel(fit: &LightProjection) -> [Vec3; 2] {
     let away_from_light = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
     let scale = fit.texel_size * (away_from_light / fit.depth_range);
     let row = |index: usize| fit.light_from_world.row(index).truncate();
@@ -194,12 +194,12 @@ impl ReceiverUniform {
             frame_shift: (view.frame % FRAMES) as f32 * FRAME_SHIFT,
             ..Self::default()
         };
-        let order = MapOrder::new(descriptor.choice, maps.iter().map(|map| &map.fit));
+        let order = MapOrder::new(descriptor.selection, maps.iter().map(|map| &map.projection));
         for (slot, index) in uniform.maps.iter_mut().zip(order.iter()) {
             *slot = MapUniform { layer: index as u32, ..MapUniform::new(&maps[index], view.origin, descriptor) };
             uniform.map_count += 1;
         }
-        uniform.to_light = maps.first().map_or([0.0, 1.0, 0.0], |map| (-map.fit.direction).to_array());
+        uniform.to_light = maps.first().map_or([0.0, 1.0, 0.0], |map| (-map.projection.direction).to_array());
         let at_origin = view.forward.as_dvec3().dot(view.origin - view.eye) as f32;
         uniform.view = view.forward.extend(at_origin).to_array();
         uniform

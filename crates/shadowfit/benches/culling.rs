@@ -11,7 +11,7 @@ use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_gr
 use shadowfit::culling::{Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
 use shadowfit::{
-    Aabb, CasterVolume, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+    Aabb, CasterVolume, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique, ViewFrustum,
 };
 
 /// Boxes in the pool; calls cycle through them.
@@ -34,18 +34,18 @@ fn views() -> [ViewFrustum; 1] {
 }
 
 fn fitted() -> FittedMaps {
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let settings = Technique::preset("calm-4").expect("a preset");
     let settings = Technique { fit: settings.fit.with_max_distance(200.0), ..settings };
     let (views, direction) = (views(), Vec3::new(0.4, -0.8, 0.3));
     let input = FitInput::new(&views, direction);
-    MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view")
+    FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("a good view")
 }
 
 fn swept(fitted: &FittedMaps) -> Vec<CasterVolume> {
     let views = views();
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
-    let volumes = fitted.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
+    let volumes = fitted.iter().map(|map| CasterVolume::swept(&map.projection, &sweep(map.covered_near, map.far)));
     volumes.collect::<Result<_, _>>().expect("good sweeps")
 }
 
@@ -129,7 +129,7 @@ fn measure(
 
 fn compare(criterion: &mut Criterion, name: &str, boxes: &[Aabb], counts: &[usize], changes: bool) {
     let fitted = fitted();
-    let maps: Vec<_> = fitted.iter().map(|map| map.fit.caster_volume()).collect();
+    let maps: Vec<_> = fitted.iter().map(|map| map.projection.caster_volume()).collect();
     let swept = swept(&fitted);
     let six: Vec<[Vec4; SIX]> = maps.iter().map(|volume| std::array::from_fn(|i| volume.planes[i])).collect();
     let mut group = criterion.benchmark_group(name);
@@ -158,7 +158,7 @@ fn culling(criterion: &mut Criterion) {
 fn sweeping(criterion: &mut Criterion) {
     let (fitted, views) = (fitted(), views());
     criterion.bench_function("sweep of one map", |bencher| {
-        bencher.iter(|| CasterVolume::swept(black_box(&fitted[0].fit), &Sweep::new(black_box(&views))));
+        bencher.iter(|| CasterVolume::swept(black_box(&fitted[0].projection), &Sweep::new(black_box(&views))));
     });
 }
 

@@ -7,10 +7,10 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use shadowfit::Clusters;
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace, PIXELS};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace, PIXELS};
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapSettings, Shape, SplitScheme, Stabilise};
-use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, Workspace, fit};
+use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique, fit};
 
 /// A camera that turns a little with each call, so that no result can be kept.
 fn camera(turn: &mut f32) -> PerspectiveCamera {
@@ -189,16 +189,16 @@ fn against_bevy(c: &mut Criterion) {
     let bounds = [10.0, 21.5, 46.4, 100.0];
     let mut splits = [0.0; 7];
     splits[..3].copy_from_slice(&bounds[..3]);
-    let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap { waste: 1.8 });
+    let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap { max_waste: 1.8 });
     let settings = Technique { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let (mut fitter, mut maps) = (MapFitter::new(), FittedMaps::default());
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+    let (mut fitter, mut maps) = (FitState::new(), FittedMaps::default());
     let mut turn = 0.0;
     group.bench_function("shadowfit", |b| {
         b.iter(|| {
             let views = [black_box(&camera(&mut turn)).frustum().expect("a good camera")];
             let input = FitInput::new(black_box(&views), black_box(DIRECTION));
-            let mut workspace = Workspace::new(&mut storage);
+            let mut workspace = Scratch::new(&mut storage);
             fitter.fit_into(&input, black_box(&settings), &mut workspace, &mut maps).expect("a good fit");
             black_box(&maps);
         });
@@ -214,7 +214,7 @@ fn against_bevy(c: &mut Criterion) {
 
 fn settings(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> Technique {
     let slices = Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() };
-    let fit = MapSettings::default().with_casters(CasterPolicy::List).with_max_distance(f32::MAX);
+    let fit = MapSettings::default().with_casters(CasterPolicy::PerObject).with_max_distance(f32::MAX);
     Technique::default().with_maps(slices).with_fit(fit)
 }
 
@@ -235,14 +235,14 @@ fn focused(c: &mut Criterion) {
     let mut group = c.benchmark_group("4 focused maps");
     for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {
         let boxes = objects(count);
-        let mut storage = vec![DVec2::ZERO; Workspace::required(count, 4)];
+        let mut storage = vec![DVec2::ZERO; Scratch::required(count, 4)];
         for (splits, stabilise, kind) in [
             (SplitScheme::Logarithmic, Stabilise::Off, "logarithmic splits"),
             (SplitScheme::FromBoxes, Stabilise::Off, "splits from boxes each frame"),
             (SplitScheme::FromBoxes, Stabilise::default(), "held"),
         ] {
             let settings = settings(FitKind::Focused, splits, stabilise);
-            let mut fitter = MapFitter::new();
+            let mut fitter = FitState::new();
             let mut turn = 0.0;
             group.bench_function(format!("{name}, {kind}"), |b| {
                 b.iter(|| {
@@ -250,7 +250,7 @@ fn focused(c: &mut Criterion) {
                     let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
                     let input =
                         FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
-                    fitter.fit(&input, black_box(&settings), &mut Workspace::new(&mut storage)).expect("a good fit")
+                    fitter.fit(&input, black_box(&settings), &mut Scratch::new(&mut storage)).expect("a good fit")
                 });
             });
         }
@@ -272,9 +272,9 @@ fn walk(frame: usize) -> PerspectiveCamera {
 const RAYS: (usize, usize) = (48, 27);
 
 /// What a camera sees of boxes, counted as from its depth buffer.
-fn need(camera: &PerspectiveCamera, boxes: &[Aabb]) -> (NeedSpace, Vec<u32>) {
+fn demand(camera: &PerspectiveCamera, boxes: &[Aabb]) -> (DemandSpace, Vec<u32>) {
     let view = camera.frustum().expect("a good camera");
-    let space = NeedSpace::new(&view, DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
+    let space = DemandSpace::new(&view, DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
     let [left_top, right_top, _, left_bottom] = [4, 5, 6, 7].map(|i| view.corners[i] / view.far);
     let (across, down) = (right_top - left_top, left_bottom - left_top);
     let mut counts = vec![0; CELLS];
@@ -308,30 +308,30 @@ fn windows(c: &mut Criterion) {
     let mut group = c.benchmark_group("4 windows beside stable maps");
     for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {
         let boxes = objects(count);
-        let needs: Vec<_> = (0..WALK).map(|frame| need(&walk(frame), &boxes)).collect();
+        let needs: Vec<_> = (0..WALK).map(|frame| demand(&walk(frame), &boxes)).collect();
         let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
-        let mut storage = vec![DVec2::ZERO; Workspace::required(count, 4)];
+        let mut storage = vec![DVec2::ZERO; Scratch::required(count, 4)];
         for (case, preset, is_seen) in [
             ("windows-4", "windows-4", true),
             ("windows-4 by boxes alone", "windows-4", false),
             ("stable-4", "stable-4", true),
         ] {
             let technique = Technique::preset(preset).expect("a preset");
-            let mut fitter = MapFitter::new();
+            let mut fitter = FitState::new();
             let mut frame = 0;
             group.bench_function(format!("{name}, {case}"), |b| {
                 b.iter(|| {
                     let (space, counts) = &needs[frame];
                     frame = (frame + 1) % WALK;
                     let views = [walk(frame).frustum().expect("a good camera")];
-                    let grids = [NeedGrid { space: *space, counts }];
+                    let grids = [DemandGrid { space: *space, counts }];
                     let input = FitInput {
                         receivers: Some(boxes),
                         casters: Some(boxes),
-                        need: if is_seen { &grids } else { &[] },
+                        demand: if is_seen { &grids } else { &[] },
                         ..FitInput::new(&views, DIRECTION)
                     };
-                    fitter.fit(&input, black_box(&technique), &mut Workspace::new(&mut storage)).expect("a good fit")
+                    fitter.fit(&input, black_box(&technique), &mut Scratch::new(&mut storage)).expect("a good fit")
                 });
             });
         }

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 
 /// Screen pixels that one shadow texel covers on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct PixelsPerTexel {
 /// worse axis is J's greatest singular value, the area |det J|. For clip = M p the screen
 /// position is x/w, whose derivative along a tangent t is (Mt.x - (x/w) Mt.w) / w.
 pub fn pixels_per_texel(
-    fit: &LightFit,
+    fit: &LightProjection,
     clip_from_world: &Mat4,
     viewport: UVec2,
     point: Vec3,
@@ -107,7 +107,7 @@ pub(crate) fn screen_jacobian(
 }
 
 /// Texels per metre along a tangent.
-fn texels_along(fit: &LightFit, tangent: DVec3) -> DVec2 {
+fn texels_along(fit: &LightProjection, tangent: DVec3) -> DVec2 {
     let m = fit.uv_from_world.as_dmat4();
     let d = m.x_axis * tangent.x + m.y_axis * tangent.y + m.z_axis * tangent.z;
     DVec2::new(d.x, d.y) * fit.resolution.as_dvec2()
@@ -138,20 +138,20 @@ pub enum Coverage {
 }
 
 impl Coverage {
-    /// Whether the map can be read for the point: [`LightFit::covers`].
+    /// Whether the map can be read for the point: [`LightProjection::covers`].
     pub const fn is_inside(self) -> bool {
         matches!(self, Self::Covered | Self::Border)
     }
 }
 
 /// Where a world position, in metres, lies in a map, for a filter of the given [`Reach`]. Inside is
-/// defined by [`LightFit::covers`]; a point outside across the light is [`Coverage::Aside`] at any
+/// defined by [`LightProjection::covers`]; a point outside across the light is [`Coverage::Aside`] at any
 /// depth.
 ///
 /// # Errors
 ///
 /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the point or the reach.
-pub fn coverage(fit: &LightFit, reach: impl Into<Reach>, point: DVec3) -> Result<Coverage, FitError> {
+pub fn coverage(fit: &LightProjection, reach: impl Into<Reach>, point: DVec3) -> Result<Coverage, FitError> {
     checks::point("the point", point)?;
     let reach = reach.into().checked()?;
     let at = texture_point(fit, point - fit.origin)?;
@@ -197,7 +197,7 @@ const ASIDE_TOLERANCE: f64 = 1e-6;
 /// set of points in the plane", 1973, by slopes instead of angles, so that it always moves on);
 /// the lower chain likewise. Their difference, clamped to the map, is integrated edge by edge, so
 /// no hull is stored: for n points and h corners n·h steps, and no limit to either.
-pub fn share_of_map(fit: &LightFit, points: &[Vec3]) -> Result<f32, FitError> {
+pub fn share_of_map(fit: &LightProjection, points: &[Vec3]) -> Result<f32, FitError> {
     for point in points {
         checks::point("a point of what the map is for", point.as_dvec3())?;
         texture_point(fit, point.as_dvec3())?;
@@ -249,7 +249,7 @@ fn area_below_edge(from: DVec2, to: DVec2) -> f64 {
 const LEVEL: f64 = 1e-6;
 
 /// Texture coordinates and stored depth of a point relative to the fit's origin, in f64.
-fn texture_point(fit: &LightFit, point: DVec3) -> Result<DVec3, FitError> {
+fn texture_point(fit: &LightProjection, point: DVec3) -> Result<DVec3, FitError> {
     let m = fit.uv_from_world.as_dmat4();
     let at = m.x_axis * point.x + m.y_axis * point.y + m.z_axis * point.z + m.w_axis;
     for coordinate in [at.x, at.y, at.z] {
@@ -285,7 +285,7 @@ pub struct AcneMargin {
 /// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the point or the reach, and
 /// [`FitError::BadDirection`] for the normal.
 pub fn acne_margin(
-    fit: &LightFit,
+    fit: &LightProjection,
     bias: &Bias,
     reach: impl Into<Reach>,
     storage: impl Into<DepthStorage>,

@@ -8,7 +8,7 @@ use crate::bias::Bias;
 use crate::content::Content;
 use crate::demand::histogram::DepthBounds;
 use crate::fits::{
-    self, FitInput, FitRule, Frame, LightFit, Place, PlacedMap, PlacedMaps, Workspace, check_least_texel,
+    self, FitInput, FitRule, Frame, LightProjection, Place, PlacedMap, PlacedMaps, Scratch, check_least_texel,
 };
 use crate::light::Light;
 use crate::light::grid::GridAnchor;
@@ -22,7 +22,7 @@ use crate::windows::{self, HeldWindows};
 /// Fits several maps frame by frame.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MapFitter {
+pub struct FitState {
     last: Option<LastFrame>,
 }
 
@@ -47,7 +47,7 @@ enum Held {
     Windows(HeldWindows),
 }
 
-impl MapFitter {
+impl FitState {
     /// A fitter that remembers nothing.
     pub fn new() -> Self {
         Self::default()
@@ -64,15 +64,15 @@ impl MapFitter {
     ///
     /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of slices outside 2..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MapChoice::MAX_BLEND`](crate::settings::MapChoice::MAX_BLEND), and hold settings, softness, fade or depth steps that are out of range;
+    /// a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and hold settings, softness, fade or depth steps that are out of range;
     /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
     /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
-    /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
+    /// without a range [is empty](LightProjection::is_empty). An error leaves the fitter as it was.
     pub fn fit(
         &mut self,
         input: &FitInput,
         technique: &Technique,
-        workspace: &mut Workspace,
+        workspace: &mut Scratch,
     ) -> Result<FittedMaps, FitError> {
         let mut maps = FittedMaps::default();
         self.fit_into(input, technique, workspace, &mut maps)?;
@@ -88,7 +88,7 @@ impl MapFitter {
         &mut self,
         input: &FitInput,
         technique: &Technique,
-        workspace: &mut Workspace,
+        workspace: &mut Scratch,
         maps: &mut FittedMaps,
     ) -> Result<(), FitError> {
         // 1. The light, and the rule that the technique's maps are fitted by.
@@ -133,8 +133,9 @@ fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(
 /// Writes a map in place, since it is large.
 fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), FitError> {
     let PlacedMap { volume, near, far, covered_near } = placed;
-    map.fit = LightFit::from_volume(frame.content.origin, volume, frame.rule.resolution, frame.rule.convention)?;
-    map.bias = Bias::from_texels(&frame.technique.bias, frame.technique.format, &map.fit);
+    map.projection =
+        LightProjection::from_volume(frame.content.origin, volume, frame.rule.resolution, frame.rule.convention)?;
+    map.bias = Bias::from_texels(&frame.technique.bias, frame.technique.format, &map.projection);
     map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
     (map.near, map.far, map.covered_near) = (*near, *far, *covered_near);
     Ok(())
@@ -165,24 +166,24 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
 /// # };
 /// # let views = [camera.frustum()?];
 /// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-/// # let mut workspace = Workspace::new(&mut storage);
+/// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+/// # let mut workspace = Scratch::new(&mut storage);
 /// let technique = Technique::preset("calm-4").unwrap().with_count(8);
 /// let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
 /// assert!(count < 8); // the last ones would make texels less than 1.5 times as fine
-/// let maps = MapFitter::new().fit(&input, &technique.with_count(count), &mut workspace)?;
+/// let maps = FitState::new().fit(&input, &technique.with_count(count), &mut workspace)?;
 /// assert_eq!(maps.len(), count as usize);
 /// # Ok::<(), FitError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// As [`MapFitter::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
+/// As [`FitState::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
 pub fn fewest_maps(
     input: &FitInput,
     technique: &Technique,
     waste: f32,
-    workspace: &mut Workspace,
+    workspace: &mut Scratch,
 ) -> Result<u32, FitError> {
     let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;

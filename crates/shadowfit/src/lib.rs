@@ -36,7 +36,7 @@
 //!
 //! A map is drawn with `clip_from_world` and looked up with `uv_from_world`. A point reads the finest
 //! map that holds it ([`FittedMaps::read`]), compares its depth moved by the
-//! [`bias`](FittedMap::bias), and takes positions relative to [`LightFit::origin`], which is the
+//! [`bias`](FittedMap::bias), and takes positions relative to [`LightProjection::origin`], which is the
 //! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
 //! whole view.
 //!
@@ -49,29 +49,29 @@
 //!
 //! # Without an allocator
 //!
-//! [`ShadowFitter`] owns the memory that fits work in, and needs the feature `alloc`. [`MapFitter`] makes the same maps
+//! [`ShadowFitter`] owns the memory that fits work in, and needs the feature `alloc`. [`FitState`] makes the same maps
 //! in memory that the caller owns:
 //!
 //! ```
 //! use shadowfit::glam::{DVec2, DVec3, Vec3};
-//! use shadowfit::{FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
+//! use shadowfit::{FitInput, FitState, PerspectiveCamera, Technique, Scratch};
 //!
 //! let eye = DVec3::new(0.0, 1.7, 20.0);
 //! let (forward, up) = (Vec3::NEG_Z, Vec3::Y);
 //! let camera = PerspectiveCamera { eye, forward, up, fov_y: 0.8, aspect: 1.6, near: 0.1, far: 200.0 };
-//! let mut fitter = MapFitter::new();
-//! let mut storage = [DVec2::ZERO; Workspace::required(0, 1)]; // no boxes, one view
+//! let mut fitter = FitState::new();
+//! let mut storage = [DVec2::ZERO; Scratch::required(0, 1)]; // no boxes, one view
 //!
 //! let views = [camera.frustum()?];
 //! let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-//! let maps = fitter.fit(&input, &Technique::default(), &mut Workspace::new(&mut storage))?;
+//! let maps = fitter.fit(&input, &Technique::default(), &mut Scratch::new(&mut storage))?;
 //! assert_eq!(maps.len(), 4);
 //! # Ok::<(), shadowfit::FitError>(())
 //! ```
 //!
-//! [`Workspace::required`] says how much storage the fits of a frame need, from the number of boxes and of views. Maps
+//! [`Scratch::required`] says how much storage the fits of a frame need, from the number of boxes and of views. Maps
 //! that are [held](settings::Stabilise::Hysteresis) are fitted to the views of two frames ahead as well: count two views
-//! more for them. What the last frame showed goes into [`FitInput::need`] and [`FitInput::histogram`].
+//! more for them. What the last frame showed goes into [`FitInput::demand`] and [`FitInput::histogram`].
 //!
 //! # A single map
 //!
@@ -109,7 +109,7 @@
 //! | which map a point reads, by coverage or by view depth | [`selection`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
 //! | splits chosen by what the last frame showed | [`demand`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
-//! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::see`], [`FitInput::need`] |
+//! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::see`], [`FitInput::demand`] |
 //! | how many maps are enough | [`fewest_maps`] |
 //! | boxes that hug large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
 //! | static casters drawn only where the map is new | [`scroll`] |
@@ -118,7 +118,7 @@
 //! | a proof that no map has a hole | [`proof`] |
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
-//! | f32 matrices for world positions, a fit from a matrix of other code | [`LightFit::world_matrices`], [`LightFit::from_clip_from_world`] |
+//! | f32 matrices for world positions, a fit from a matrix of other code | [`LightProjection::world_matrices`], [`LightProjection::from_clip_from_world`] |
 //! | all parameters with unit, range and help, for panels and files; a technique as Rust code | the crate `shadowfit-params` |
 //!
 //! # Conventions
@@ -126,7 +126,7 @@
 //! - Right-handed world, y up, metres, radians, column vectors; clip space x right, y up, with the
 //!   depth range that a [`DepthConvention`] names; texture space u right, v down.
 //! - Matrices are named `dst_from_src`. Their world inputs are **relative to an origin** in f64,
-//!   the eye unless moved: [`LightFit::relative_to`] and [`LightFit::world_matrices`] convert.
+//!   the eye unless moved: [`LightProjection::relative_to`] and [`LightProjection::world_matrices`] convert.
 //! - A light is its **direction of travel**, of a [`SpotLight`] along its axis. Where a source speaks
 //!   of the direction toward the light, `to_light = -direction`.
 //! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except what needs the
@@ -186,20 +186,20 @@ mod light {
     mod outline;
 
     pub(crate) use axes::{Light, LightAxes, Roll, is_same_direction, is_vertical};
-    pub(crate) use outline::{Outline, Scratch};
+    pub(crate) use outline::{Outline, OutlineScratch};
 }
 
 mod content;
 
 /// What was visible, and how fine a texel it asks for.
 pub mod demand {
+    pub(crate) mod grid;
     pub(crate) mod histogram;
-    pub(crate) mod need;
     #[cfg(feature = "alloc")]
     mod seen;
 
+    pub use grid::{CELLS, DemandGrid, DemandSpace, LEVELS, MIN_FACING, PIXELS, SIDE};
     pub use histogram::{DepthBounds, DepthHistogram, needed_texel};
-    pub use need::{CELLS, LEVELS, MIN_FACING, NeedGrid, NeedSpace, PIXELS, SIDE};
     #[cfg(feature = "alloc")]
     pub use seen::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
 }
@@ -243,8 +243,8 @@ pub use culling::CasterVolume;
 #[cfg(feature = "alloc")]
 pub use demand::Seen;
 pub use fits::light_fit::WorldMatrices;
-pub use fits::{Constraint, FitInput, LightFit, Workspace, fit, fit_scene};
-pub use fitter::{MapFitter, fewest_maps};
+pub use fits::{Constraint, FitInput, LightProjection, Scratch, fit, fit_scene};
+pub use fitter::{FitState, fewest_maps};
 pub use glam;
 pub use keep::{light_steps, scroll};
 pub use map::{FittedMap, FittedMaps};

@@ -5,22 +5,22 @@ use core::ops::Deref;
 use glam::{DVec3, UVec2};
 
 use crate::bias::Bias;
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::light::grid::GridAnchor;
 use crate::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use crate::technique::Technique;
-use crate::technique::settings::{MAX_MAPS, MapChoice};
+use crate::technique::settings::{MAX_MAPS, MapSelection};
 
 /// One of several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FittedMap {
     /// The map's matrices and box.
-    pub fit: LightFit,
+    pub projection: LightProjection,
     /// The technique's biases for this map's texels and depth range.
     pub bias: Bias,
     /// View depth from which points choose this map, in metres, where maps are [read by view
-    /// depth](crate::settings::MapChoice::ViewDepth). By coverage it says for which part of the view the
+    /// depth](crate::settings::MapSelection::ViewDepth). By coverage it says for which part of the view the
     /// map was made: of [windows](crate::Windows) for all of it.
     pub near: f32,
     /// View depth up to which points choose this map by view depth, in metres: they take the first map that
@@ -42,8 +42,8 @@ pub struct FittedMap {
 
 impl FittedMap {
     /// A single map for all view depths.
-    pub fn new(fit: LightFit, bias: Bias) -> Self {
-        Self { fit, bias, near: f32::MIN, far: f32::MAX, covered_near: f32::MIN, ..Self::default() }
+    pub fn new(fit: LightProjection, bias: Bias) -> Self {
+        Self { projection: fit, bias, near: f32::MIN, far: f32::MAX, covered_near: f32::MIN, ..Self::default() }
     }
 
     /// This map as one of several that are read by view depth and end one after the other, in metres, without a blend
@@ -96,24 +96,26 @@ impl FittedMaps {
     /// #     near: 0.1,
     /// #     far: 200.0,
     /// # };
-    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    /// # let workspace = &mut Workspace::new(&mut storage);
+    /// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+    /// # let workspace = &mut Scratch::new(&mut storage);
     /// let (views, technique) = ([camera.frustum()?], Technique::default());
-    /// let maps = MapFitter::new().fit(&FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)), &technique, workspace)?;
+    /// let maps = FitState::new().fit(&FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)), &technique, workspace)?;
     /// let read = maps.read(&technique, DVec3::new(0.0, 1.0, -20.0), 25.0).expect("it is in view");
     /// println!("map {}, blended into {:?}", read.map, read.blend);
     /// # assert!(maps[read.main()].fit.covers(DVec3::new(0.0, 1.0, -20.0)));
     /// # Ok::<(), FitError>(())
     /// ```
     pub fn read(&self, technique: &Technique, point: DVec3, view_depth: f64) -> Option<MapRead> {
-        match technique.maps.choice() {
-            choice @ MapChoice::Coverage { blend } => {
-                let order = MapOrder::new(choice, self.iter().map(|map| &map.fit));
+        match technique.maps.selection() {
+            choice @ MapSelection::Coverage { blend } => {
+                let order = MapOrder::new(choice, self.iter().map(|map| &map.projection));
                 let (reach, blend) = (f64::from(technique.reach()), f64::from(blend));
-                by_coverage(order.iter(), reach, blend, |map| self[map].fit.free_texels(point))
+                by_coverage(order.iter(), reach, blend, |map| self[map].projection.free_texels(point))
             }
-            MapChoice::ViewDepth { .. } => {
-                by_view_depth(self.iter().map(FittedMap::depth_range), view_depth, |map| self[map].fit.covers(point))
+            MapSelection::ViewDepth { .. } => {
+                by_view_depth(self.iter().map(FittedMap::depth_range), view_depth, |map| {
+                    self[map].projection.covers(point)
+                })
             }
         }
     }

@@ -77,7 +77,7 @@ pub fn world_point(p: DVec3) -> Point3<f64> {
     Point3 { x: p.x, y: p.y, z: p.z }
 }
 
-/// A matrix of this crate: those of a [`LightFit`](crate::LightFit), [`WorldMatrices`] and cameras.
+/// A matrix of this crate: those of a [`LightProjection`](crate::LightProjection), [`WorldMatrices`] and cameras.
 pub fn matrix(m: &Mat4) -> ColumnMatrix4<f32> {
     let column = |c: Vec4| Vector4 { x: c.x, y: c.y, z: c.z, w: c.w };
     ColumnMatrix4 { x: column(m.x_axis), y: column(m.y_axis), z: column(m.z_axis), w: column(m.w_axis) }

@@ -17,15 +17,15 @@
 //!   └──────────────────────────┘
 //! ```
 
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::technique::Technique;
-use crate::technique::settings::{FilterKind, MAX_MAPS, MapChoice, Softness};
+use crate::technique::settings::{FilterKind, MAX_MAPS, MapSelection, Softness};
 
 /// How points read several maps: which of them, and how far around a point the filter looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapReading {
     /// Which of the maps a point reads.
-    pub choice: MapChoice,
+    pub selection: MapSelection,
     /// Filter of the look-up.
     pub filter: FilterKind,
     /// Width of the filters that are soft.
@@ -36,7 +36,7 @@ impl Technique {
     /// How points read the maps.
     pub const fn reading(&self) -> MapReading {
         let Self { filter, softness, .. } = *self;
-        MapReading { choice: self.maps.choice(), filter, softness }
+        MapReading { selection: self.maps.selection(), filter, softness }
     }
 }
 
@@ -80,26 +80,26 @@ pub struct MapOrder {
 impl MapOrder {
     /// The order of maps: by coverage that of their texels' areas, the finest first, and of their
     /// indices where areas are equal; by view depth that of their indices. Maps past [`MAX_MAPS`]
-    /// are left out, and by coverage also those that [are empty](LightFit::is_empty), whose passes
+    /// are left out, and by coverage also those that [are empty](LightProjection::is_empty), whose passes
     /// may be skipped.
     ///
     /// ```
     /// use shadowfit::selection::MapOrder;
     /// use shadowfit::glam::Vec2;
-    /// use shadowfit::settings::MapChoice;
-    /// use shadowfit::LightFit;
+    /// use shadowfit::settings::MapSelection;
+    /// use shadowfit::LightProjection;
     ///
-    /// let map = |side: f32| LightFit { texel_size: Vec2::splat(side), ..LightFit::default() };
-    /// let maps = [map(0.4), map(0.1), map(0.1), LightFit { is_empty: true, ..map(0.2) }];
-    /// assert!(MapOrder::new(MapChoice::default(), &maps).iter().eq([1, 2, 0]));
-    /// assert!(MapOrder::new(MapChoice::ViewDepth { overlap: 0.0 }, &maps).iter().eq([0, 1, 2, 3]));
+    /// let map = |side: f32| LightProjection { texel_size: Vec2::splat(side), ..LightProjection::default() };
+    /// let maps = [map(0.4), map(0.1), map(0.1), LightProjection { is_empty: true, ..map(0.2) }];
+    /// assert!(MapOrder::new(MapSelection::default(), &maps).iter().eq([1, 2, 0]));
+    /// assert!(MapOrder::new(MapSelection::ViewDepth { overlap: 0.0 }, &maps).iter().eq([0, 1, 2, 3]));
     /// ```
-    pub fn new<'a>(choice: MapChoice, maps: impl IntoIterator<Item = &'a LightFit>) -> Self {
-        let area = |fit: &LightFit| f64::from(fit.texel_size.x) * f64::from(fit.texel_size.y);
+    pub fn new<'a>(choice: MapSelection, maps: impl IntoIterator<Item = &'a LightProjection>) -> Self {
+        let area = |fit: &LightProjection| f64::from(fit.texel_size.x) * f64::from(fit.texel_size.y);
         let maps = maps.into_iter();
         match choice {
-            MapChoice::Coverage { .. } => Self::by_area(maps.map(|fit| (!fit.is_empty).then(|| area(fit)))),
-            MapChoice::ViewDepth { .. } => Self::by_area(maps.map(|_| Some(1.0))),
+            MapSelection::Coverage { .. } => Self::by_area(maps.map(|fit| (!fit.is_empty).then(|| area(fit)))),
+            MapSelection::ViewDepth { .. } => Self::by_area(maps.map(|_| Some(1.0))),
         }
     }
 
@@ -130,7 +130,7 @@ impl MapOrder {
 ///
 /// `order` has the maps' indices, the finest first, each once; `reach` and `blend` are texels. `free`
 /// says how many texels of a map lie between the point and the nearest side, or `None` where the map
-/// does not hold the point ([`LightFit::free_texels`]).
+/// does not hold the point ([`LightProjection::free_texels`]).
 ///
 /// The first map that has `reach` texels free is read, and blended with the next one that has, by
 /// weights that are linear in the first one's free texels: from 0 at `reach` to 1 at
@@ -176,7 +176,7 @@ pub struct DepthRange {
 /// The maps that a point reads by view depth; `None` where no map from there on holds it.
 ///
 /// `ranges` are those of the maps, in order of their ends. `holds` says whether a map holds the point
-/// ([`LightFit::covers`]). The first map that ends beyond the point's view depth is read, or the
+/// ([`LightProjection::covers`]). The first map that ends beyond the point's view depth is read, or the
 /// next later one that holds the point; it is blended into the map behind it, if that holds the
 /// point, by weights that are linear in the view depth, from where that one's range begins to overlap
 /// to its own end.

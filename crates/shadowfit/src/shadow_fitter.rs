@@ -1,11 +1,11 @@
 //! The fitter that engines take, one for each sun: it knows its technique, remembers what earlier frames were and
-//! showed, and owns the memory that [`MapFitter`] needs.
+//! showed, and owns the memory that [`FitState`] needs.
 
 use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use crate::{FitError, FitInput, FittedMaps, MapFitter, Seen, Technique, Workspace};
+use crate::{FitError, FitInput, FitState, FittedMaps, Scratch, Seen, Technique};
 
 /// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
 const VIEWS_AHEAD: usize = 2;
@@ -17,7 +17,7 @@ const VIEWS_AHEAD: usize = 2;
 #[derive(Clone, Debug, Default)]
 pub struct ShadowFitter {
     technique: Technique,
-    history: MapFitter,
+    history: FitState,
     fitted: FittedMaps,
     scratch: Vec<DVec2>,
     seen: Option<Seen>,
@@ -56,21 +56,21 @@ impl ShadowFitter {
         self.seen.as_ref()
     }
 
-    /// Fits the maps of a frame. Where the input says neither [`FitInput::need`] nor [`FitInput::histogram`], it is
+    /// Fits the maps of a frame. Where the input says neither [`FitInput::demand`] nor [`FitInput::histogram`], it is
     /// completed by what was [told](Self::see) of earlier frames.
     ///
     /// # Errors
     ///
-    /// As [`MapFitter::fit`]. What is remembered stays as it was; there are no maps of this frame then.
+    /// As [`FitState::fit`]. What is remembered stays as it was; there are no maps of this frame then.
     pub fn fit(&mut self, input: &FitInput) -> Result<&FittedMaps, FitError> {
-        let seen = self.seen.as_ref().filter(|_| input.need.is_empty() && input.histogram.is_none());
-        let grid = seen.map(Seen::need);
+        let seen = self.seen.as_ref().filter(|_| input.demand.is_empty() && input.histogram.is_none());
+        let grid = seen.map(Seen::demand);
         let input = match seen {
-            Some(seen) => FitInput { need: grid.as_slice(), histogram: Some(seen.histogram()), ..*input },
+            Some(seen) => FitInput { demand: grid.as_slice(), histogram: Some(seen.histogram()), ..*input },
             None => *input,
         };
-        self.scratch.resize(Workspace::required(input.boxes(), input.views.len() + VIEWS_AHEAD), DVec2::ZERO);
-        let workspace = &mut Workspace::new(&mut self.scratch);
+        self.scratch.resize(Scratch::required(input.boxes(), input.views.len() + VIEWS_AHEAD), DVec2::ZERO);
+        let workspace = &mut Scratch::new(&mut self.scratch);
         let fitted = self.history.fit_into(&input, &self.technique, workspace, &mut self.fitted);
         if let Err(error) = fitted {
             self.fitted = FittedMaps::default();
@@ -118,13 +118,13 @@ mod tests {
         let step = Vec3::X * 0.01;
         for metre in 100..140_u8 {
             let place = Vec3::new(0.0, -2.0, -f32::from(metre));
-            seen.count_cell(space.need.index(place, Vec3::Y, step, Vec3::Z * 0.01).expect("a cell"));
+            seen.count_cell(space.demand.index(place, Vec3::Y, step, Vec3::Z * 0.01).expect("a cell"));
         }
         fitter.reset();
         fitter.see(seen);
         let by_grid = *fitter.fit(&input).expect("maps");
         assert_ne!(by_grid, by_boxes);
-        assert!(by_grid[0].fit.covers(DVec3::new(0.0, 0.0, -120.0)), "the finest map is where points were seen");
+        assert!(by_grid[0].projection.covers(DVec3::new(0.0, 0.0, -120.0)), "the finest map is where points were seen");
         fitter.reset();
         assert_eq!(*fitter.fit(&input).expect("maps"), by_boxes);
 

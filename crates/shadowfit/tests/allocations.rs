@@ -3,16 +3,16 @@
 use allocation_counter::measure;
 use shadowfit::bias::Reach;
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
 use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::proof::{CoverageQuery, verify};
+use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::scroll::{Scroll, tiles};
 use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, MAX_MAPS, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum, Workspace, fit,
+    Aabb, Boxes, CasterVolume, FitInput, FitState, PerspectiveCamera, Scratch, Slices, Technique, ViewFrustum, fit,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -20,8 +20,13 @@ const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
 const KINDS: [FitKind; 5] =
     [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-const POLICIES: [CasterPolicy; 5] =
-    [CasterPolicy::None, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::List, CasterPolicy::DepthClamp];
+const POLICIES: [CasterPolicy; 5] = [
+    CasterPolicy::None,
+    CasterPolicy::Extend,
+    CasterPolicy::SceneBounds,
+    CasterPolicy::PerObject,
+    CasterPolicy::DepthClamp,
+];
 
 fn camera() -> PerspectiveCamera {
     PerspectiveCamera {
@@ -66,14 +71,14 @@ fn no_fit_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
     for kind in KINDS {
         for rectangle in [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare] {
             for casters in POLICIES {
                 let settings = FitSettings::default().with_kind(kind).with_rectangle(rectangle).with_casters(casters);
                 let what = format!("{settings:?}");
                 without_allocation(&what, || fit(&views[0], DIRECTION, &settings)).expect("a good frustum");
-                let mut workspace = Workspace::new(&mut storage);
+                let mut workspace = Scratch::new(&mut storage);
                 without_allocation(&what, || fit_scene(&input, &settings, &mut workspace)).expect("a good scene");
             }
         }
@@ -85,16 +90,16 @@ fn no_fit_of_several_maps_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
     for kind in KINDS {
-        for stabilise in [Stabilise::Off, Stabilise::Snap { waste: 1.8 }, Stabilise::default()] {
+        for stabilise in [Stabilise::Off, Stabilise::Snap { max_waste: 1.8 }, Stabilise::default()] {
             for splits in [SplitScheme::Logarithmic, SplitScheme::Practical(0.5), SplitScheme::FromBoxes] {
                 let slices = Slices { count: 4, shape: Shape::new(kind), stabilise, splits, ..Slices::default() };
-                let fit = MapSettings::default().with_casters(CasterPolicy::List);
+                let fit = MapSettings::default().with_casters(CasterPolicy::PerObject);
                 let settings = Technique::default().with_maps(slices).with_fit(fit);
-                let (what, mut fitter) = (format!("{settings:?}"), MapFitter::new());
+                let (what, mut fitter) = (format!("{settings:?}"), FitState::new());
                 for _ in 0..2 {
-                    let mut workspace = Workspace::new(&mut storage);
+                    let mut workspace = Scratch::new(&mut storage);
                     let maps = without_allocation(&what, || fitter.fit(&input, &settings, &mut workspace));
                     assert_eq!(maps.expect("a good scene").len(), 4);
                 }
@@ -103,13 +108,13 @@ fn no_fit_of_several_maps_allocates() {
     }
 }
 
-/// With a grid of need and without, in the first frames, whose search takes most effort, and in later ones.
+/// With a demand grid and without, in the first frames, whose search takes most effort, and in later ones.
 #[test]
 fn no_fit_of_windows_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let mut counts = vec![0; CELLS];
-    let space = NeedSpace::new(&views[0], DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
+    let space = DemandSpace::new(&views[0], DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
     for i in 0..4000_u16 {
         let (x, z) = (f32::from(i % 80) * 0.5 - 20.0, -f32::from(i / 80) * 2.0);
         let pixel = 0.001 * (1.0 - z);
@@ -117,13 +122,13 @@ fn no_fit_of_windows_allocates() {
         let cell = without_allocation("a cell", || space.index(place, Vec3::Y, Vec3::X * pixel, Vec3::Z * pixel));
         counts[cell.expect("it is lit")] += 1;
     }
-    let grids = [NeedGrid { space, counts: &counts }];
+    let grids = [DemandGrid { space, counts: &counts }];
     let known = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
     for (name, grids) in [("windows-4", &[][..]), ("windows-4", &grids), ("windows-8", &grids)] {
-        let (technique, mut fitter) = (Technique::preset(name).expect("a preset"), MapFitter::new());
-        for need in [&[][..], grids, grids, grids, &[], grids] {
-            let (input, mut workspace) = (FitInput { need, ..known }, Workspace::new(&mut storage));
+        let (technique, mut fitter) = (Technique::preset(name).expect("a preset"), FitState::new());
+        for demand in [&[][..], grids, grids, grids, &[], grids] {
+            let (input, mut workspace) = (FitInput { demand, ..known }, Scratch::new(&mut storage));
             let maps = without_allocation(name, || fitter.fit(&input, &technique, &mut workspace));
             assert_eq!(maps.expect("a good scene").len(), technique.maps.count() as usize);
         }
@@ -131,21 +136,21 @@ fn no_fit_of_windows_allocates() {
 }
 
 #[test]
-fn no_certificate_and_no_scrolling_allocates() {
+fn no_proof_and_no_scrolling_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
-    let mut workspace = Workspace::new(&mut storage);
+    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
+    let mut workspace = Scratch::new(&mut storage);
     let slices = Slices { shape: Shape::new(FitKind::Sphere), ..Slices::default() };
-    let fit = MapSettings::default().with_casters(CasterPolicy::List);
+    let fit = MapSettings::default().with_casters(CasterPolicy::PerObject);
     let settings = Technique::default().with_maps(slices).with_fit(fit);
-    let mut fitter = MapFitter::new();
+    let mut fitter = FitState::new();
     let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
         let query = CoverageQuery::of_map(map, &settings, Reach::POINT);
-        let verified = without_allocation("verify", || verify(&input, &map.fit, &query, &mut workspace));
+        let verified = without_allocation("verify", || prove(&input, &map.projection, &query, &mut workspace));
         assert!(verified.expect("a good map").is_proven());
         let scroll = without_allocation("scroll", || Scroll::between(before, map));
         assert!(!scroll.is_redraw());
@@ -157,15 +162,16 @@ fn no_certificate_and_no_scrolling_allocates() {
 #[test]
 fn no_culling_allocates() {
     let (views, boxes) = (views(), objects());
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 2)];
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 2)];
     let settings = Technique::preset("calm-4").expect("a preset");
     let input = FitInput::new(&views, DIRECTION);
-    let maps = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("good views");
+    let maps = FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("good views");
     let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); MAX_MAPS];
     for count in [1, 2] {
         for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
             let sweep = Sweep { near: map.covered_near, far: map.far, ..Sweep::new(&views[..count]) };
-            *volume = without_allocation("sweep", || CasterVolume::swept(&map.fit, &sweep)).expect("a good sweep");
+            *volume =
+                without_allocation("sweep", || CasterVolume::swept(&map.projection, &sweep)).expect("a good sweep");
         }
     }
     let volumes = &volumes[..maps.len()];

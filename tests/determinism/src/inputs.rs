@@ -5,7 +5,7 @@ use shadowfit::NormalCone;
 use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, Hysteresis, MapFormat, MapSelection, MapSettings,
     RectangleKind, Shape, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{
@@ -170,14 +170,14 @@ fn clusters(random: &mut Random, centre: Vec3, size: f32) -> Result<Clusters, Fi
 
 /// Settings of one map.
 pub(crate) fn fit_settings(random: &mut Random, camera: &PerspectiveCamera) -> FitSettings {
-    use CasterPolicy::{DepthClamp, Extend, List, None, SceneBounds};
+    use CasterPolicy::{DepthClamp, Extend, None, PerObject, SceneBounds};
     let rectangles = [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare];
     let shape = Shape { kind: kind(random), rectangle: random.pick(&rectangles), max_texel_ratio: f32::MAX };
     let map = MapSettings {
         max_distance: if random.once_in(3) { camera.far * random.between(0.2, 1.5) } else { f32::MAX },
         margin: if random.once_in(4) { camera.far * random.between(0.0, 0.1) } else { 0.0 },
         border: Some(random.pick(&[0.0, 1.0, 2.5, 8.0])),
-        casters: random.pick(&[None, Extend, SceneBounds, List, DepthClamp]),
+        casters: random.pick(&[None, Extend, SceneBounds, PerObject, DepthClamp]),
         caster_extension: camera.far * random.between(0.0, 2.0),
         up: random.pick(&[Vec3::Y, Vec3::Z, Vec3::new(0.3, 0.7, -0.2)]),
         least_texel: 0.0,
@@ -209,18 +209,18 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
     let count = 1 + random.below(5);
     let (splits, overlap) = (random.pick(&schemes), random.pick(&[0.0, 0.1, 0.5]));
     let stability = random.pick(&[0, 1, 2]);
-    let hold = HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 };
+    let hold = Hysteresis { margin: 0.02, max_growth: 1.4, max_waste: random.between(1.2, 3.0), look_ahead: 32 };
     // One in four once had a rule of its own for the nearest map; the draw stays, so that all others do.
     if random.once_in(4) {
         kind(random);
     }
     let stabilise = match stability {
         0 => Stabilise::Off,
-        1 => Stabilise::Snap { waste: hold.waste },
+        1 => Stabilise::Snap { max_waste: hold.max_waste },
         _ => Stabilise::Hysteresis(hold),
     };
     let technique = Technique {
-        maps: Slices { count, shape, splits, choice: MapChoice::ViewDepth { overlap }, stabilise }.into(),
+        maps: Slices { count, shape, splits, selection: MapSelection::ViewDepth { overlap }, stabilise }.into(),
         fit: MapSettings { max_distance: f32::MAX, ..map },
         filter: FilterKind::Point,
         softness: Softness::default(),
@@ -234,7 +234,7 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
 /// The technique with maps that are read by coverage.
 pub(crate) fn by_coverage(technique: Technique) -> Technique {
     match technique.maps {
-        Maps::Slices(slices) => technique.with_maps(slices.with_choice(MapChoice::default())),
+        Maps::Slices(slices) => technique.with_maps(slices.with_selection(MapSelection::default())),
         _ => technique,
     }
 }

@@ -9,7 +9,7 @@ use shadowfit::diagnostics::DepthStorage;
 use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy};
-use shadowfit::{Bias, CasterVolume, FitError, FittedMap, LightFit, MapFitter, Workspace};
+use shadowfit::{Bias, CasterVolume, FitError, FitState, FittedMap, LightProjection, Scratch};
 
 use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;
@@ -19,7 +19,7 @@ const FRAMES: u32 = 6;
 
 /// Adds the numbers of so many fits: single maps, and slices read by view depth.
 pub(crate) fn add(fits: u32, one_map: &mut Numbers, slices: &mut Numbers) {
-    let storage = vec![DVec2::ZERO; Workspace::required(64, 8)];
+    let storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
     let mut run = Run { random: Random::new(2), one_map, slices, storage };
     let mut done = 0;
     while done < fits {
@@ -41,7 +41,7 @@ impl Run<'_> {
         let mut scene = Scene::new(&mut self.random)?;
         if !self.random.once_in(8) {
             let settings = fit_settings(&mut self.random, &scene.camera);
-            let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            let fit = fit_scene(&scene.input(), &settings, &mut Scratch::new(&mut self.storage))?;
             self.one_map.fit(&fit);
             self.follow(&scene, &fit, settings.map.casters)?;
             return Ok(1);
@@ -49,9 +49,9 @@ impl Run<'_> {
         let settings = technique(&mut self.random, &scene.camera);
         // The same way in as in the frames to come: what is held may tolerate another one's rounding.
         scene.views = vec![scene.camera.frustum()?];
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         for _ in 0..FRAMES {
-            let maps = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            let maps = fitter.fit(&scene.input(), &settings, &mut Scratch::new(&mut self.storage))?;
             let numbers = if settings.maps.count() > 1 { &mut *self.slices } else { &mut *self.one_map };
             for map in maps.iter() {
                 numbers.map(map);
@@ -62,7 +62,7 @@ impl Run<'_> {
     }
 
     /// Biases and culling by a fit.
-    fn follow(&mut self, scene: &Scene, fit: &LightFit, casters: CasterPolicy) -> Result<(), FitError> {
+    fn follow(&mut self, scene: &Scene, fit: &LightProjection, casters: CasterPolicy) -> Result<(), FitError> {
         let random = &mut self.random;
         let reach = random.pick(&[Reach::POINT, Reach::HARDWARE_2X2, Reach::kernel(3), Reach::kernel(5)]);
         let storage = random.pick(&[DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32]);
@@ -123,7 +123,7 @@ impl Numbers {
 
     /// One of several maps.
     pub(crate) fn map(&mut self, map: &FittedMap) {
-        self.fit(&map.fit);
+        self.fit(&map.projection);
         self.f32s(&[map.near, map.far, map.covered_near]);
         if let Some(anchor) = map.anchor {
             for line in anchor.first {
@@ -159,7 +159,7 @@ impl Numbers {
         self.f32s(&matrix.to_cols_array());
     }
 
-    fn fit(&mut self, fit: &LightFit) {
+    fn fit(&mut self, fit: &LightProjection) {
         self.place(fit.origin);
         for matrix in [&fit.light_from_world, &fit.clip_from_light, &fit.clip_from_world, &fit.uv_from_world] {
             self.matrix(matrix);

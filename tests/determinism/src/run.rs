@@ -8,7 +8,7 @@ use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
-use shadowfit::{Bias, CasterVolume, FitError, LightFit, MapFitter, Workspace};
+use shadowfit::{Bias, CasterVolume, FitError, FitState, LightProjection, Scratch};
 
 use crate::Outcome;
 use crate::hash::Hash;
@@ -22,7 +22,7 @@ pub(crate) fn run(fits: u32) -> Outcome {
     let mut run = Run {
         random: Random::new(1),
         hash: Hash::new(),
-        storage: vec![DVec2::ZERO; Workspace::required(64, 8)],
+        storage: vec![DVec2::ZERO; Scratch::required(64, 8)],
         light: LightSteps::default(),
         fits: 0,
         refused: 0,
@@ -51,14 +51,14 @@ impl Run {
         self.lights(&scene)?;
         if !self.random.once_in(8) {
             let settings = fit_settings(&mut self.random, &scene.camera);
-            let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            let fit = fit_scene(&scene.input(), &settings, &mut Scratch::new(&mut self.storage))?;
             self.fits += 1;
             return self.follow(&scene, &fit, settings.map.casters);
         }
         let settings = technique(&mut self.random, &scene.camera);
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         for _ in 0..FRAMES {
-            let cascades = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            let cascades = fitter.fit(&scene.input(), &settings, &mut Scratch::new(&mut self.storage))?;
             self.hash.add(&cascades);
             self.hash.add(&fitter);
             self.fits += 1;
@@ -82,7 +82,7 @@ impl Run {
     }
 
     /// What an engine does with a fit.
-    fn follow(&mut self, scene: &Scene, fit: &LightFit, casters: CasterPolicy) -> Result<(), FitError> {
+    fn follow(&mut self, scene: &Scene, fit: &LightProjection, casters: CasterPolicy) -> Result<(), FitError> {
         let random = &mut self.random;
         let moved = fit.relative_to(fit.origin + random.place(100.0));
         self.hash.add(&(fit, moved, fit.world_matrices(), fit.corners(), fit.light_position()));
@@ -125,7 +125,7 @@ impl Run {
     fn volumes(
         &mut self,
         scene: &Scene,
-        fit: &LightFit,
+        fit: &LightProjection,
         reach: Reach,
         normal_offset: f32,
         casters: CasterPolicy,

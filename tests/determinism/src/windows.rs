@@ -1,9 +1,9 @@
-//! The numbers of maps that are read by coverage: windows, with a grid of need and without, slices of the view, and
+//! The numbers of maps that are read by coverage: windows, with a demand grid and without, slices of the view, and
 //! single maps.
 
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
 use shadowfit::glam::DVec2;
-use shadowfit::{FitError, MapFitter, Technique, Workspace};
+use shadowfit::{FitError, FitState, Scratch, Technique};
 
 use crate::inputs::{Scene, by_coverage, technique};
 use crate::numbers::{ByKind, Numbers};
@@ -15,7 +15,7 @@ const FRAMES: u32 = 6;
 /// Adds the numbers of so many fits.
 pub(crate) fn add(fits: u32, numbers: &mut ByKind) {
     let mut random = Random::new(3);
-    let mut storage = vec![DVec2::ZERO; Workspace::required(64, 8)];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
     let mut done = 0;
     while done < fits {
         // What is refused gives no number.
@@ -39,20 +39,20 @@ fn flight(random: &mut Random, numbers: &mut ByKind, storage: &mut [DVec2]) -> R
     } else {
         &mut numbers.one_map
     };
-    let (mut fitter, mut need) = (MapFitter::new(), None);
+    let (mut fitter, mut demand) = (FitState::new(), None);
     for _ in 0..FRAMES {
-        let grids: Vec<NeedGrid> = need
+        let grids: Vec<DemandGrid> = demand
             .iter()
             .filter(|_| knows_grid)
-            .map(|(space, counts): &(NeedSpace, Vec<u32>)| NeedGrid { space: *space, counts })
+            .map(|(space, counts): &(DemandSpace, Vec<u32>)| DemandGrid { space: *space, counts })
             .collect();
-        let input = shadowfit::FitInput { need: &grids, ..scene.input() };
-        let maps = fitter.fit(&input, &settings, &mut Workspace::new(storage))?;
+        let input = shadowfit::FitInput { demand: &grids, ..scene.input() };
+        let maps = fitter.fit(&input, &settings, &mut Scratch::new(storage))?;
         for map in maps.iter() {
             numbers.map(map);
         }
         if random.once_in(2) {
-            need = Some(points(random, &scene, &settings, numbers)?);
+            demand = Some(points(random, &scene, &settings, numbers)?);
         }
         scene.advance(random)?;
     }
@@ -65,9 +65,9 @@ fn points(
     scene: &Scene,
     settings: &Technique,
     numbers: &mut Numbers,
-) -> Result<(NeedSpace, Vec<u32>), FitError> {
+) -> Result<(DemandSpace, Vec<u32>), FitError> {
     let (view, fit) = (&scene.views[0], &settings.fit);
-    let space = NeedSpace::new(view, scene.direction, fit.up, fit.max_distance)?;
+    let space = DemandSpace::new(view, scene.direction, fit.up, fit.max_distance)?;
     numbers.f32s(&[space.texel, space.cell, space.x.x, space.y.x]);
     let mut counts = vec![0; CELLS];
     for _ in 0..200 {

@@ -7,7 +7,9 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::glam::UVec2;
-use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, SoftRadius, SplitScheme};
+use shadowfit::settings::{
+    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapSelection, SoftRadius, SplitScheme,
+};
 use shadowfit::{Maps, Slices, Technique};
 use shadowfit_egui::Panel;
 use shadowfit_params::tool::{InsetMaps, Settings};
@@ -39,7 +41,7 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
 pub(crate) fn all_rows() -> [Settings; 3] {
     let manual = SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
     let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
-    let by_view_depth = Slices { choice: MapChoice::ViewDepth { overlap: 0.1 }, ..slices(&settings[1]) };
+    let by_view_depth = Slices { selection: MapSelection::ViewDepth { overlap: 0.1 }, ..slices(&settings[1]) };
     settings[1].technique.maps = by_view_depth.into();
     settings[2].technique.maps = settings[2].technique.maps.as_windows().into();
     settings[2].technique.softness.radius = SoftRadius::Metres(0.05);

@@ -32,7 +32,7 @@ fn bar(width: f32) -> Harness<'static, ViewSettings> {
 fn the_bar_has_a_button_for_each_view_that_chooses_it() {
     let mut harness = bar(1280.0);
     let labels =
-        ["Final", "Truth", "Errors", "Pixels per texel", "Maps", "Texel grid", "Need", "Map updates", "Outside"];
+        ["Final", "Truth", "Errors", "Pixels per texel", "Maps", "Texel grid", "Demand", "Map updates", "Outside"];
     for (mode, label) in ViewMode::ALL.into_iter().zip(labels) {
         let name = format!("View: {label}");
         harness.get_by_role_and_label(Role::Button, &name).click();
@@ -61,7 +61,7 @@ fn legends_explain_the_colours_of_their_views() {
         (ViewMode::Final, ErrorMarks::Blink, &["hole 0.02\u{a0}%"]),
         (ViewMode::PixelsPerTexel, ErrorMarks::Off, &["Colours of 1/8 to 8 pixels per texel"]),
         (ViewMode::Maps, ErrorMarks::Off, &["map 1", "map 4"]),
-        (ViewMode::Need, ErrorMarks::Off, &["map 1", "Colours of 1/8 to 8 pixels per texel"]),
+        (ViewMode::Demand, ErrorMarks::Off, &["map 1", "Colours of 1/8 to 8 pixels per texel"]),
         (ViewMode::Updates, ErrorMarks::Off, &["kept", "drawn anew", "moves"]),
     ] {
         let view = ViewSettings { mode, marks, ..ViewSettings::default() };

@@ -41,7 +41,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 id: "windows",
                 label: "Windows",
                 help: "Rectangles on a grid of texels that is fixed to the world, each where it helps most of what is \
-                       visible. They need no splits: sharp, and still when the camera moves or turns.",
+                       visible. They demand no splits: sharp, and still when the camera moves or turns.",
             },
             ChoiceOption {
                 id: "oriented",
@@ -235,7 +235,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "At what is covered: casters before it are lost, which leaves holes, as in the XNA sample.",
             },
         ]),
-        field: choice!(technique.fit.casters: CasterPolicy [List, Extend, SceneBounds, DepthClamp, None]),
+        field: choice!(technique.fit.casters: CasterPolicy [PerObject, Extend, SceneBounds, DepthClamp, None]),
         inert: |s| {
             (kind(s) == Some(FitKind::XnaSample))
                 .then_some("The XNA sample's fit takes no account of casters; choose another fit.")
@@ -254,7 +254,7 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: |s| match (kind(s), s.technique.fit.casters) {
             (Some(FitKind::XnaSample), _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
             (_, CasterPolicy::Extend) => None,
-            (_, CasterPolicy::List | CasterPolicy::SceneBounds) => {
+            (_, CasterPolicy::PerObject | CasterPolicy::SceneBounds) => {
                 Some("The objects place the near plane where they are known; set Casters to By extension.")
             }
             _ => Some("The near plane is placed by something else; set Casters to By extension."),

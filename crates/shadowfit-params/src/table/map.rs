@@ -81,7 +81,7 @@ pub(super) const ROWS: &[Parameter] = &[
         label: "Format",
         unit: "",
         help: "The texture format that stores the depths. Those with 32 bits give the same shadows; coarser ones take less \
-           memory, and need a larger bias (Depth steps). Colour formats are compared in the shader, as the XNA sample \
+           memory, and demand a larger bias (Depth steps). Colour formats are compared in the shader, as the XNA sample \
            does.",
         kind: Kind::Choice(&[
             ChoiceOption {

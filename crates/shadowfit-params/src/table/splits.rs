@@ -1,6 +1,6 @@
 //! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
-use shadowfit::settings::{MAX_MAPS, MapChoice, SplitScheme};
+use shadowfit::settings::{MAX_MAPS, MapSelection, SplitScheme};
 use shadowfit::{Maps, Slices, Windows};
 
 use super::always_active;
@@ -144,12 +144,12 @@ pub(super) const ROWS: &[Parameter] = &[
             },
         ]),
         field: Field {
-            get: |s| Some(Value::Option(usize::from(!slices(s)?.choice.is_by_coverage()))),
+            get: |s| Some(Value::Option(usize::from(!slices(s)?.selection.is_by_coverage()))),
             set: |s, value| {
-                let Maps::Slices(Slices { choice, .. }) = &mut s.technique.maps else { return };
+                let Maps::Slices(Slices { selection: choice, .. }) = &mut s.technique.maps else { return };
                 *choice = match (value, *choice) {
-                    (Value::Option(0), MapChoice::ViewDepth { .. }) => MapChoice::default(),
-                    (Value::Option(1), MapChoice::Coverage { .. }) => MapChoice::ViewDepth { overlap: 0.0 },
+                    (Value::Option(0), MapSelection::ViewDepth { .. }) => MapSelection::default(),
+                    (Value::Option(1), MapSelection::Coverage { .. }) => MapSelection::ViewDepth { overlap: 0.0 },
                     (_, choice) => choice,
                 };
             },
@@ -171,18 +171,18 @@ pub(super) const ROWS: &[Parameter] = &[
            hides the line between two maps; 0 turns it off.",
         kind: Kind::Number(Number {
             min: 0.0,
-            max: MapChoice::MAX_BLEND as f64,
+            max: MapSelection::MAX_BLEND as f64,
             step: 1.0,
             logarithmic: false,
             decimals: 1,
             unset: None,
         }),
         field: field!(technique.maps, Maps::Windows(Windows { blend, .. })
-            | Maps::Slices(Slices { choice: MapChoice::Coverage { blend }, .. }) => blend),
-        inert: |s| match s.technique.maps.choice() {
+            | Maps::Slices(Slices { selection: MapSelection::Coverage { blend }, .. }) => blend),
+        inert: |s| match s.technique.maps.selection() {
             _ if s.technique.maps.count() < 2 => Some("One map is blended into none; raise the number of maps."),
-            MapChoice::Coverage { .. } => None,
-            MapChoice::ViewDepth { .. } => Some(
+            MapSelection::Coverage { .. } => None,
+            MapSelection::ViewDepth { .. } => Some(
                 "Maps that are read by view depth are blended over the overlap; set Choice to By coverage (splits.choice = \
              coverage).",
             ),
@@ -196,11 +196,11 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
            them. It hides the line between two maps, and costs a little of their sharpness.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
-        field: field!(technique.maps, Maps::Slices(Slices { choice: MapChoice::ViewDepth { overlap }, .. }) => overlap),
+        field: field!(technique.maps, Maps::Slices(Slices { selection: MapSelection::ViewDepth { overlap }, .. }) => overlap),
         inert: |s| match s.technique.maps {
             Maps::Windows(_) => Some("Windows are blended toward their borders, over the blend; choose another fit."),
             Maps::One(_) => Some("One map overlaps with none; raise the number of maps."),
-            Maps::Slices(Slices { choice: MapChoice::Coverage { .. }, .. }) => Some(
+            Maps::Slices(Slices { selection: MapSelection::Coverage { .. }, .. }) => Some(
                 "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \
              = view_depth).",
             ),

@@ -1,6 +1,6 @@
 //! The rows of the stabilisation.
 
-use shadowfit::settings::{HoldSettings, Stabilise};
+use shadowfit::settings::{Hysteresis, Stabilise};
 use shadowfit::{Maps, OneMap, Slices, Windows};
 
 use crate::field::{Field, code, field};
@@ -48,11 +48,11 @@ pub(super) const ROWS: &[Parameter] = &[
             },
             set: |s, value| {
                 let Some(now) = stabilise(s) else { return };
-                let waste = now.waste();
+                let max_waste = now.max_waste();
                 s.technique.maps = s.technique.maps.with_stabilise(match (value, now) {
                     (Value::Option(0), Stabilise::Hysteresis(_)) => now,
-                    (Value::Option(0), _) => Stabilise::Hysteresis(HoldSettings::default().with_waste(waste)),
-                    (Value::Option(1), _) => Stabilise::Snap { waste },
+                    (Value::Option(0), _) => Stabilise::Hysteresis(Hysteresis::default().with_max_waste(max_waste)),
+                    (Value::Option(1), _) => Stabilise::Snap { max_waste },
                     _ => Stabilise::Off,
                 });
             },
@@ -80,7 +80,7 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "A new map also covers what the camera will see if it goes on moving as it does, as far ahead as makes the \
            map wider by this factor at most.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
-        field: held!(growth),
+        field: held!(max_growth),
         inert: only_held,
     },
     Parameter {
@@ -91,13 +91,13 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
            the depths of windows are likewise. Lower is sharper, higher is calmer.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.maps, Maps::Windows(Windows { depth_waste: waste, .. })
+        field: field!(technique.maps, Maps::Windows(Windows { max_depth_waste: max_waste, .. })
             | Maps::Slices(Slices {
-                stabilise: Stabilise::Snap { waste } | Stabilise::Hysteresis(HoldSettings { waste, .. }), ..
+                stabilise: Stabilise::Snap { max_waste } | Stabilise::Hysteresis(Hysteresis { max_waste, .. }), ..
             })
             | Maps::One(OneMap {
-                stabilise: Stabilise::Snap { waste } | Stabilise::Hysteresis(HoldSettings { waste, .. }), ..
-            }) => waste),
+                stabilise: Stabilise::Snap { max_waste } | Stabilise::Hysteresis(Hysteresis { max_waste, .. }), ..
+            }) => max_waste),
         inert: |s| {
             (stabilise(s) == Some(Stabilise::Off)).then_some("Nothing is kept from frame to frame; turn on Stabilise.")
         },
@@ -109,7 +109,7 @@ pub(super) const ROWS: &[Parameter] = &[
         unit: "frames",
         help: "How many frames of the camera's motion a new map looks ahead at most.",
         kind: Kind::Number(Number { min: 0.0, max: 1_000.0, step: 1.0, logarithmic: true, decimals: 0, unset: None }),
-        field: held!(horizon),
+        field: held!(look_ahead),
         inert: only_held,
     },
 ];

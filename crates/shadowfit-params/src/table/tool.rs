@@ -177,7 +177,7 @@ pub(super) const ROWS: &[Parameter] = &[
             },
             ChoiceOption {
                 id: "need",
-                label: "Need",
+                label: "Demand",
                 help: "The scene as the light sees it: where the picture asks for how fine a texel, and the maps laid \
                        over it.",
             },

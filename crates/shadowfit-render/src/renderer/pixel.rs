@@ -59,7 +59,7 @@ impl Renderer {
         let texture = bindings::plain_texture(&gpu.device, "texels", [side; 2], BLOCK_FORMAT, usage);
         let view = texture.create_view(&Default::default());
         let uniform = bindings::uniform_buffer::<BlockUniform>(&gpu.device, "texels");
-        let last = self.sun.maps()[block.map].fit.resolution.as_ivec2() - 1;
+        let last = self.sun.maps()[block.map].projection.resolution.as_ivec2() - 1;
         let reach = (side / 2).cast_signed();
         let first = block.texel.map(|texel| texel.saturating_sub(reach));
         let data = BlockUniform { first, last: last.to_array(), map: block.map as u32, ..BlockUniform::default() };

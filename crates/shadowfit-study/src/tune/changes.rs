@@ -1,6 +1,6 @@
 //! The changes that a search tries, one at a time, in rounds: those that matter most come first.
 
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, HoldSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, Hysteresis, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{Maps, Technique};
 
 use super::TuneScope;
@@ -121,13 +121,13 @@ fn counts(most: u32) -> Vec<Change> {
 }
 
 fn stillness() -> Vec<Change> {
-    let held = HoldSettings::default();
+    let held = Hysteresis::default();
     let modes = [
         ("maps fitted anew in each frame", Stabilise::Off),
-        ("maps on a grid of whole texels", Stabilise::Snap { waste: held.waste }),
+        ("maps on a grid of whole texels", Stabilise::Snap { max_waste: held.max_waste }),
         ("maps held from frame to frame", Stabilise::Hysteresis(held)),
-        ("maps held longer", Stabilise::Hysteresis(held.with_waste(3.0))),
-        ("maps held for a shorter time", Stabilise::Hysteresis(held.with_waste(1.3).with_growth(1.2))),
+        ("maps held longer", Stabilise::Hysteresis(held.with_max_waste(3.0))),
+        ("maps held for a shorter time", Stabilise::Hysteresis(held.with_max_waste(1.3).with_max_growth(1.2))),
     ];
     let change = |(what, stabilise)| {
         Change::to_maps(what, move |maps| match maps {

@@ -11,7 +11,7 @@
 
 use glam::{DVec2, DVec3};
 use shadowfit::bias::MIN_COSINE;
-use shadowfit::{DepthConvention, FittedMap, LightFit};
+use shadowfit::{DepthConvention, FittedMap, LightProjection};
 use shadowfit_truth::{MeasuredMap, Tracer, TruthPoint};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -26,7 +26,7 @@ const MOST_TEXELS: f64 = 32.0;
 /// A point's look-up in a map. Positions are relative to the origin of the rays, in metres; depths are metres from the
 /// near plane along the light.
 pub(super) struct LookUp<'a> {
-    pub(super) fit: &'a LightFit,
+    pub(super) fit: &'a LightProjection,
     /// Where it is looked up, in texels from the left and from the top.
     pub(super) texel: DVec2,
     /// Depth of the point itself.
@@ -73,7 +73,7 @@ impl<'a> LookUp<'a> {
         descriptor: &ShadowMapDescriptor,
         point: &TruthPoint,
     ) -> Option<Self> {
-        let fit = &map.fit;
+        let fit = &map.projection;
         let plane = map.bias.on_plane(fit, point.normal.as_vec3()).ok()?;
         let (offset, range) = (f64::from(plane.offset), f64::from(fit.depth_range));
         let looked_up = measured.project(point.position + point.normal * offset);

@@ -86,7 +86,7 @@ fn blended(read: &MapRead) -> String {
 
 /// Why a point does not read a map alone: "map 1 ends 3.1 m to the left of it".
 pub(super) fn miss(at: &At<'_>, map: usize) -> String {
-    let (number_of, fit) = (map + 1, &at.input.maps[map].fit);
+    let (number_of, fit) = (map + 1, &at.input.maps[map].projection);
     let measured = &at.maps.maps[map];
     let position = measured.project(at.point.position);
     let way = way_beside(at, map, at.point.position);
@@ -113,7 +113,7 @@ fn free_texels(at: &At<'_>, map: usize) -> f64 {
 
 /// The way from a point to the nearest side of a map, across the light, in metres; zero within the sides.
 pub(super) fn way_beside(at: &At<'_>, map: usize, point: DVec3) -> DVec3 {
-    let (measured, fit) = (&at.maps.maps[map], &at.input.maps[map].fit);
+    let (measured, fit) = (&at.maps.maps[map], &at.input.maps[map].projection);
     let texel = measured.project(point).texel;
     let way = texel.clamp(DVec2::ZERO, measured.size) - texel;
     let [x, y] = [0, 1].map(|row| fit.light_from_world.row(row).truncate().as_dvec3());
@@ -123,6 +123,6 @@ pub(super) fn way_beside(at: &At<'_>, map: usize, point: DVec3) -> DVec3 {
 /// How far the point is from a map, in metres, across the light or along it.
 fn beyond(at: &At<'_>, map: usize) -> f64 {
     let depth = at.maps.maps[map].project(at.point.position).depth;
-    let along = (depth - depth.clamp(0.0, 1.0)).abs() * f64::from(at.input.maps[map].fit.depth_range);
+    let along = (depth - depth.clamp(0.0, 1.0)).abs() * f64::from(at.input.maps[map].projection.depth_range);
     way_beside(at, map, at.point.position).length().max(along)
 }

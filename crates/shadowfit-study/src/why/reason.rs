@@ -74,7 +74,7 @@ fn hole(at: &At<'_>) -> String {
             _ => format!("no map holds it, and so it cannot be shadowed by {}", nearest(at)),
         };
     };
-    let range = f64::from(at.input.maps[map].fit.depth_range);
+    let range = f64::from(at.input.maps[map].projection.depth_range);
     let occluders = at.occluders();
     let way = |occluder: &Occluder| way_beside(at, map, occluder.position).length();
     let before = |occluder: &Occluder| -at.maps.maps[map].project(occluder.position).depth * range;

@@ -2,8 +2,8 @@
 //! asked about, and the light falls straight down unless a test says otherwise.
 
 use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
-use shadowfit::settings::{FilterKind, MapChoice};
-use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera};
+use shadowfit::settings::{FilterKind, MapSelection};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, PerspectiveCamera};
 use shadowfit_scene::builtin::default_scene;
 
 use super::*;
@@ -52,7 +52,7 @@ fn map(centre: DVec3, direction: Vec3, width: f64, before: f64, texels: u32) -> 
     let (travel, half) = (direction.as_dvec3(), width * 0.5);
     let light_from_world = look_to_mat4(centre - travel * before, travel, DVec3::NEG_Z);
     let clip_from_world = orthographic(-half, half, -half, half, 0.0, RANGE) * light_from_world;
-    let fit = LightFit::from_clip_from_world(&clip_from_world, direction, glam::UVec2::splat(texels), centre);
+    let fit = LightProjection::from_clip_from_world(&clip_from_world, direction, glam::UVec2::splat(texels), centre);
     FittedMap::new(fit.expect("an orthographic map"), constant(1e-4))
 }
 
@@ -62,7 +62,7 @@ impl Default for Court {
         let technique = Technique::default().with_filter(FilterKind::Point);
         let descriptor = ShadowMapDescriptor {
             maps: 1,
-            choice: MapChoice::Coverage { blend: 0.0 },
+            selection: MapSelection::Coverage { blend: 0.0 },
             depth: DepthConvention::ZeroToOne,
             ..ShadowMapDescriptor::from(&technique)
         };
@@ -348,7 +348,7 @@ fn the_map_by_coverage_is_the_finest_and_the_reason_says_where_the_finer_one_end
         let court = Court::default();
         Court {
             maps,
-            descriptor: ShadowMapDescriptor { choice: MapChoice::Coverage { blend }, ..court.descriptor },
+            descriptor: ShadowMapDescriptor { selection: MapSelection::Coverage { blend }, ..court.descriptor },
             ..court
         }
         .why()
@@ -406,7 +406,8 @@ fn the_map_by_view_depth_is_that_of_its_range() {
     let slices = [wide(10.0, f32::MAX), wide(28.0, 10.0), wide(77.0, 28.0), wide(f32::MAX, 77.0)];
     let reason = |depth: f64, maps: &[FittedMap]| {
         let court = Court { eye: DVec3::new(0.0, 0.6, 0.8) * depth, maps: maps.to_vec(), ..Court::default() };
-        let descriptor = ShadowMapDescriptor { choice: MapChoice::ViewDepth { overlap: 0.0 }, ..court.descriptor };
+        let descriptor =
+            ShadowMapDescriptor { selection: MapSelection::ViewDepth { overlap: 0.0 }, ..court.descriptor };
         Court { descriptor, ..court }.why().map_reason
     };
     let mut narrow = slices;
@@ -453,11 +454,16 @@ fn numbers_are_those_of_the_look_up_in_plain_and_in_reversed_depth() {
             -glam::DVec4::Z,
             glam::DVec4::new(0.0, 0.0, 1.0, 1.0),
         );
-        let clip = flip * map.fit.clip_from_world.as_dmat4();
-        map.fit =
-            LightFit::from_clip_from_world(&clip, map.fit.direction, map.fit.resolution, DVec3::ZERO).expect("a map");
+        let clip = flip * map.projection.clip_from_world.as_dmat4();
+        map.projection = LightProjection::from_clip_from_world(
+            &clip,
+            map.projection.direction,
+            map.projection.resolution,
+            DVec3::ZERO,
+        )
+        .expect("a map");
     }
-    assert_eq!(reversed.maps[0].fit.depth, DepthConvention::Reversed);
+    assert_eq!(reversed.maps[0].projection.depth, DepthConvention::Reversed);
     let why = reversed.why();
     assert!(near(why.compared_metres, 9.9) && near(why.compared, 0.505) && near(why.stored, 0.67), "{why:?}");
     assert_eq!(why.class, Class::Right);

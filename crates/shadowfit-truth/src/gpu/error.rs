@@ -13,7 +13,7 @@ pub enum GpuTruthError {
     AlphaTest,
     /// A buffer would be larger than the device allows.
     #[error(
-        "{what} need {bytes} bytes in one buffer, and the device allows {limit}: use fewer of them, or ask the \
+        "{what} demand {bytes} bytes in one buffer, and the device allows {limit}: use fewer of them, or ask the \
          adapter for a device with higher `max_storage_buffer_binding_size` and `max_buffer_size`"
     )]
     TooLarge {

@@ -9,7 +9,7 @@ use super::measured::{MapPosition, MeasuredMap};
 const OCCLUDER_DEPTH_TOLERANCE: f64 = 1e-6;
 
 /// A map that a point reads, and where the point lies in it.
-pub(crate) struct MapChoice<'a> {
+pub(crate) struct MapSelection<'a> {
     pub(crate) index: usize,
     pub(crate) map: &'a MeasuredMap,
     pub(crate) position: MapPosition,
@@ -17,10 +17,10 @@ pub(crate) struct MapChoice<'a> {
 
 /// The choice of fit files: the first map whose split is beyond the point's view depth; where that one does not hold the
 /// point, the next later one that does. `None` where no such map holds it.
-pub(crate) fn choose(maps: &[MeasuredMap], view_depth: f64, point: DVec3) -> Option<MapChoice<'_>> {
+pub(crate) fn choose(maps: &[MeasuredMap], view_depth: f64, point: DVec3) -> Option<MapSelection<'_>> {
     maps.iter().enumerate().skip_while(|(_, map)| view_depth >= map.split_far).find_map(|(index, map)| {
         let position = map.project(point);
-        map.is_inside(&position).then_some(MapChoice { index, map, position })
+        map.is_inside(&position).then_some(MapSelection { index, map, position })
     })
 }
 
@@ -35,7 +35,7 @@ pub(crate) enum OccluderPlace {
     Inside,
 }
 
-impl MapChoice<'_> {
+impl MapSelection<'_> {
     /// Where an occluder of the point, world space, lies.
     pub(crate) fn occluder(&self, occluder: DVec3) -> OccluderPlace {
         let position = self.map.project(occluder);

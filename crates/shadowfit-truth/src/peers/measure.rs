@@ -6,7 +6,7 @@ use super::cells::Cells;
 use super::scenarios::Frame;
 use super::tally::{Kept, Shimmer, Tally};
 use super::visible::{VisiblePoint, VisiblePoints};
-use crate::maps::{MIN_FACING, MapChoice, MapGradients, MeasuredMap, OccluderPlace, choose, pixels_per_texel};
+use crate::maps::{MIN_FACING, MapGradients, MapSelection, MeasuredMap, OccluderPlace, choose, pixels_per_texel};
 
 /// Every 23rd visible point is looked up in the frame before. It shares no factor with the 320 rays of
 /// a row, so that points in all columns are.
@@ -61,7 +61,7 @@ fn add_occluders(
     visible: &VisiblePoints,
     frame: &FrameMaps,
     point: &VisiblePoint,
-    choice: &MapChoice,
+    choice: &MapSelection,
 ) {
     if point.occluders.is_empty() {
         return;
@@ -83,7 +83,7 @@ fn add_occluders(
     tally.lost += u64::from(!(if frame.depth_clamp { is_drawn } else { is_in }));
 }
 
-fn add_pixels_per_texel(tally: &mut Tally, point: &VisiblePoint, choice: &MapChoice, jacobian: [DVec2; 2]) {
+fn add_pixels_per_texel(tally: &mut Tally, point: &VisiblePoint, choice: &MapSelection, jacobian: [DVec2; 2]) {
     if point.facing < MIN_FACING {
         return;
     }
@@ -112,7 +112,7 @@ impl Movement {
 /// How a point moved in the map that it reads; `None` where that map did not hold it in the frame before.
 fn movement(
     point: &VisiblePoint,
-    (choice, gradients): (&MapChoice, &MapGradients),
+    (choice, gradients): (&MapSelection, &MapGradients),
     previous: &[MeasuredMap],
 ) -> Option<Movement> {
     let then = previous.get(choice.index)?;

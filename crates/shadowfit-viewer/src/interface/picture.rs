@@ -215,8 +215,8 @@ fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     let note = match view.mode {
         ViewMode::Final if !view.shadows => "Shadows are off",
         // Other techniques place their maps without counting visible points.
-        ViewMode::Need if !stage.settings.inputs.tell(&stage.settings.technique) => {
-            "These fits are not told of the need"
+        ViewMode::Demand if !stage.settings.inputs.tell(&stage.settings.technique) => {
+            "These fits are not told of the demand"
         }
         _ => return,
     };

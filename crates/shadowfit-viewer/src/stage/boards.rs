@@ -51,12 +51,12 @@ impl Boards {
         let insets = maps.iter().enumerate().map(|(index, map)| {
             let (column, row) = (index % columns, index / columns);
             let corner = [left + column as f32 * (side + gap), top + row as f32 * (side + gap)].map(f32::round);
-            let depth_range = depth_range.or_else(|| depths(&map.fit, bounds)).unwrap_or([0.0, 1.0]);
-            let resolution = map.fit.resolution.as_vec2();
+            let depth_range = depth_range.or_else(|| depths(&map.projection, bounds)).unwrap_or([0.0, 1.0]);
+            let resolution = map.projection.resolution.as_vec2();
             let [w, h] = (resolution / resolution.max_element() * side).to_array();
             Inset { rectangle: [corner[0], corner[1], w, h], depth_range, map: index as u32, border: tint(index) }
         });
-        let sizes = maps.iter().map(|map| map.fit.resolution.as_vec2().to_array()).collect();
+        let sizes = maps.iter().map(|map| map.projection.resolution.as_vec2().to_array()).collect();
         Self { insets: insets.collect(), sizes, size: [width, height] }
     }
 

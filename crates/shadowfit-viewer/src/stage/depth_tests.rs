@@ -1,7 +1,7 @@
 //! What windows are told of the pictures before: rays and depth buffers agree.
 
 use shadowfit::Windows;
-use shadowfit::demand::{LEVELS, NeedGrid};
+use shadowfit::demand::{DemandGrid, LEVELS};
 use shadowfit_render::RenderTarget;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
@@ -9,7 +9,7 @@ use shadowfit_scene::builtin::default_scene;
 use super::*;
 
 /// Shares of the points in each octave of texels.
-fn shares(grid: &NeedGrid<'_>) -> Vec<f64> {
+fn shares(grid: &DemandGrid<'_>) -> Vec<f64> {
     let total: u32 = grid.counts.iter().sum();
     let levels = grid.counts.chunks(grid.counts.len() / LEVELS);
     levels.map(|level| f64::from(level.iter().sum::<u32>()) / f64::from(total)).collect()
@@ -19,7 +19,7 @@ fn shares(grid: &NeedGrid<'_>) -> Vec<f64> {
 fn told(stage: &Stage) -> (bool, Vec<f64>) {
     let seen = stage.side.sun().fitter().seen().expect("windows are told");
     // Rays are far fewer than a picture's points.
-    (seen.need().counts.iter().sum::<u32>() > 2500, shares(&seen.need()))
+    (seen.demand().counts.iter().sum::<u32>() > 2500, shares(&seen.demand()))
 }
 
 fn draw(stage: &mut Stage, target: &RenderTarget) {

@@ -1,7 +1,7 @@
 //! The live figures of the stage's frames.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{DepthConvention, LightFit, PerspectiveCamera, diagnostics};
+use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera, diagnostics};
 use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 
 use super::Stage;
@@ -68,20 +68,20 @@ impl Stage {
         let normal = rays.tracer.normal(hit.triangle);
         let point = camera.forward * hit.distance;
         let map = fitted.read_at(camera.eye + DVec3::from(point))?;
-        Some((map, pixels_per_texel(&fitted.maps[map].fit, &camera, size, point, normal)))
+        Some((map, pixels_per_texel(&fitted.maps[map].projection, &camera, size, point, normal)))
     }
 }
 
 /// Share of a map's area outside the part of the view that it is made for; `None` for a map without such a part.
 fn waste(fitted: &Fitted, map: usize) -> Option<f32> {
     let slice = fitted.slice(map)?;
-    let fit = fitted.maps.get(map)?.fit.relative_to(slice.origin);
+    let fit = fitted.maps.get(map)?.projection.relative_to(slice.origin);
     diagnostics::share_of_map(&fit, &slice.corners).ok().map(|share| 1.0 - share.min(1.0))
 }
 
 /// Pixels per texel along the worse axis at a point relative to the eye.
 fn pixels_per_texel(
-    fit: &LightFit,
+    fit: &LightProjection,
     camera: &PerspectiveCamera,
     size: [u32; 2],
     point: Vec3,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{Aabb, FittedMap, LightFit};
+use shadowfit::{Aabb, FittedMap, LightProjection};
 use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::Inset;
 
@@ -39,7 +39,7 @@ pub(super) fn insets(
     let inset = |(place, index): (usize, usize)| {
         let map: &FittedMap = maps.get(index)?;
         let top = picture[1] - (place + 1) as f32 * (height + margin);
-        let depth_range = depth_range.or_else(|| depths(&map.fit, bounds)).unwrap_or([0.0, 1.0]);
+        let depth_range = depth_range.or_else(|| depths(&map.projection, bounds)).unwrap_or([0.0, 1.0]);
         Some(Inset {
             rectangle: [left as f32 + margin, top, width, height],
             depth_range,
@@ -56,7 +56,7 @@ pub(super) fn tint(map: usize) -> Vec3 {
 }
 
 /// Least and greatest depth of the scene's box within a map: a window is deep, and the scene fills little of it.
-pub(super) fn depths(fit: &LightFit, bounds: &Aabb) -> Option<[f32; 2]> {
+pub(super) fn depths(fit: &LightProjection, bounds: &Aabb) -> Option<[f32; 2]> {
     let world_from_uv = fit.uv_from_world.inverse();
     let [min, max] = [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - fit.origin).as_vec3());
     let place = |line: u8| f32::from(line) / f32::from(LINES - 1);
@@ -108,7 +108,7 @@ mod tests {
             [0.5, 0.5, 0.8, 1.0],
         ]);
         let origin = DVec3::new(100.0, 50.0, 0.0);
-        let fit = LightFit { origin, uv_from_world, ..LightFit::default() };
+        let fit = LightProjection { origin, uv_from_world, ..LightProjection::default() };
         let bounds = Aabb::new(Vec3::new(60.0, 50.0, -40.0), Vec3::new(140.0, 54.0, 40.0));
         let [low, high] = depths(&fit, &bounds).expect("the map lies over the scene");
         assert!((low - 0.4).abs() < 1e-5 && (high - 0.8).abs() < 1e-5, "{low} to {high}");

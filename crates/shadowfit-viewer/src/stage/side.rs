@@ -1,7 +1,7 @@
 //! A technique on the stage: its maps, its renderer, and the judge of its pictures.
 
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
+use shadowfit::{DepthConvention, FittedMap, LightProjection, PerspectiveCamera, Seen, Technique};
 use shadowfit_params::Inputs;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
@@ -10,7 +10,7 @@ use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadows
 
 use super::live::Live;
 use super::shot::Shot;
-use super::{boards, inset, need_view};
+use super::{boards, demand_view, inset};
 use crate::fitted::Fitted;
 use crate::outside;
 
@@ -57,7 +57,7 @@ impl Side {
     /// are still used where the GPU cannot count, and for the first view after a cut. Static casters are kept in the
     /// shadow maps, too.
     pub(super) fn follow(&mut self) {
-        self.sun_mut().set_keeps(true);
+        self.sun_mut().set_caching(true);
         self.follows = true;
     }
 
@@ -72,7 +72,7 @@ impl Side {
 
     /// Whether visible points are counted in depth buffers.
     fn reads_depths(&self) -> bool {
-        self.follows && self.sun().can_record_need()
+        self.follows && self.sun().can_record_demand()
     }
 
     /// Forgets all frames, for another scene.
@@ -133,8 +133,8 @@ impl Side {
     fn holds(&self, fitted: &Fitted) -> bool {
         let map = self.evaluator.renderer.shadow_map().descriptor();
         let fits_into_a_layer =
-            |fit: &LightFit| fit.resolution.cmple(map.resolution.into()).all() && fit.depth == map.depth;
-        fitted.maps.len() <= map.maps as usize && fitted.maps.iter().all(|map| fits_into_a_layer(&map.fit))
+            |fit: &LightProjection| fit.resolution.cmple(map.resolution.into()).all() && fit.depth == map.depth;
+        fitted.maps.len() <= map.maps as usize && fitted.maps.iter().all(|map| fits_into_a_layer(&map.projection))
     }
 
     /// The technique of the settings, with its shadow map recreated as needed. Where that is impossible, the old one
@@ -153,7 +153,7 @@ impl Side {
             let fit = &mut technique.fit;
             (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
             if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {
-                fit.casters = CasterPolicy::List;
+                fit.casters = CasterPolicy::PerObject;
             }
         }
         technique
@@ -168,7 +168,7 @@ impl Side {
         let depth = DepthConvention::Reversed;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let clip_from_world = camera.clip_from_world(depth);
-        let recorded = self.sun_mut().record_need(&mut encoder, target.depth_view(), clip_from_world, depth);
+        let recorded = self.sun_mut().record_demand(&mut encoder, target.depth_view(), clip_from_world, depth);
         // A camera that shows nothing has no maps either; the fit reports that.
         if recorded == Ok(true) {
             gpu.submit([encoder.finish()]);
@@ -194,11 +194,11 @@ impl Side {
         }
         match shot.settings.view.mode {
             ViewMode::Outside => self.draw_outside(shot, (&fitted, &maps, false), target),
-            ViewMode::Need => self.draw_need(shot, &fitted, &maps, target),
+            ViewMode::Demand => self.draw_demand(shot, &fitted, &maps, target),
             ViewMode::Updates => self.draw_boards(shot, (&view, &maps, maps_stay), target),
             mode => self.draw_view(shot, &view, &maps, (Overlay::of(mode), maps_stay), target),
         }
-        if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
+        if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Demand) {
             self.unread = Some(view.camera);
             self.evaluator.note_view(&view, &maps);
         }
@@ -288,15 +288,15 @@ impl Side {
         self.take_statistics(drawn);
     }
 
-    /// Draws the scene from the light's direction, with the grid of need and the outlines of the maps.
-    fn draw_need(&mut self, shot: &mut Shot<'_>, fitted: &Fitted, maps: &[FittedMap], target: &RenderTarget) {
+    /// Draws the scene from the light's direction, with the demand grid and the outlines of the maps.
+    fn draw_demand(&mut self, shot: &mut Shot<'_>, fitted: &Fitted, maps: &[FittedMap], target: &RenderTarget) {
         let shown = shot.settings.view.inset_index(maps.len() as u32);
-        let Some(from_light) = need_view::FromLight::new(fitted, shown, shot.scene.bounds(), target.size) else {
+        let Some(from_light) = demand_view::FromLight::new(fitted, shown, shot.scene.bounds(), target.size) else {
             return self.draw_view(shot, &shot.view(), maps, (Overlay::None, false), target);
         };
-        let need = self.sun().fitter().seen().map(Seen::need);
-        let quads = need_view::quads(&from_light, fitted, need);
-        let lines = need_view::lines(fitted);
+        let demand = self.sun().fitter().seen().map(Seen::demand);
+        let quads = demand_view::quads(&from_light, fitted, demand);
+        let lines = demand_view::lines(fitted);
         let view = View { camera: fitted.camera.unwrap_or(shot.camera), ..shot.view() };
         // No haze between the light and the scene.
         let atmosphere = atmosphere(f32::MAX);

@@ -110,7 +110,7 @@ pub(super) struct Drawing<'a> {
 impl Drawing<'_> {
     /// Adds the map's passes, and updates the content of its layers.
     pub(super) fn plan(&self, map: &mut KeptMap, decision: &Decision, plan: &mut FramePlan) {
-        let size = self.fitted.fit.resolution;
+        let size = self.fitted.projection.resolution;
         match decision {
             Decision::Wait => return,
             Decision::DrawAnew => {
@@ -158,7 +158,7 @@ impl Drawing<'_> {
         let layer = if self.is_split { Layer::Static } else { Layer::Shown };
         let piece = plan.pieces.len();
         let first_rect = plan.rects.len();
-        let size = self.fitted.fit.resolution;
+        let size = self.fitted.projection.resolution;
         let whole = [self.whole()];
         let parts: Vec<StoredRect> = rects.unwrap_or(&whole).iter().flat_map(|rect| rect.stored(wrap, size)).collect();
         for parts in parts.chunks(VOLUMES) {
@@ -194,7 +194,7 @@ impl Drawing<'_> {
         if !self.is_split {
             return;
         }
-        let size = self.fitted.fit.resolution;
+        let size = self.fitted.projection.resolution;
         let (piece, first_rect, first_box, first_view) =
             (plan.pieces.len(), plan.rects.len(), plan.boxes.len(), plan.views.len());
         if map.is_shown {
@@ -255,27 +255,27 @@ impl Drawing<'_> {
 
     /// Casters that can shadow something in view; all where these are not known.
     fn in_view(&self) -> CasterVolume {
-        self.in_view.copied().unwrap_or(CasterVolume::everywhere(self.fitted.fit.origin))
+        self.in_view.copied().unwrap_or(CasterVolume::everywhere(self.fitted.projection.origin))
     }
 
     /// All texels of the map.
     fn whole(&self) -> TexelRect {
-        TexelRect::all(self.fitted.fit.resolution)
+        TexelRect::all(self.fitted.projection.resolution)
     }
 
     /// All casters over a part of the map.
     fn volume(&self, part: TexelRect) -> CasterVolume {
         if self.settings.culling == Culling::Off {
-            return CasterVolume::everywhere(self.fitted.fit.origin);
+            return CasterVolume::everywhere(self.fitted.projection.origin);
         }
         let casters = if self.settings.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
-        CasterVolume::of_part(&self.fitted.fit, casters, part)
+        CasterVolume::of_part(&self.fitted.projection, casters, part)
     }
 
     /// The box within which a caster that moved may have been drawn, relative to the shaders' origin.
     fn mended(&self, moved: &WorldBox) -> Aabb {
         let aabb = moved.relative_to(self.origin);
-        let around = MENDED_AROUND * self.fitted.fit.texel_size.max_element();
+        let around = MENDED_AROUND * self.fitted.projection.texel_size.max_element();
         Aabb::new(aabb.min - around, aabb.max + around)
     }
 
@@ -290,7 +290,7 @@ impl Drawing<'_> {
             mended_boxes: 0..0,
             pieces: first_piece..plan.pieces.len(),
             views: 0..0,
-            size: self.fitted.fit.resolution,
+            size: self.fitted.projection.resolution,
         });
     }
 }

@@ -5,7 +5,7 @@ use core::fmt;
 use shadowfit::FitError;
 
 use crate::ShadowMapError;
-use crate::need::NeedPassError;
+use crate::demand::DemandPassError;
 
 /// Why a call of [`SunShadows`](crate::SunShadows) failed.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub enum SunShadowsError {
     /// The maps cannot be made, or cannot hold the fits.
     Map(ShadowMapError),
     /// The depth buffer cannot be read.
-    Need(NeedPassError),
+    Demand(DemandPassError),
     /// No frame was fitted yet.
     NoFrame,
 }
@@ -25,7 +25,7 @@ impl fmt::Display for SunShadowsError {
         match self {
             Self::Fit(error) => write!(f, "the sun's shadows cannot be fitted: {error}"),
             Self::Map(error) => write!(f, "the sun's shadow maps: {error}"),
-            Self::Need(error) => write!(f, "what the picture shows cannot be counted: {error}"),
+            Self::Demand(error) => write!(f, "what the picture shows cannot be counted: {error}"),
             Self::NoFrame => f.write_str("the sun's shadows have no frame yet: call update first"),
         }
     }
@@ -36,7 +36,7 @@ impl core::error::Error for SunShadowsError {
         match self {
             Self::Fit(error) => Some(error),
             Self::Map(error) => Some(error),
-            Self::Need(error) => Some(error),
+            Self::Demand(error) => Some(error),
             Self::NoFrame => None,
         }
     }
@@ -54,8 +54,8 @@ impl From<ShadowMapError> for SunShadowsError {
     }
 }
 
-impl From<NeedPassError> for SunShadowsError {
-    fn from(error: NeedPassError) -> Self {
-        Self::Need(error)
+impl From<DemandPassError> for SunShadowsError {
+    fn from(error: DemandPassError) -> Self {
+        Self::Demand(error)
     }
 }

@@ -84,7 +84,7 @@ pub(crate) const UNIT: f64 = 1.0 / 16_777_216.0;
 /// the box's own extent together.
 ///
 /// A shader's f32 matrix times an f32 position is off by ten times [`UNIT`] of the sum of its terms, as
-/// [`verify`](crate::proof) counts, the matrix's elements by two and the frustum's corners by two
+/// [`prove`](crate::proof) counts, the matrix's elements by two and the frustum's corners by two
 /// more. The terms of the position sum to no more than its distance d, the translation is no more
 /// than d and half the extent e, and an offset of the texture or clip coordinates adds another
 /// half: 14 d + 12 (d + e), which is less than 28 (d + e).

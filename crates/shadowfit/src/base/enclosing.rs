@@ -75,7 +75,7 @@ impl<'a> HullBuilder<'a> {
     ///
     /// # Errors
     ///
-    /// [`FitError::WorkspaceTooSmall`] when the hull itself does not fit the storage.
+    /// [`FitError::ScratchTooSmall`] when the hull itself does not fit the storage.
     pub(crate) fn push(&mut self, p: DVec2) -> Result<(), FitError> {
         if self.holds(p) {
             return Ok(());
@@ -91,7 +91,7 @@ impl<'a> HullBuilder<'a> {
         if 2 * (self.len + 1) + 1 > self.points.len() {
             self.compact();
             if 2 * (self.len + 1) + 1 > self.points.len() {
-                return Err(FitError::WorkspaceTooSmall { given: self.points.len(), required: 2 * (self.len + 1) + 1 });
+                return Err(FitError::ScratchTooSmall { given: self.points.len(), required: 2 * (self.len + 1) + 1 });
             }
         }
         self.points[self.len] = p;
@@ -357,6 +357,6 @@ mod tests {
         let mut builder = HullBuilder::new(&mut storage);
         let pushed = (0..64).map(|i| f64::from(i) * 0.098).map(|a| DVec2::new(libm::cos(a), libm::sin(a)));
         let result: Result<(), FitError> = pushed.into_iter().try_for_each(|p| builder.push(p));
-        assert!(matches!(result, Err(FitError::WorkspaceTooSmall { given: 16, .. })));
+        assert!(matches!(result, Err(FitError::ScratchTooSmall { given: 16, .. })));
     }
 }

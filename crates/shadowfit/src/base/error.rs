@@ -80,9 +80,9 @@ pub enum FitError {
     },
     /// There is no view to fit to.
     NoView,
-    /// The caller's storage is too small; [`Workspace::required`](crate::Workspace::required) says
+    /// The caller's storage is too small; [`Scratch::required`](crate::Scratch::required) says
     /// what is enough.
-    WorkspaceTooSmall {
+    ScratchTooSmall {
         /// Number of elements given.
         given: usize,
         /// Least number of elements that the call needs.
@@ -155,8 +155,8 @@ impl fmt::Display for FitError {
                 Number(f64::from(far))
             ),
             Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
-            Self::WorkspaceTooSmall { given, required } => {
-                write!(f, "the workspace has {given} elements and needs {required}; see Workspace::required")
+            Self::ScratchTooSmall { given, required } => {
+                write!(f, "the workspace has {given} elements and needs {required}; see Scratch::required")
             }
             Self::CountMismatch { input, given, expected } => {
                 write!(f, "{input} is {given}; give {expected} as before, or build anew")

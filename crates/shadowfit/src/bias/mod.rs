@@ -37,7 +37,7 @@ pub(crate) use self::reach::HARDWARE_SNAP;
 pub use self::reach::Reach;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::technique::settings::{BiasSettings, FilterKind, Softness};
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
@@ -97,7 +97,7 @@ impl Bias {
     ///
     /// Of the [steps](BiasSettings::depth_steps) only what they are coarser than those of a 32-bit float counts: the
     /// rounding of those is a part of the constant in texels.
-    pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &LightFit) -> Self {
+    pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &LightProjection) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
         let steps = settings.depth_steps * (depth_step(storage, 1.0) - depth_step(DepthStorage::Float32, 1.0));
         Self {
@@ -133,7 +133,7 @@ impl Bias {
     pub fn automatic(
         reach: impl Into<Reach>,
         storage: impl Into<DepthStorage>,
-        fit: &LightFit,
+        fit: &LightProjection,
     ) -> Result<Self, FitError> {
         let reach = reach.into().checked()?.on_hardware(fit);
         let (x, y) = (f64::from(fit.texel_size.x), f64::from(fit.texel_size.y));
@@ -159,7 +159,7 @@ impl Bias {
     pub fn automatic_receiver_plane(
         reach: impl Into<Reach>,
         storage: impl Into<DepthStorage>,
-        fit: &LightFit,
+        fit: &LightProjection,
     ) -> Result<Self, FitError> {
         let reach = reach.into().checked()?.on_hardware(fit);
         let constant_depth = depth_precision(fit, storage);
@@ -173,7 +173,7 @@ impl Bias {
     ///
     /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the normal, and the former for a
     /// bias that is not finite.
-    pub fn on_plane(&self, fit: &LightFit, normal: Vec3) -> Result<PlaneBias, FitError> {
+    pub fn on_plane(&self, fit: &LightProjection, normal: Vec3) -> Result<PlaneBias, FitError> {
         let bias = self.checked()?;
         let plane = Slope::of(fit, normal)?;
         let cosine = plane.cosine.max(f64::from(MIN_COSINE));
@@ -255,7 +255,7 @@ impl BiasSettings {
 ///
 /// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the reach and [`FitError::BadDirection`]
 /// for the normal.
-pub fn normal_offset(fit: &LightFit, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
+pub fn normal_offset(fit: &LightProjection, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
     let reach = reach.into().checked()?;
     let plane = Slope::of(fit, normal)?;
     checks::rounded("the plane's normal offset", reach.rise(plane.u, plane.v))
@@ -268,7 +268,7 @@ pub fn normal_offset(fit: &LightFit, reach: impl Into<Reach>, normal: Vec3) -> R
 /// # Errors
 ///
 /// As [`normal_offset`].
-pub fn receiver_plane_depth(fit: &LightFit, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
+pub fn receiver_plane_depth(fit: &LightProjection, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
     let reach = reach.into().checked()?;
     let [u, v] = Slope::of(fit, normal)?.gradient(fit);
     checks::rounded("the plane's depth bias", reach.rise(u, v))
@@ -282,7 +282,7 @@ pub fn receiver_plane_depth(fit: &LightFit, reach: impl Into<Reach>, normal: Vec
 /// # Errors
 ///
 /// As [`normal_offset`].
-pub fn depth_gradient(fit: &LightFit, normal: Vec3) -> Result<Vec2, FitError> {
+pub fn depth_gradient(fit: &LightProjection, normal: Vec3) -> Result<Vec2, FitError> {
     let [u, v] = Slope::of(fit, normal)?.gradient(fit);
     let rounded = |gradient| checks::rounded("the plane's depth gradient", gradient);
     Ok(Vec2::new(rounded(u)?, rounded(v)?))
@@ -292,7 +292,7 @@ pub fn depth_gradient(fit: &LightFit, normal: Vec3) -> Result<Vec2, FitError> {
 /// can make between the stored and the compared depth of one point at this fit's origin, and one
 /// step of the format where it is coarsest (half for storing a depth, half where hardware rounds
 /// the compared one too).
-pub fn depth_precision(fit: &LightFit, storage: impl Into<DepthStorage>) -> f32 {
+pub fn depth_precision(fit: &LightProjection, storage: impl Into<DepthStorage>) -> f32 {
     (reach::rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
 }
 
@@ -314,7 +314,7 @@ pub(crate) struct Slope {
 }
 
 impl Slope {
-    pub(crate) fn of(fit: &LightFit, normal: Vec3) -> Result<Self, FitError> {
+    pub(crate) fn of(fit: &LightProjection, normal: Vec3) -> Result<Self, FitError> {
         let normal = checks::unit("the surface normal", normal)?;
         let along = |row: fn(Vec4) -> f32| {
             let m = &fit.light_from_world;
@@ -332,7 +332,7 @@ impl Slope {
 
     /// Change of the stored depth over one texel along u and v: height falls by n·x / n·z along
     /// x, and v runs against y.
-    pub(crate) fn gradient(&self, fit: &LightFit) -> [f64; 2] {
+    pub(crate) fn gradient(&self, fit: &LightProjection) -> [f64; 2] {
         let sign = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
         let per_metre = sign / (self.cosine.max(f64::from(MIN_COSINE)) * f64::from(fit.depth_range));
         [self.u * per_metre, -self.v * per_metre]

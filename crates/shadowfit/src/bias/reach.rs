@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use crate::base::checks::UNIT;
 use crate::base::{FitError, checks};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::technique::Technique;
 use crate::technique::settings::{FilterKind, Softness};
 
@@ -73,7 +73,7 @@ impl Reach {
     /// texture coordinates at this fit's farthest corner from its origin. With exact arithmetic (a
     /// ray tracer, a test in f64) the plain reach is enough.
     #[must_use]
-    pub fn on_hardware(self, fit: &LightFit) -> Self {
+    pub fn on_hardware(self, fit: &LightProjection) -> Self {
         let texel = f64::from(fit.texel_size.x.min(fit.texel_size.y));
         Self { taps: self.taps + HARDWARE_SNAP + (rounding(fit) / texel) as f32, ..self }
     }
@@ -113,7 +113,7 @@ impl Softness {
     /// Radii along u and v of the ellipse over which a filter's look-ups are spread in a map, in texels: for
     /// [`FilterKind::Pcss`] the greatest. Look-ups blur by themselves ([`Softness::LOOK_UP_SQUARE`]), which is
     /// taken off, so that penumbrae are as wide in maps of other texels.
-    pub fn texels(&self, filter: FilterKind, fit: &LightFit) -> Vec2 {
+    pub fn texels(&self, filter: FilterKind, fit: &LightProjection) -> Vec2 {
         if !filter.is_soft() {
             return Vec2::ZERO;
         }
@@ -125,21 +125,21 @@ impl Softness {
     }
 
     /// Reach of a filter in a map, in its texels: the [look-up's](FilterKind::reach) over the disc of [`Self::texels`].
-    pub fn reach_in(&self, filter: FilterKind, fit: &LightFit) -> Reach {
+    pub fn reach_in(&self, filter: FilterKind, fit: &LightProjection) -> Reach {
         Reach { disc: self.texels(filter, fit), ..Reach::taps(filter.reach()) }
     }
 }
 
 impl Technique {
-    /// Reach of the filter in one map, in its texels: for caster volumes, certificates and biases. Of
+    /// Reach of the filter in one map, in its texels: for caster volumes, proofs and biases. Of
     /// [`FilterKind::Pcss`] it is that of the widest penumbra.
-    pub fn reach_in(&self, fit: &LightFit) -> Reach {
+    pub fn reach_in(&self, fit: &LightProjection) -> Reach {
         self.softness.reach_in(self.filter, fit)
     }
 }
 
 /// Greatest f32 rounding error of a position in the map's box, in metres.
-pub(crate) fn rounding(fit: &LightFit) -> f64 {
+pub(crate) fn rounding(fit: &LightProjection) -> f64 {
     let distances = fit.corners().map(|corner| checks::length(corner.as_dvec3()));
     PRECISION_ROUNDINGS * UNIT * distances.into_iter().fold(0.0, f64::max)
 }

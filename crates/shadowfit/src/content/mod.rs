@@ -69,7 +69,7 @@ impl<'a> Content<'a> {
             .saturating_add(HullBuilder::SLACK)
             .saturating_add(grouped[0] + grouped[1]);
         if storage.len() < required {
-            return Err(FitError::WorkspaceTooSmall { given: storage.len(), required });
+            return Err(FitError::ScratchTooSmall { given: storage.len(), required });
         }
         let is_same = is_same(input.receivers, input.casters);
         for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {

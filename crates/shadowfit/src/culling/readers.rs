@@ -11,11 +11,11 @@ use super::volume::CasterVolume;
 use crate::base::checks::VIEW_DEPTH_ROUNDING;
 use crate::base::{FitError, checks};
 use crate::bias::{MIN_COSINE, Reach};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::map::{FittedMap, FittedMaps};
 use crate::selection::{MapOrder, MapReading};
 use crate::technique::Technique;
-use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapChoice};
+use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapSelection};
 use crate::view::ViewFrustum;
 
 /// From where maps are read: what the positions and view depths in a shader are counted from.
@@ -42,7 +42,7 @@ const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 
 impl FittedMaps {
     /// The casters of each map: those that can cast a shadow, through this map, on what `views` see, relative to the
-    /// map's [origin](LightFit::origin). `views` are those of the fit; positions and view depths are counted from the
+    /// map's [origin](LightProjection::origin). `views` are those of the fit; positions and view depths are counted from the
     /// first one's eye. Volumes beyond the number of maps hold nothing. See [`caster_volumes`].
     ///
     /// ```
@@ -58,11 +58,11 @@ impl FittedMaps {
     /// #     near: 0.1,
     /// #     far: 200.0,
     /// # };
-    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    /// # let workspace = &mut Workspace::new(&mut storage);
+    /// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+    /// # let workspace = &mut Scratch::new(&mut storage);
     /// let (views, technique) = ([camera.frustum()?], Technique::default());
     /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-    /// let maps = MapFitter::new().fit(&input, &technique, workspace)?;
+    /// let maps = FitState::new().fit(&input, &technique, workspace)?;
     /// let volumes = maps.caster_volumes(&views, &technique)?;
     ///
     /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
@@ -92,7 +92,7 @@ impl FittedMaps {
 /// Writes the casters of each map: those that can cast a shadow, through this map, on what `views` see. The shadows in
 /// view stay the same when only these are drawn. `views` are all that is drawn with these maps, up to the cameras' far
 /// planes; `reading` and `reader` say how and from where the maps are read. Each volume is relative to its map's
-/// [origin](LightFit::origin). Maps past [`MAX_MAPS`], and those without a place in `volumes`, are left out.
+/// [origin](LightProjection::origin). Maps past [`MAX_MAPS`], and those without a place in `volumes`, are left out.
 ///
 /// The volumes serve maps with depth clamp and without: nothing bounds them toward the light
 /// ([`CasterVolume::cut_at_near_plane`] does). They are for maps that are drawn anew in each frame: a map that is kept,
@@ -118,15 +118,15 @@ pub fn caster_volumes(
     volumes: &mut [CasterVolume],
 ) -> Result<(), FitError> {
     let maps = &maps[..maps.len().min(MAX_MAPS)];
-    match reading.choice {
-        MapChoice::Coverage { .. } => {
+    match reading.selection {
+        MapSelection::Coverage { .. } => {
             let from = read_by_coverage(maps, reader, views, reading);
             for ((map, near), volume) in maps.iter().zip(from).zip(volumes) {
                 let read = near.map(|near| Slice { near, far: f32::MAX });
                 *volume = swept(map, read, views, reading)?;
             }
         }
-        MapChoice::ViewDepth { .. } => {
+        MapSelection::ViewDepth { .. } => {
             let mismatch = views.iter().map(|frustum| depth_mismatch(reader, frustum)).fold(0.0, f64::max);
             let readers = Readers { maps, reader, views, mismatch };
             for ((index, map), volume) in maps.iter().enumerate().zip(volumes) {
@@ -145,14 +145,14 @@ fn swept(
     views: &[ViewFrustum],
     reading: &MapReading,
 ) -> Result<CasterVolume, FitError> {
-    let reach = reading.softness.reach_in(reading.filter, &map.fit);
+    let reach = reading.softness.reach_in(reading.filter, &map.projection);
     let normal_offset = map.bias.normal_offset.abs();
     let Slice { near, far } = read.unwrap_or(Slice { near: f32::MIN, far: f32::MAX });
-    let volume = CasterVolume::swept(&map.fit, &Sweep { views, near, far, reach, normal_offset })?;
+    let volume = CasterVolume::swept(&map.projection, &Sweep { views, near, far, reach, normal_offset })?;
     Ok(if read.is_some() {
-        lowered(volume, &map.fit, depth_below(map, reach))
+        lowered(volume, &map.projection, depth_below(map, reach))
     } else {
-        CasterVolume::nowhere(map.fit.origin)
+        CasterVolume::nowhere(map.projection.origin)
     })
 }
 
@@ -209,14 +209,20 @@ impl Readers<'_> {
     /// Whether a map provably holds everything that the views have in a slice, by a shader's test.
     fn covers(&self, index: usize, slice: Slice) -> bool {
         let Slice { near, far } = self.widened(slice);
-        let fit = self.maps[index].fit.relative_to(self.reader.origin);
+        let fit = self.maps[index].projection.relative_to(self.reader.origin);
         holds_slice(&fit, self.reader, self.views, [near, far], 0.0)
     }
 }
 
 /// Whether a map, relative to the reader's origin, provably holds everything that the views have between two view depths,
 /// with so many texels around it.
-fn holds_slice(fit: &LightFit, reader: &Reader, views: &[ViewFrustum], [near, far]: [f32; 2], free: f64) -> bool {
+fn holds_slice(
+    fit: &LightProjection,
+    reader: &Reader,
+    views: &[ViewFrustum],
+    [near, far]: [f32; 2],
+    free: f64,
+) -> bool {
     let holds_part = |frustum: &ViewFrustum| {
         let offset = frustum.origin - reader.origin;
         // A view without a part between these depths has no point to be held.
@@ -229,7 +235,7 @@ fn holds_slice(fit: &LightFit, reader: &Reader, views: &[ViewFrustum], [near, fa
 
 /// Whether a map holds a point, relative to its origin, with so many texels around it, for any rounding in a shader.
 /// The map is convex, so that with the corners of a slice it holds the slice.
-fn covers(fit: &LightFit, point: DVec3, free: f64) -> bool {
+fn covers(fit: &LightProjection, point: DVec3, free: f64) -> bool {
     let m = fit.uv_from_world.as_dmat4();
     let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);
     let uv: DVec3 = terms.iter().sum();
@@ -252,19 +258,19 @@ fn depth_mismatch(reader: &Reader, frustum: &ViewFrustum) -> f64 {
 /// point itself.
 fn depth_below(map: &FittedMap, reach: Reach) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
-    let (bias, range) = (map.bias, f64::from(map.fit.depth_range));
+    let (bias, range) = (map.bias, f64::from(map.projection.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
-    let size = map.fit.texel_size.as_dvec2();
+    let size = map.projection.texel_size.as_dvec2();
     let texel = libm::sqrt(size.x * size.x + size.y * size.y);
     // Look-ups lie a texel less far away than the texels that they read; at the map's border they move by half of one.
-    let disc = (reach.disc * map.fit.texel_size).max_element();
+    let disc = (reach.disc * map.projection.texel_size).max_element();
     let aside = f64::from((reach.taps - 1.0).max(0.5)) * texel + f64::from(disc + bias.normal_offset.abs());
     let plane = if bias.receiver_plane == 0.0 { 0.0 } else { aside + away(bias.receiver_plane) * texel };
     (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
 }
 
 /// A swept volume that reaches deeper along the light, in metres, but not below what the map stores.
-fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume {
+fn lowered(mut volume: CasterVolume, fit: &LightProjection, depth: f64) -> CasterVolume {
     // Its planes are four sides and the far one.
     let stored = CasterVolume::of_map(fit, CasterPolicy::DepthClamp);
     let to_light: Vec3 = -fit.direction;
@@ -290,11 +296,11 @@ fn read_by_coverage(
     views: &[ViewFrustum],
     reading: &MapReading,
 ) -> [Option<f32>; MAX_MAPS] {
-    let free = f64::from(reading.softness.reach(reading.filter) + reading.choice.blend());
+    let free = f64::from(reading.softness.reach(reading.filter) + reading.selection.blend());
     let mut from = [None; MAX_MAPS];
     // Up to where the finer maps hold all.
     let mut held = f32::MIN;
-    for index in MapOrder::new(reading.choice, maps.iter().map(|map| &map.fit)).iter() {
+    for index in MapOrder::new(reading.selection, maps.iter().map(|map| &map.projection)).iter() {
         from[index] = (held < f32::MAX).then_some((held - held.abs() * VIEW_DEPTH_ROUNDING).max(f32::MIN));
         held = held_to(&maps[index], reader, views, free, held);
     }
@@ -304,7 +310,7 @@ fn read_by_coverage(
 /// View depth up to which a map holds all that the views have from a depth on, in metres, with so many texels around
 /// it; that depth where it does not.
 fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> f32 {
-    let fit = map.fit.relative_to(reader.origin);
+    let fit = map.projection.relative_to(reader.origin);
     let holds = |far: f32| holds_slice(&fit, reader, views, [from, far], free);
     let near = views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
     let far = views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
@@ -350,8 +356,8 @@ mod tests {
         ENDS.into_iter().map(map).collect()
     }
 
-    fn by(choice: MapChoice) -> MapReading {
-        MapReading { choice, ..Technique::default().reading() }
+    fn by(choice: MapSelection) -> MapReading {
+        MapReading { selection: choice, ..Technique::default().reading() }
     }
 
     /// Where each map begins to be read, in metres.
@@ -369,7 +375,7 @@ mod tests {
         // Wider than what the maps were fitted to: none covers its slice.
         assert_eq!(read_from(&maps, &[view, frustum(1.1)]), [Some(f32::MIN); 3]);
         // The second one leaves out its sides, so that the last one is read in both of their slices.
-        maps[1].fit = self::maps(&frustum(0.5))[1].fit;
+        maps[1].projection = self::maps(&frustum(0.5))[1].projection;
         assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(5.0), Some(5.0)]);
     }
 
@@ -385,7 +391,7 @@ mod tests {
         assert_eq!(read_from(&behind, &[frustum(1.1)])[3], Some(f32::MIN));
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); 4];
-        caster_volumes(&behind, &by(MapChoice::ViewDepth { overlap: 0.0 }), &reader, &[view], &mut volumes)
+        caster_volumes(&behind, &by(MapSelection::ViewDepth { overlap: 0.0 }), &reader, &[view], &mut volumes)
             .expect("a good view");
         let holds = volumes.map(|volume| volume.intersects_sphere(Vec3::NEG_Z * 3.0, 1.0));
         assert_eq!(holds, [true, false, false, false]);
@@ -397,7 +403,7 @@ mod tests {
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
         let from = |maps: &[FittedMap], views: &[ViewFrustum], blend: f32| {
-            let reading = by(MapChoice::Coverage { blend });
+            let reading = by(MapSelection::Coverage { blend });
             let from = read_by_coverage(maps, &reader, views, &reading);
             from[..maps.len()].to_vec()
         };
@@ -414,11 +420,11 @@ mod tests {
         let light = fit(&view, DIRECTION, &FitSettings::default()).expect("a fit");
         let whole = FittedMap::new(light, Bias::default());
         let mut coarse = whole;
-        coarse.fit.texel_size *= 2.0;
+        coarse.projection.texel_size *= 2.0;
         let held = view.slice(0.1, 59.0).expect("a slice");
         assert_eq!(from(&[whole, coarse], &[held], 0.0), [Some(f32::MIN), None]);
         let mut empty = whole;
-        empty.fit.is_empty = true;
+        empty.projection.is_empty = true;
         assert_eq!(from(&[empty, coarse], &[held], 0.0), [None, Some(f32::MIN)]);
     }
 
@@ -448,7 +454,7 @@ mod tests {
         let maps = maps(&frustum(0.9));
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let mut volumes = [CasterVolume::nowhere(DVec3::ZERO); 3];
-        for choice in [MapChoice::ViewDepth { overlap: 0.0 }, MapChoice::default()] {
+        for choice in [MapSelection::ViewDepth { overlap: 0.0 }, MapSelection::default()] {
             let swept = caster_volumes(&maps, &by(choice), &reader, &[], &mut volumes);
             assert_eq!(swept, Err(FitError::NoView));
         }

@@ -25,7 +25,7 @@ use crate::base::checks::{MAX_LENGTH, ROUNDING};
 use crate::base::enclosing::HullBuilder;
 use crate::base::{FitError, checks};
 use crate::bias::Reach;
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::view::{Slice, View, ViewFrustum};
 
 /// Which receivers read a map, and how far around them.
@@ -100,7 +100,7 @@ impl CasterVolume {
     ///
     /// [`FitError::NoView`]; [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the depths,
     /// the reach and the offset; [`FitError::NearNotBelowFar`]; those of an invalid frustum.
-    pub fn swept(fit: &LightFit, sweep: &Sweep) -> Result<Self, FitError> {
+    pub fn swept(fit: &LightProjection, sweep: &Sweep) -> Result<Self, FitError> {
         sweep.checked()?;
         Ok(Planes { fit, sweep }.volume())
     }
@@ -108,7 +108,7 @@ impl CasterVolume {
 
 /// Finds the planes of a sweep.
 struct Planes<'a> {
-    fit: &'a LightFit,
+    fit: &'a LightProjection,
     sweep: &'a Sweep<'a>,
 }
 

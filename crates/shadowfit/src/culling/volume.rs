@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
 use crate::base::Aabb;
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::keep::texels::TexelRect;
 use crate::technique::settings::CasterPolicy;
 
@@ -13,7 +13,7 @@ use crate::technique::settings::CasterPolicy;
 ///
 /// | made by | holds |
 /// |---|---|
-/// | [`LightFit::caster_volume`] | every caster that the map can store |
+/// | [`LightProjection::caster_volume`] | every caster that the map can store |
 /// | [`CasterVolume::of_map`] | the same, without a near plane where the pipeline clamps depth |
 /// | [`SpotFit::caster_volume`](crate::SpotFit::caster_volume) | every caster that the map of a spot light can store |
 /// | [`CasterVolume::swept`] | every caster that can cast a shadow into a slice of the view |
@@ -73,7 +73,7 @@ impl CasterVolume {
     /// Every caster that a map can store, relative to the fit's origin. Planes in the light's
     /// axes: -x, +x, -y, +y, far, and near unless `casters` is [`CasterPolicy::DepthClamp`]: a map
     /// drawn with depth clamp stores casters before its near plane too.
-    pub fn of_map(fit: &LightFit, casters: CasterPolicy) -> Self {
+    pub fn of_map(fit: &LightProjection, casters: CasterPolicy) -> Self {
         let (sides, [far, near]) = map_planes(fit);
         let near = (casters != CasterPolicy::DepthClamp).then_some(near);
         Self::of_planes(fit.origin, sides.into_iter().chain([far]).chain(near))
@@ -81,7 +81,7 @@ impl CasterVolume {
 
     /// As [`Self::of_map`], of the casters that can be drawn into a part of the map, with a texel around it for the
     /// rasteriser's rounding.
-    pub fn of_part(fit: &LightFit, casters: CasterPolicy, part: TexelRect) -> Self {
+    pub fn of_part(fit: &LightProjection, casters: CasterPolicy, part: TexelRect) -> Self {
         let (mut sides, [far, near]) = map_planes(fit);
         let end = (part.min + part.size).as_dvec2() + 1.0;
         let (first, size) = (part.min.as_dvec2() - 1.0, fit.resolution.as_dvec2());
@@ -98,7 +98,7 @@ impl CasterVolume {
     /// This volume cut at the near plane of a map, for passes without depth clamp: casters before
     /// that plane would be clipped, so drawing them is wasted.
     #[must_use]
-    pub fn cut_at_near_plane(&self, fit: &LightFit) -> Self {
+    pub fn cut_at_near_plane(&self, fit: &LightProjection) -> Self {
         let (_, [_, near]) = map_planes(&fit.relative_to(self.origin));
         let mut volume = *self;
         volume.push(near);
@@ -168,7 +168,7 @@ impl CasterVolume {
     }
 }
 
-impl LightFit {
+impl LightProjection {
     /// Every caster that the map can store: the map's own box, relative to [`Self::origin`].
     /// Casters nearer to the light than the map's near plane are left out; for maps with depth
     /// clamp see [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can cast
@@ -187,7 +187,7 @@ pub(super) fn widened(d: f32) -> f32 {
 }
 
 /// The planes -x, +x, -y, +y of a map, and far and near, relative to the fit's origin.
-pub(super) fn map_planes(fit: &LightFit) -> ([Vec4; 4], [Vec4; 2]) {
+pub(super) fn map_planes(fit: &LightProjection) -> ([Vec4; 4], [Vec4; 2]) {
     let (min, max) = fit.clip_box();
     let rows = fit.light_from_world.transpose();
     let t = fit.light_from_world.w_axis.truncate().as_dvec3();

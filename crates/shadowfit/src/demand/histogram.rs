@@ -40,10 +40,10 @@ pub struct DepthHistogram<'a> {
 /// let slices = Slices::default().with_splits(SplitScheme::Logarithmic);
 /// let technique = Technique::default().with_maps(slices);
 /// let views = [camera.frustum()?];
-/// let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
 /// let mut split = |depth_bounds| {
 ///     let input = FitInput { depth_bounds, ..FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)) };
-///     MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).map(|maps| maps[0].far)
+///     FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).map(|maps| maps[0].far)
 /// };
 /// assert!(split(None)? < 1.0); // the whole view, from its near plane on
 /// assert!(split(Some(DepthBounds { near: 4.0, far: 50.0 }))? > 4.0); // what the last frame showed

@@ -9,8 +9,8 @@ use alloc::vec::Vec;
 
 use glam::{DVec3, Vec3};
 
+use super::grid::{CELLS, DemandGrid, DemandSpace};
 use super::histogram::DepthHistogram;
-use super::need::{CELLS, NeedGrid, NeedSpace};
 use crate::base::FitError;
 use crate::view::ViewFrustum;
 
@@ -27,7 +27,7 @@ pub const COUNTS: usize = CELLS + DEPTHS * CLASSES;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenSpace {
     /// The cells of the grid.
-    pub need: NeedSpace,
+    pub demand: DemandSpace,
     /// View depth at which the first bin begins, in metres.
     pub near: f32,
     /// View depth at which the last bin ends, in metres.
@@ -35,14 +35,14 @@ pub struct SeenSpace {
 }
 
 impl SeenSpace {
-    /// The space for what a view sees under a light; arguments and errors are those of [`NeedSpace::new`].
+    /// The space for what a view sees under a light; arguments and errors are those of [`DemandSpace::new`].
     ///
     /// # Errors
     ///
-    /// As [`NeedSpace::new`].
+    /// As [`DemandSpace::new`].
     pub fn new(view: &ViewFrustum, direction: Vec3, up: Vec3, distance: f32) -> Result<Self, FitError> {
-        let need = NeedSpace::new(view, direction, up, distance)?;
-        Ok(Self { need, near: view.near, far: view.far.min(distance) })
+        let demand = DemandSpace::new(view, direction, up, distance)?;
+        Ok(Self { demand, near: view.near, far: view.far.min(distance) })
     }
 }
 
@@ -66,7 +66,7 @@ impl Seen {
         (counts.len() == COUNTS).then_some(Self { space, counts })
     }
 
-    /// Counts a point in a cell of the grid, by [`NeedSpace::index`]. A cell that is not there is ignored.
+    /// Counts a point in a cell of the grid, by [`DemandSpace::index`]. A cell that is not there is ignored.
     pub fn count_cell(&mut self, index: usize) {
         if let Some(count) = self.counts[..CELLS].get_mut(index) {
             *count = count.saturating_add(1);
@@ -91,13 +91,13 @@ impl Seen {
     /// The same, counted from another world position: moved by this many metres along each axis.
     #[must_use]
     pub fn moved(mut self, by: DVec3) -> Self {
-        self.space.need.origin += by;
+        self.space.demand.origin += by;
         self
     }
 
     /// How fine a texel the points ask for, and where they are.
-    pub fn need(&self) -> NeedGrid<'_> {
-        NeedGrid { space: self.space.need, counts: &self.counts[..CELLS] }
+    pub fn demand(&self) -> DemandGrid<'_> {
+        DemandGrid { space: self.space.demand, counts: &self.counts[..CELLS] }
     }
 
     /// How far away they are.
@@ -134,9 +134,9 @@ mod tests {
             seen.count_depth(depth, 0.0);
         }
         let sum = |counts: &[u32]| counts.iter().sum::<u32>();
-        assert_eq!((seen.need().counts[7], sum(seen.need().counts), sum(seen.histogram().bins)), (1, 1, 1));
+        assert_eq!((seen.demand().counts[7], sum(seen.demand().counts), sum(seen.histogram().bins)), (1, 1, 1));
         let moved = seen.clone().moved(DVec3::X);
-        assert_eq!(moved.need().space.origin, DVec3::X);
+        assert_eq!(moved.demand().space.origin, DVec3::X);
         assert_eq!(Seen::from_counts(space, vec![0; CELLS]), None);
         assert_eq!(Seen::from_counts(space, vec![0; COUNTS]), Some(Seen::new(space)));
     }

@@ -5,8 +5,8 @@ use glam::{DVec2, Vec3};
 use crate::base::{Boxes, FitError};
 use crate::content::normal_cone::NormalCone;
 use crate::content::{Content, Scene};
+use crate::demand::grid::DemandGrid;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
-use crate::demand::need::NeedGrid;
 use crate::fits::{FitRule, Volume};
 use crate::light::Light;
 use crate::technique::Technique;
@@ -18,7 +18,7 @@ use crate::view::{Range, ViewFrustum};
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
 /// use shadowfit::settings::FitSettings;
-/// use shadowfit::{Aabb, Boxes, FitInput, PerspectiveCamera, Workspace};
+/// use shadowfit::{Aabb, Boxes, FitInput, PerspectiveCamera, Scratch};
 ///
 /// let camera = PerspectiveCamera {
 ///     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -37,8 +37,8 @@ use crate::view::{Range, ViewFrustum};
 /// let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
 /// let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
 /// let settings = FitSettings::default().with_max_distance(40.0);
-/// let mut storage = [Default::default(); Workspace::required(2, 1)];
-/// let map = shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
+/// let mut storage = [Default::default(); Scratch::required(2, 1)];
+/// let map = shadowfit::fit_scene(&input, &settings, &mut Scratch::new(&mut storage))?;
 /// assert!(map.texel_size.x < 0.03); // the frustum alone gives ten times that
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
@@ -69,7 +69,7 @@ pub struct FitInput<'a> {
     /// What the last frame showed and how fine a texel it asked for, one grid for each picture that was
     /// drawn with the maps, for [windows](crate::Windows). Grids of
     /// another light, or of another size, are ignored.
-    pub need: &'a [NeedGrid<'a>],
+    pub demand: &'a [DemandGrid<'a>],
     /// Nearest and farthest depth that the last frame showed, if known: uniform, logarithmic and
     /// practical splits are spread between them instead of over all that is in view.
     pub depth_bounds: Option<DepthBounds>,
@@ -85,7 +85,7 @@ impl<'a> FitInput<'a> {
             receiver_cones: &[],
             casters: None,
             histogram: None,
-            need: &[],
+            demand: &[],
             depth_bounds: None,
         }
     }
@@ -109,7 +109,7 @@ impl FitInput<'_> {
 
 /// Storage that fits work in, owned by the caller, so that nothing allocates.
 #[derive(Debug)]
-pub struct Workspace<'a> {
+pub struct Scratch<'a> {
     pub(crate) storage: &'a mut [DVec2],
 }
 
@@ -117,7 +117,7 @@ pub struct Workspace<'a> {
 /// no more than 2 · 12 - 4.
 const CORNERS_PER_BOX: usize = 20;
 
-impl<'a> Workspace<'a> {
+impl<'a> Scratch<'a> {
     /// Number of elements that is enough for any fit of a number of boxes (receivers or casters, whichever are
     /// more) in a number of views. Usually far less is used, since few boxes contribute to the outline.
     pub const fn required(boxes: usize, views: usize) -> usize {

@@ -1,7 +1,7 @@
 //! What every fit returns: the light's matrices and the box they store.
 //!
 //! All maps take positions relative to an origin in f64, so that they stay exact far from the
-//! world's origin; [`LightFit::relative_to`] moves that origin.
+//! world's origin; [`LightProjection::relative_to`] moves that origin.
 //!
 //! A fit is also made from the matrix of other code, so that it can be drawn, culled and evaluated like those of this
 //! crate.
@@ -23,7 +23,7 @@ use crate::light::LightAxes;
 /// and Metal have it; OpenGL users flip v), both 0..1 over the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct LightFit {
+pub struct LightProjection {
     /// World position that all inputs of the matrices are relative to, in metres: the eye of the
     /// frustum, until [`Self::relative_to`] moves it.
     pub origin: DVec3,
@@ -80,7 +80,7 @@ pub struct WorldMatrices {
 /// the rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
 pub(crate) const COVER_TOLERANCE: f64 = 1e-6;
 
-impl LightFit {
+impl LightProjection {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
     #[inline(always)]
     pub(crate) fn from_volume(
@@ -273,7 +273,7 @@ fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
 /// written with seven digits and multiplied in f32.
 const SKEW: f64 = 1e-4;
 
-impl LightFit {
+impl LightProjection {
     /// The fit that equals a light's orthographic view-projection: clip space (x right, y up, depth 0..1, plain or
     /// reversed) from world space in metres. `direction` is the light's direction of travel in world axes, of any
     /// length; `origin` is the world position, in metres, that the fit's own matrices are relative to; choose one near

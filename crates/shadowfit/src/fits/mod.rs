@@ -20,9 +20,9 @@ pub(crate) mod volume;
 mod xna;
 
 pub(crate) use form::{Covers, Form};
-pub use frame::{FitInput, Workspace};
+pub use frame::{FitInput, Scratch};
 pub(crate) use frame::{Frame, Place, PlacedMap, PlacedMaps};
-pub use light_fit::LightFit;
+pub use light_fit::LightProjection;
 pub(crate) use rule::{Depth, FitRule, check_least_texel, default_border};
 pub use volume::Constraint;
 pub(crate) use volume::Volume;
@@ -43,14 +43,14 @@ use crate::view::{Range, ViewFrustum};
 /// is refused like every number that is not finite). `direction` is the light's **direction of
 /// travel** in world axes (right-handed); sources that speak of the direction toward the light use
 /// the opposite sign. Its length is ignored. Nothing is known about the scene here: [`fit_scene`]
-/// takes boxes, [`MapFitter`](crate::MapFitter) makes several maps and keeps them still.
+/// takes boxes, [`FitState`](crate::FitState) makes several maps and keeps them still.
 ///
 /// # Errors
 ///
 /// Every input that is NaN or infinite, [`FitError::BadDirection`], [`FitError::ZeroResolution`],
 /// [`FitError::NearNotBelowFar`] when the maximum distance ends before the near plane, and
 /// [`FitError::EmptyFrustum`].
-pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
+pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightProjection, FitError> {
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
     let (rule, light) = prepare(&input, settings, default_border(settings))?;
     if rule.form.is_exact {
@@ -58,7 +58,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
         // storage.
         return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.map.max_distance, &mut []);
     }
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let (content, points) = Content::new(input.scene(), &mut storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
@@ -67,13 +67,17 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 /// names. As [`fit`], with the boxes of receivers and casters.
 ///
 /// Where no receiver's box is in view the fit is that of the view alone, and
-/// [`LightFit::is_empty`] says so.
+/// [`LightProjection::is_empty`] says so.
 ///
 /// # Errors
 ///
-/// As [`fit`]; [`FitError::NoView`] without a view; [`FitError::WorkspaceTooSmall`], see
-/// [`Workspace::required`].
-pub fn fit_scene(input: &FitInput, settings: &FitSettings, workspace: &mut Workspace) -> Result<LightFit, FitError> {
+/// As [`fit`]; [`FitError::NoView`] without a view; [`FitError::ScratchTooSmall`], see
+/// [`Scratch::required`].
+pub fn fit_scene(
+    input: &FitInput,
+    settings: &FitSettings,
+    workspace: &mut Scratch,
+) -> Result<LightProjection, FitError> {
     let (rule, light) = prepare(input, settings, default_border(settings))?;
     let (content, points) = Content::new(input.scene(), workspace.storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
@@ -87,11 +91,11 @@ fn fit_whole(
     rule: &FitRule,
     distance: f32,
     points: &mut [DVec2],
-) -> Result<LightFit, FitError> {
+) -> Result<LightProjection, FitError> {
     let range = Range { near: f32::MIN, far: distance };
     let mut volume = fit_map(content, light, rule, range, Snapping::Tight, points)?;
     volume.stabilise_depth(content.origin, None, 1.0);
-    LightFit::from_volume(content.origin, &volume, rule.resolution, rule.convention)
+    LightProjection::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 
 /// Checks the inputs that all fits share; returns the rule of the settings, with the free texels at
@@ -124,7 +128,7 @@ pub(crate) enum Snapping {
 }
 
 /// One map around a range of view depths, from the input to the box that becomes its
-/// [matrices](LightFit::from_volume). The sphere fit is always on the grid, the XNA sample's never.
+/// [matrices](LightProjection::from_volume). The sphere fit is always on the grid, the XNA sample's never.
 #[inline(always)]
 pub(crate) fn fit_map(
     content: &Content,

@@ -18,7 +18,7 @@ use crate::base::{Boxes, moved};
 use crate::content::Content;
 use crate::fits::covered::Shadowed;
 use crate::fits::{Constraint, Depth, FitRule, Volume};
-use crate::light::{LightAxes, Outline, Scratch};
+use crate::light::{LightAxes, Outline, OutlineScratch};
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -136,13 +136,13 @@ fn corners((min, max): (DVec2, DVec2)) -> [DVec2; 4] {
 /// The greatest z of casters over an outline, or of what is covered where none reaches higher.
 struct Highest<'a> {
     over: Outline<'a>,
-    scratch: Scratch,
+    scratch: OutlineScratch,
     z: f64,
 }
 
 impl<'a> Highest<'a> {
     fn new(axes: &LightAxes, outline: &'a [DVec2], reach: f64, covered: f64) -> Self {
-        Self { over: Outline::new(axes, outline, reach), scratch: Scratch::new(), z: covered }
+        Self { over: Outline::new(axes, outline, reach), scratch: OutlineScratch::new(), z: covered }
     }
 
     fn add_all(&mut self, casters: &Boxes, content: &Content) {

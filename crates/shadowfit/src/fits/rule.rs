@@ -138,8 +138,8 @@ fn near_plane(settings: &MapSettings, casters_are_known: bool) -> Depth {
     match settings.casters {
         CasterPolicy::None | CasterPolicy::DepthClamp => Depth::AtCovered,
         CasterPolicy::SceneBounds if casters_are_known => Depth::AtCasterBounds,
-        CasterPolicy::List if casters_are_known => Depth::AtCasters,
-        CasterPolicy::Extend | CasterPolicy::SceneBounds | CasterPolicy::List => {
+        CasterPolicy::PerObject if casters_are_known => Depth::AtCasters,
+        CasterPolicy::Extend | CasterPolicy::SceneBounds | CasterPolicy::PerObject => {
             Depth::Extended(f64::from(settings.caster_extension))
         }
     }

@@ -26,7 +26,7 @@
 use glam::Vec3;
 
 use crate::base::{FitError, checks};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 use crate::light::is_same_direction;
 
 /// When a held light steps, and how.
@@ -76,7 +76,7 @@ impl LightStepSettings {
     /// Extent of a fit for which no point of its box moves farther than predicted, along either
     /// axis of the map, in texels: its longer side and its depth range together, by the shorter
     /// side of a texel.
-    pub fn extent_of(fit: &LightFit) -> f32 {
+    pub fn extent_of(fit: &LightProjection) -> f32 {
         let (texel, resolution) = (fit.texel_size, fit.resolution.as_vec2());
         let side = (texel.x * resolution.x).max(texel.y * resolution.y);
         (side + fit.depth_range) / texel.x.min(texel.y)

@@ -30,7 +30,7 @@ use core::ops::Range;
 use glam::{DVec3, IVec2, UVec2};
 
 use crate::base::{FitError, checks};
-use crate::fits::{Constraint, LightFit, Volume};
+use crate::fits::{Constraint, LightProjection, Volume};
 use crate::light::LightAxes;
 use crate::light::grid::MAX_LINE;
 use crate::map::FittedMap;
@@ -69,7 +69,7 @@ pub use crate::light::grid::GridAnchor;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scroll {
     /// Whether nothing of the old map can be kept: the light, the map's angle, texel size or
-    /// resolution changed, no texel is in both, the old one was [empty](LightFit::is_empty), or one
+    /// resolution changed, no texel is in both, the old one was [empty](LightProjection::is_empty), or one
     /// of them is not on a grid.
     pub is_new: bool,
     /// Whether the near or the far plane moved, so that the old map's depths now mean other
@@ -85,12 +85,12 @@ impl Scroll {
     /// How a map follows from the same map of an earlier frame.
     pub fn between(before: &FittedMap, now: &FittedMap) -> Self {
         shift(before, now).map_or_else(
-            || Self::new_map(now.fit.resolution),
+            || Self::new_map(now.projection.resolution),
             |(by, depth_changed)| Self {
                 is_new: false,
                 depth_changed,
                 shift: by,
-                exposed: exposed(by, now.fit.resolution),
+                exposed: exposed(by, now.projection.resolution),
             },
         )
     }
@@ -130,18 +130,18 @@ impl Scroll {
 /// any texel.
 fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
     let (old, new) = (before.anchor?, now.anchor?);
-    let axes = |fit: &LightFit| [0, 1, 2].map(|i| fit.light_from_world.col(i));
-    let is_same = axes(&before.fit) == axes(&now.fit)
+    let axes = |fit: &LightProjection| [0, 1, 2].map(|i| fit.light_from_world.col(i));
+    let is_same = axes(&before.projection) == axes(&now.projection)
         && old.texel == new.texel
-        && before.fit.resolution == now.fit.resolution
-        && before.fit.depth == now.fit.depth;
-    if !is_same || before.fit.is_empty {
+        && before.projection.resolution == now.projection.resolution
+        && before.projection.depth == now.projection.depth;
+    if !is_same || before.projection.is_empty {
         return None;
     }
     let right = new.first[0].saturating_sub(old.first[0]);
     // Grid lines count upward, texture rows downward.
     let down = old.first[1].saturating_sub(new.first[1]);
-    let resolution = now.fit.resolution;
+    let resolution = now.projection.resolution;
     if right.unsigned_abs() >= u64::from(resolution.x) || down.unsigned_abs() >= u64::from(resolution.y) {
         return None;
     }
@@ -166,11 +166,11 @@ pub struct Tile {
     /// Index of the square: columns to the right and rows upward along the map's axes, counted from
     /// the world's origin.
     pub index: [i64; 2],
-    /// Its projection, of `size` × `size` texels. [`LightFit::origin`] is the tile's own, in the
+    /// Its projection, of `size` × `size` texels. [`LightProjection::origin`] is the tile's own, in the
     /// middle of its near plane: what is drawn into it must be relative to that. All matrices have
     /// the same bits for all tiles, and the origin for the same index, as long as the light, the
     /// map's angle, the texel size and the depth range stay as they are.
-    pub fit: LightFit,
+    pub projection: LightProjection,
     /// Where its visible part lies in the map.
     pub map: TexelRect,
     /// The tile's own texel at the left top of that part.
@@ -185,7 +185,7 @@ pub struct Tiles {
     size: u32,
     axes: LightAxes,
     /// The projection of all tiles.
-    fit: LightFit,
+    fit: LightProjection,
     columns: Range<i64>,
     rows: Range<i64>,
     next: [i64; 2],
@@ -208,8 +208,8 @@ pub struct Tiles {
 /// # };
 /// # let views = [camera.frustum()?];
 /// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-/// let maps = MapFitter::new().fit(&input, &Technique::default(), &mut Workspace::new(&mut storage))?;
+/// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+/// let maps = FitState::new().fit(&input, &Technique::default(), &mut Scratch::new(&mut storage))?;
 /// let mut texels = 0;
 /// for tile in tiles(&maps[0], 256)? {
 ///     // Draw tile.index by tile.fit if it is not kept yet; copy tile.map from it, beginning at tile.from.
@@ -231,7 +231,7 @@ pub struct Tiles {
 pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
     let anchor = map.anchor.ok_or(FitError::NotOnGrid)?;
-    let axes = LightAxes::of_matrix(&map.fit.light_from_world)?;
+    let axes = LightAxes::of_matrix(&map.projection.light_from_world)?;
     for line in anchor.first {
         checks::within("a grid line of the map", line as f64, -MAX_LINE, MAX_LINE)?;
     }
@@ -239,23 +239,24 @@ pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     let cover = |first: i64, texels: u32| {
         first.div_euclid(side)..(first + i64::from(texels) - 1).div_euclid(side).saturating_add(1)
     };
-    let (columns, rows) = (cover(anchor.first[0], map.fit.resolution.x), cover(anchor.first[1], map.fit.resolution.y));
+    let (columns, rows) =
+        (cover(anchor.first[0], map.projection.resolution.x), cover(anchor.first[1], map.projection.resolution.y));
     let next = [columns.start, rows.start];
     let fit = tile_fit(&axes, &anchor, size, map)?;
-    Ok(Tiles { anchor, resolution: map.fit.resolution, size, axes, fit, columns, rows, next })
+    Ok(Tiles { anchor, resolution: map.projection.resolution, size, axes, fit, columns, rows, next })
 }
 
 /// Largest tile, in texels: no texture is larger.
 const MAX_TILE: u32 = 65_536;
 
 /// The projection of a tile whose origin is in the middle of its near plane.
-fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightFit, FitError> {
+fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightProjection, FitError> {
     let half = anchor.texel * (f64::from(size) * 0.5);
     let depth_range = anchor.depth[1] - anchor.depth[0];
     let corners = ((-half).extend(-depth_range), half.extend(0.0));
     let mut volume = Volume::covering(*axes, corners, [Constraint::Held; 6], false);
     volume.light_at_near_plane();
-    LightFit::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.fit.depth)
+    LightProjection::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.projection.depth)
 }
 
 impl Tiles {
@@ -270,7 +271,7 @@ impl Tiles {
             (overlap(left, side, self.resolution.x), overlap(top, side, self.resolution.y));
         Tile {
             index,
-            fit: LightFit { origin, ..self.fit },
+            projection: LightProjection { origin, ..self.fit },
             map: TexelRect { min: UVec2::new(x, y), size: UVec2::new(width, height) },
             from: UVec2::new(from_x, from_y),
         }

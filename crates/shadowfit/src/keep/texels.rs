@@ -22,10 +22,10 @@
 use glam::{DVec3, IVec2, UVec2};
 
 use crate::base::{Aabb, moved};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 
 /// A rectangle of texels. Texture rows count downward from the top, as in
-/// [`uv_from_world`](LightFit::uv_from_world).
+/// [`uv_from_world`](LightProjection::uv_from_world).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TexelRect {
     /// Its left top texel.
@@ -72,7 +72,7 @@ impl TexelRect {
 
     /// The texels of a map that a box may be drawn into, relative to `origin` (world space, metres), with one texel
     /// around them for the rasteriser's rounding. Without texels where the box lies beside the map, or is empty.
-    pub fn of_box(fit: &LightFit, aabb: &Aabb, origin: DVec3) -> Self {
+    pub fn of_box(fit: &LightProjection, aabb: &Aabb, origin: DVec3) -> Self {
         if aabb.is_empty() {
             return Self::default();
         }

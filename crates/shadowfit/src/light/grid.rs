@@ -120,7 +120,7 @@ impl Grid {
 /// Where a map lies on the world's texel grid.
 ///
 /// Its lines run along the map's x and y axis (the rows of
-/// [`light_from_world`](crate::LightFit::light_from_world)) and are counted from the world's origin.
+/// [`light_from_world`](crate::LightProjection::light_from_world)) and are counted from the world's origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GridAnchor {
@@ -128,7 +128,7 @@ pub struct GridAnchor {
     /// above the world's origin.
     pub first: [i64; 2],
     /// Exact size of a texel along x and y, in metres;
-    /// [`LightFit::texel_size`](crate::LightFit::texel_size) is this in f32.
+    /// [`LightProjection::texel_size`](crate::LightProjection::texel_size) is this in f32.
     pub texel: DVec2,
     /// Far and near plane of the map along the direction **toward** the light, from the world's
     /// origin, in metres.

@@ -46,9 +46,9 @@ impl Face {
 }
 
 /// Scratch space for clipping faces.
-pub(crate) struct Scratch([Face; 2]);
+pub(crate) struct OutlineScratch([Face; 2]);
 
-impl Scratch {
+impl OutlineScratch {
     pub(crate) const fn new() -> Self {
         Self([Face::EMPTY; 2])
     }
@@ -88,7 +88,7 @@ impl<'a> Outline<'a> {
         min: DVec3,
         max: DVec3,
         floor: f64,
-        scratch: &mut Scratch,
+        scratch: &mut OutlineScratch,
         mut emit: impl FnMut(DVec3),
     ) {
         if !self.may_hold(min, max, floor) {
@@ -113,7 +113,7 @@ impl<'a> Outline<'a> {
     ///     ╶────────● │
     ///   ─────────────╯
     /// ```
-    fn clip<'s>(&self, face: [DVec3; 4], scratch: &'s mut Scratch) -> &'s Face {
+    fn clip<'s>(&self, face: [DVec3; 4], scratch: &'s mut OutlineScratch) -> &'s Face {
         let [polygon, other] = &mut scratch.0;
         polygon.corners[..4].copy_from_slice(&face);
         polygon.len = 4;

@@ -11,7 +11,7 @@ use glam::{DVec3, Mat4, Vec4};
 use super::{CoverageQuery, MapPlane};
 use crate::base::checks::UNIT;
 use crate::base::{DepthConvention, FitError, checks};
-use crate::fits::LightFit;
+use crate::fits::LightProjection;
 
 /// Roundings of each term of an affine matrix times an f32 position, as multiples of 2⁻²⁴: one of
 /// the position relative to the origin, and four operations each of which shaders may round
@@ -39,7 +39,7 @@ pub(super) struct HalfSpace {
     /// Texels or metres for each unit of the function.
     unit: f64,
     /// What must be left free, in texels or metres.
-    need: f64,
+    demand: f64,
 }
 
 impl HalfSpace {
@@ -50,7 +50,7 @@ impl HalfSpace {
         let value = terms.x + terms.y + terms.z + self.constant;
         let sum = terms.x.abs() + terms.y.abs() + terms.z.abs() + self.shift;
         let corner = CORNER_ROUNDING * checks::length(p) * checks::length(self.row);
-        (value - TERM_ROUNDINGS * UNIT * sum - FLUSHED - corner) * self.unit - self.need
+        (value - TERM_ROUNDINGS * UNIT * sum - FLUSHED - corner) * self.unit - self.demand
     }
 }
 
@@ -67,7 +67,7 @@ struct Matrix {
 }
 
 impl HalfSpaces {
-    pub(super) fn new(fit: &LightFit, query: &CoverageQuery) -> Result<Self, FitError> {
+    pub(super) fn new(fit: &LightProjection, query: &CoverageQuery) -> Result<Self, FitError> {
         if fit.resolution.x == 0 || fit.resolution.y == 0 {
             return Err(FitError::ZeroResolution { resolution: fit.resolution });
         }
@@ -110,11 +110,11 @@ impl HalfSpaces {
 
 impl HalfSpace {
     const NONE: Self =
-        Self { plane: MapPlane::Near, row: DVec3::ZERO, constant: 0.0, shift: 0.0, unit: 0.0, need: 0.0 };
+        Self { plane: MapPlane::Near, row: DVec3::ZERO, constant: 0.0, shift: 0.0, unit: 0.0, demand: 0.0 };
 }
 
 impl Matrix {
-    fn half_spaces(&self, fit: &LightFit, query: &CoverageQuery, out: &mut [HalfSpace]) -> Result<(), FitError> {
+    fn half_spaces(&self, fit: &LightProjection, query: &CoverageQuery, out: &mut [HalfSpace]) -> Result<(), FitError> {
         for element in self.elements.to_cols_array() {
             checks::finite(self.name, f64::from(element))?;
         }
@@ -131,7 +131,7 @@ impl Matrix {
             let row = rows[axis].truncate();
             // Metres for each unit of the function.
             let metres = 1.0 / checks::within(self.name, checks::length(row), f64::MIN_POSITIVE, f64::MAX)?;
-            let (unit, need) = if axis < 2 {
+            let (unit, demand) = if axis < 2 {
                 let extent = (other - at).abs();
                 let texels = resolution[axis] / checks::within("the light's box", extent, f64::MIN_POSITIVE, f64::MAX)?;
                 let disc = f64::from(query.reach.disc[axis]);
@@ -148,7 +148,7 @@ impl Matrix {
                 constant: (rows[axis].w - at) * sign,
                 shift: rows[axis].w.abs(),
                 unit,
-                need,
+                demand,
             };
         }
         Ok(())

@@ -1,6 +1,6 @@
-//! A certificate that a map has no holes: every receiver lies in it, and no caster is lost.
+//! A proof that a map has no holes: every receiver lies in it, and no caster is lost.
 //!
-//! [`verify`] looks at a fit's matrices alone and not at how they came about, so it holds for fits
+//! [`prove`] looks at a fit's matrices alone and not at how they came about, so it holds for fits
 //! that were held, moved to another origin, stored or changed. What it states holds for **all**
 //! points of the receivers, and is proven by the corners of each box clipped to the view; the
 //! rounding of f32 positions, matrices and shader arithmetic is bounded and required as free space.
@@ -24,19 +24,19 @@ use crate::base::{FitError, box_corners, checks, moved};
 use crate::bias::{HARDWARE_SNAP, Reach};
 use crate::content::Content;
 use crate::fits::covered::LightHull;
-use crate::fits::{Covers, FitInput, LightFit, Workspace};
-use crate::light::{LightAxes, Outline, Scratch};
+use crate::fits::{Covers, FitInput, LightProjection, Scratch};
+use crate::light::{LightAxes, Outline, OutlineScratch};
 use crate::map::FittedMap;
 use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, FitSettings};
 use crate::view::{Range, Slice};
 use half_space::HalfSpaces;
 
-/// What [`verify`] found.
+/// What [`prove`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[must_use = "a certificate says whether the map has holes"]
-pub enum Certificate {
+#[must_use = "a proof says whether the map has holes"]
+pub enum CoverageProof {
     /// There are no holes: all receivers are inside with all that the filter reads, and none of
     /// the given casters is lost.
     Proven(Margins),
@@ -50,7 +50,7 @@ pub enum Certificate {
         /// It includes the filter's reach and the bound of the rounding.
         by: f32,
     },
-    /// A receiver is seen although the fit [says](LightFit::is_empty) that none is, so that its
+    /// A receiver is seen although the fit [says](LightProjection::is_empty) that none is, so that its
     /// shadow pass may be left out.
     MarkedEmpty {
         /// A point of it, in world space.
@@ -66,7 +66,7 @@ pub enum Certificate {
     },
 }
 
-impl Certificate {
+impl CoverageProof {
     /// Whether the map has no holes.
     pub const fn is_proven(&self) -> bool {
         matches!(self, Self::Proven(_))
@@ -96,19 +96,19 @@ pub struct Margins {
 ///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
 ///   offset; for maps that are [read by coverage](CoverageQuery::is_shared) those over any part of the map.
 ///   Nothing is proven of casters that are not given.
-/// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
+/// - **Rounding**: positions are taken as f32 relative to [`LightProjection::origin`], multiplied by
 ///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
-///   to another origin need [`LightFit::relative_to`] first, and a certificate of that.
+///   to another origin need [`LightProjection::relative_to`] first, and a proof of that.
 ///
 /// World positions are f64, in metres. The fit of the XNA sample has no caster policy, so the
-/// certificate reports any caster that lies before the frustum.
+/// proof reports any caster that lies before the frustum.
 ///
 /// ```
 /// use shadowfit::bias::Reach;
 /// use shadowfit::glam::{DVec2, DVec3, Vec3};
-/// use shadowfit::proof::{Certificate, CoverageQuery, MapPlane, verify};
+/// use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, prove};
 /// use shadowfit::settings::FitSettings;
-/// use shadowfit::{FitInput, PerspectiveCamera, Workspace};
+/// use shadowfit::{FitInput, PerspectiveCamera, Scratch};
 ///
 /// let camera = PerspectiveCamera {
 ///     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -121,18 +121,18 @@ pub struct Margins {
 /// };
 /// let views = [camera.frustum()?];
 /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-/// let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-/// let mut workspace = Workspace::new(&mut storage);
+/// let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+/// let mut workspace = Scratch::new(&mut storage);
 ///
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
 /// let settings = FitSettings::default().with_border(0.5);
 /// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
 /// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
-/// assert!(verify(&input, &map, &query, &mut workspace)?.is_proven());
+/// assert!(prove(&input, &map, &query, &mut workspace)?.is_proven());
 ///
-/// // Without them there is a hole, and the certificate says where.
+/// // Without them there is a hole, and the proof says where.
 /// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
-/// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &query, &mut workspace)? else { panic!() };
+/// let CoverageProof::Uncovered { plane, by, .. } = prove(&input, &map, &query, &mut workspace)? else { panic!() };
 /// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
@@ -141,7 +141,7 @@ pub struct Margins {
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
-/// # use shadowfit::proof::{CoverageQuery, verify};
+/// # use shadowfit::proof::{CoverageQuery, prove};
 /// # use shadowfit::*;
 /// # let mut camera = PerspectiveCamera {
 /// #     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -152,9 +152,9 @@ pub struct Margins {
 /// #     near: 0.1,
 /// #     far: 200.0,
 /// # };
-/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-/// # let mut workspace = Workspace::new(&mut storage);
-/// let (mut fitter, technique) = (MapFitter::new(), Technique::default());
+/// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+/// # let mut workspace = Scratch::new(&mut storage);
+/// let (mut fitter, technique) = (FitState::new(), Technique::default());
 /// for _ in 0..10 {
 ///     camera.eye.x += 0.3;
 ///     let views = [camera.frustum()?];
@@ -164,8 +164,8 @@ pub struct Margins {
 ///         for map in maps.iter() {
 ///             let query = CoverageQuery::of_map(map, &technique, technique.filter.into())
 ///                 .with_normal_offset(map.bias.normal_offset);
-///             let certificate = verify(&input, &map.fit, &query, &mut workspace)?;
-///             assert!(certificate.is_proven(), "{certificate:?}");
+///             let proof = prove(&input, &map.fit, &query, &mut workspace)?;
+///             assert!(proof.is_proven(), "{proof:?}");
 ///         }
 ///     }
 /// }
@@ -178,13 +178,13 @@ pub struct Margins {
 /// [`fit_scene`](crate::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
 /// query and for a fit whose matrices are not those of a light; [`FitError::ZeroResolution`];
 /// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing);
-/// [`FitError::WorkspaceTooSmall`].
-pub fn verify(
+/// [`FitError::ScratchTooSmall`].
+pub fn prove(
     input: &FitInput,
-    fit: &LightFit,
+    fit: &LightProjection,
     query: &CoverageQuery,
-    workspace: &mut Workspace,
-) -> Result<Certificate, FitError> {
+    workspace: &mut Scratch,
+) -> Result<CoverageProof, FitError> {
     let range = query.checked()?;
     if input.views.is_empty() {
         return Err(FitError::NoView);
@@ -200,8 +200,8 @@ pub fn verify(
     let offset = content.origin - fit.origin;
     let mut receivers = Worst::new(&half_spaces, offset);
     receivers.add_all(&content, range);
-    if let Some(certificate) = receivers.failure(fit) {
-        return Ok(certificate);
+    if let Some(proof) = receivers.failure(fit) {
+        return Ok(proof);
     }
     let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     let has_casters = content.casters.is_some_and(|casters| !casters.boxes.is_empty());
@@ -216,16 +216,16 @@ pub fn verify(
             nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
         };
         if by < 0.0 {
-            return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
+            return Ok(CoverageProof::CasterLost { point: fit.origin + point, by: -by as f32 });
         }
         margins.casters = by as f32;
     }
-    Ok(Certificate::Proven(margins))
+    Ok(CoverageProof::Proven(margins))
 }
 
 /// All of a map, as an outline along its axes relative to the content's origin, and the greatest distance of it from
 /// the fit's origin. `offset` is from that to the content's.
-fn whole_map(fit: &LightFit, axes: &LightAxes, offset: DVec3) -> ([DVec2; 4], f64) {
+fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> ([DVec2; 4], f64) {
     let (min, max) = fit.clip_box();
     let moved = fit.light_from_world.w_axis.truncate().as_dvec3();
     let from = (moved + axes.project(offset)).truncate();
@@ -237,21 +237,21 @@ fn whole_map(fit: &LightFit, axes: &LightAxes, offset: DVec3) -> ([DVec2; 4], f6
 
 /// How far around the outline casters are read, in metres: the reach of the filter with the
 /// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
-fn caster_reach(fit: &LightFit, query: &CoverageQuery, distance: f64) -> f64 {
+fn caster_reach(fit: &LightProjection, query: &CoverageQuery, distance: f64) -> f64 {
     let reach = query.reach.disc.as_dvec2() + f64::from(query.reach.taps);
     texels(fit, reach) + f64::from(query.normal_offset) + raster_reach(fit, distance)
 }
 
 /// How far around a map casters are drawn into it, in metres: the rasteriser's snap, and what rounding may shift both
 /// receivers and casters.
-fn raster_reach(fit: &LightFit, distance: f64) -> f64 {
+fn raster_reach(fit: &LightProjection, distance: f64) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
     let rounding = SHIFT_ROUNDINGS * UNIT * (distance + size.max_element());
     texels(fit, DVec2::splat(f64::from(HARDWARE_SNAP))) + rounding
 }
 
 /// A number of texels along both axes, as a distance in metres.
-fn texels(fit: &LightFit, count: DVec2) -> f64 {
+fn texels(fit: &LightProjection, count: DVec2) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
     let texels = count * size / fit.resolution.as_dvec2();
     libm::sqrt(texels.dot(texels))
@@ -264,7 +264,7 @@ const SHIFT_ROUNDINGS: f64 = 32.0;
 /// The casters' least distance behind the near plane, in metres, and where.
 fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
     let casters = content.casters.unwrap_or_default();
-    let (moved_by, mut scratch) = (casters.origin - content.origin, Scratch::new());
+    let (moved_by, mut scratch) = (casters.origin - content.origin, OutlineScratch::new());
     let mut least = (f64::INFINITY, DVec3::ZERO);
     for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
         let (min, max) = moved(aabb, moved_by);
@@ -335,10 +335,10 @@ impl<'a> Worst<'a> {
     }
 
     /// What is wrong, if anything: the plane that most of the map's extent is missing at.
-    fn failure(&self, fit: &LightFit) -> Option<Certificate> {
+    fn failure(&self, fit: &LightProjection) -> Option<CoverageProof> {
         let point = self.any?;
         if fit.is_empty {
-            return Some(Certificate::MarkedEmpty { point: fit.origin + point });
+            return Some(CoverageProof::MarkedEmpty { point: fit.origin + point });
         }
         let (across, along) = (fit.resolution.as_dvec2(), f64::from(fit.depth_range));
         let extents = [across.x, across.x, across.y, across.y, along, along];
@@ -346,7 +346,7 @@ impl<'a> Worst<'a> {
         for ((plane, (margin, p)), extent) in MapPlane::ALL.into_iter().zip(self.least).zip(extents) {
             if margin / extent < worst.0 {
                 let by = -margin as f32;
-                worst = (margin / extent, Some(Certificate::Uncovered { plane, point: fit.origin + p, by }));
+                worst = (margin / extent, Some(CoverageProof::Uncovered { plane, point: fit.origin + p, by }));
             }
         }
         worst.1
@@ -372,7 +372,7 @@ pub struct CoverageQuery {
     pub normal_offset: f32,
     /// Whether all that lies inside the map may read it, at any depth and in later frames, so that no caster over any
     /// part of it may lie before the near plane: maps that are read by
-    /// [coverage](crate::settings::MapChoice::Coverage). Else only the receivers between the view depths do.
+    /// [coverage](crate::settings::MapSelection::Coverage). Else only the receivers between the view depths do.
     pub is_shared: bool,
     /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none. The
     /// other policies make no difference here.
@@ -435,6 +435,6 @@ pub enum MapPlane {
 }
 
 impl MapPlane {
-    /// All planes, in the order of [`LightFit::set_by`](crate::LightFit::set_by).
+    /// All planes, in the order of [`LightProjection::set_by`](crate::LightProjection::set_by).
     pub const ALL: [Self; 6] = [Self::Left, Self::Right, Self::Bottom, Self::Top, Self::Far, Self::Near];
 }

@@ -26,7 +26,7 @@ use crate::fits::rectangle::Rectangle;
 use crate::fits::{Constraint, FitInput, FitRule, Frame, Snapping, Volume, near_plane};
 use crate::light::grid::Grid;
 use crate::light::{LightAxes, grid};
-use crate::technique::settings::HoldSettings;
+use crate::technique::settings::Hysteresis;
 use crate::view::{Range, ViewFrustum};
 
 /// A map of an earlier frame, in absolute world coordinates.
@@ -49,7 +49,7 @@ pub(super) struct HeldMap {
 /// Keeps the maps of a frame.
 pub(super) struct Holder<'a, 'b> {
     pub(super) frame: &'a Frame<'a, 'b>,
-    pub(super) settings: HoldSettings,
+    pub(super) settings: Hysteresis,
     /// How the camera moved since the frame before.
     pub(super) motion: Option<Motion>,
 }
@@ -70,7 +70,7 @@ impl Holder<'_, '_> {
             return self.make(&fresh(points)?, rule, slice, points);
         };
         // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
-        let waste = f64::from(self.settings.waste);
+        let waste = f64::from(self.settings.max_waste);
         let held_size = held.texel * rule.usable();
         let held_area = held_size.x * held_size.y;
         if held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste {
@@ -112,7 +112,7 @@ impl Holder<'_, '_> {
         }
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
-        let waste = f64::from(self.settings.waste);
+        let waste = f64::from(self.settings.max_waste);
         let (z, _) = self.depths(&kept, needed, rule);
         kept.z = grid::stabilised_depth(Some(held.z), (z.0 + anchor.z, z.1 + anchor.z), waste);
         kept.is_empty = needed.is_empty;
@@ -159,7 +159,7 @@ impl Holder<'_, '_> {
         let view = &self.frame.input.views[0];
         let motion = self.motion.filter(|motion| !motion.is_still(view))?;
         let plain = trial(&FitRule { border: 0.0, ..*rule });
-        let (old, growth) = (fresh.max - fresh.min, f64::from(self.settings.growth));
+        let (old, growth) = (fresh.max - fresh.min, f64::from(self.settings.max_growth));
         let mut within_growth = |frames: u32| {
             let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
             let larger = self.fit_ahead(&ahead, &plain, slice, points).ok()?;
@@ -167,10 +167,10 @@ impl Holder<'_, '_> {
             Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth)
         };
         if !rule.serves_all {
-            return steps_ahead(self.settings.horizon).find_map(within_growth);
+            return steps_ahead(self.settings.look_ahead).find_map(within_growth);
         }
         // The more frames the larger: the greatest of a few numbers is found by halves.
-        let steps = || core::iter::successors(Some(self.settings.horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
+        let steps = || core::iter::successors(Some(self.settings.look_ahead), |n| Some(n / 2)).take_while(|n| *n > 0);
         let (mut low, mut high, mut found) = (0, steps().count(), None);
         while low < high {
             let middle = usize::midpoint(low, high);
@@ -197,7 +197,7 @@ impl Holder<'_, '_> {
         let now = (z.0 + anchor, z.1 + anchor);
         let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
         // A depth range that the next frame would give up at once is not used.
-        map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.settings.waste));
+        map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.settings.max_waste));
         map.set_by[5] = near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }

@@ -20,7 +20,7 @@ use crate::base::FitError;
 use crate::base::checks::VIEW_DEPTH_ROUNDING;
 use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
 use crate::technique::Slices;
-use crate::technique::settings::{HoldSettings, MAX_MAPS, MapChoice, Stabilise};
+use crate::technique::settings::{Hysteresis, MAX_MAPS, MapSelection, Stabilise};
 use crate::view::{Range, ViewFrustum};
 
 use bins::Splits;
@@ -90,7 +90,7 @@ impl Placer<'_, '_> {
     ) -> Result<PlacedMaps, FitError> {
         let is_snapped = matches!(self.settings.stabilise, Stabilise::Snap { .. });
         let snapping = if is_snapped { Snapping::OnGrid } else { Snapping::Tight };
-        let (origin, waste) = (self.frame.content.origin, f64::from(self.settings.stabilise.waste()));
+        let (origin, waste) = (self.frame.content.origin, f64::from(self.settings.stabilise.max_waste()));
         let mut maps = [None; MAX_MAPS];
         for (i, map) in maps.iter_mut().enumerate().take(self.settings.count as usize) {
             let volume = self.fitted(i, snapping)?;
@@ -108,7 +108,7 @@ impl Placer<'_, '_> {
     /// All maps, held ones while they serve.
     fn hold(
         &mut self,
-        hold: HoldSettings,
+        hold: Hysteresis,
         before: Option<&[Option<HeldMap>; MAX_MAPS]>,
         held: &mut [Option<HeldMap>; MAX_MAPS],
     ) -> Result<PlacedMaps, FitError> {
@@ -154,7 +154,7 @@ impl Placer<'_, '_> {
     /// The view depths that a map covers.
     fn slice_range(&self, map: usize) -> Range {
         let splits = &self.splits;
-        let overlap = if let MapChoice::ViewDepth { overlap } = self.settings.choice { overlap } else { 0.0 };
+        let overlap = if let MapSelection::ViewDepth { overlap } = self.settings.selection { overlap } else { 0.0 };
         let near =
             if map == 0 { self.frame.range.near } else { splits[map] - overlap * (splits[map] - splits[map - 1]) };
         Range { near, far: splits[map + 1] }

@@ -156,7 +156,7 @@ impl Chooser<'_, '_> {
     fn kept(&self, splits: &Splits, last_far: f32, now: (f64, f64)) -> Option<Splits> {
         let count = self.settings.count as usize;
         let (end, far) = (f64::from(splits[count]), f64::from(self.frame.range.far));
-        let is_wasteful = end > self.end(now) * f64::from(self.settings.stabilise.waste());
+        let is_wasteful = end > self.end(now) * f64::from(self.settings.stabilise.max_waste());
         let needed = now.1.min(far);
         let is_same_far = (far - f64::from(last_far)).abs() <= far.abs() * FAR_ROUNDING;
         let reaches = end >= needed || (is_same_far && end >= f64::from(last_far));
@@ -183,7 +183,7 @@ impl Chooser<'_, '_> {
     /// best ones.
     fn serves(&self, splits: &Splits, held: (f64, f64), now: (f64, f64)) -> bool {
         let count = self.settings.count as usize;
-        let waste = f64::from(self.settings.stabilise.waste());
+        let waste = f64::from(self.settings.stabilise.max_waste());
         if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
             let is_near = |now: f64, held: f64| now >= held / waste && now <= held * waste;
             let bounded = self.bounded(now);

@@ -2,7 +2,7 @@
 
 use crate::base::{FitError, checks};
 use crate::technique::settings::{
-    DEFAULT_WASTE, FitKind, HoldSettings, MAX_MAPS, MapChoice, RectangleKind, Shape, SplitScheme, Stabilise, setters,
+    DEFAULT_WASTE, FitKind, Hysteresis, MAX_MAPS, MapSelection, RectangleKind, Shape, SplitScheme, Stabilise, setters,
 };
 
 /// How the view is shared out among the maps.
@@ -25,22 +25,22 @@ impl Default for Maps {
 
 /// World-locked clipmaps that are placed by demand: squares of the plane across the light (or rectangles, where the
 /// light is low) on a grid that is fixed to the world, each where it helps most of what is visible. They are
-/// [read by coverage](MapChoice::Coverage). The module [`windows`](crate::Windows) describes them.
+/// [read by coverage](MapSelection::Coverage). The module [`windows`](crate::Windows) describes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Windows {
     /// Number of maps, 1..=8. Default: 4.
     pub count: u32,
     /// Texels over which a window is blended into the next coarser one, inward from the filter's reach to its border,
-    /// 0..=[`MapChoice::MAX_BLEND`]; 0 for none. Default: 8.
+    /// 0..=[`MapSelection::MAX_BLEND`]; 0 for none. Default: 8.
     pub blend: f32,
     /// A window's depth range is kept until it is longer than necessary by this factor, 1..=100. Default: 1.8.
-    pub depth_waste: f32,
+    pub max_depth_waste: f32,
 }
 
 impl Default for Windows {
     fn default() -> Self {
-        Self { count: 4, blend: MapChoice::DEFAULT_BLEND, depth_waste: DEFAULT_WASTE }
+        Self { count: 4, blend: MapSelection::DEFAULT_BLEND, max_depth_waste: DEFAULT_WASTE }
     }
 }
 
@@ -60,8 +60,8 @@ pub struct Slices {
     /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
     /// boxes where no histogram is given.
     pub splits: SplitScheme,
-    /// Which of the maps a point reads. Default: [`MapChoice::Coverage`].
-    pub choice: MapChoice,
+    /// Which of the maps a point reads. Default: [`MapSelection::Coverage`].
+    pub selection: MapSelection,
     /// What keeps the maps stable. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
 }
@@ -72,7 +72,7 @@ impl Default for Slices {
             count: 4,
             shape: Shape::default(),
             splits: SplitScheme::default(),
-            choice: MapChoice::default(),
+            selection: MapSelection::default(),
             stabilise: Stabilise::default(),
         }
     }
@@ -92,22 +92,22 @@ impl OneMap {
     /// The map as the only slice of the view.
     pub(crate) fn slice(&self) -> Slices {
         let Self { shape, stabilise } = *self;
-        let choice = MapChoice::Coverage { blend: 0.0 };
-        Slices { count: 1, shape, splits: SplitScheme::Logarithmic, choice, stabilise }
+        let choice = MapSelection::Coverage { blend: 0.0 };
+        Slices { count: 1, shape, splits: SplitScheme::Logarithmic, selection: choice, stabilise }
     }
 }
 
 setters!(Windows {
     with_count count: u32,
     with_blend blend: f32,
-    with_depth_waste depth_waste: f32,
+    with_max_depth_waste max_depth_waste: f32,
 });
 
 setters!(Slices {
     with_count count: u32,
     with_shape shape: Shape,
     with_splits splits: SplitScheme,
-    with_choice choice: MapChoice,
+    with_selection selection: MapSelection,
     with_stabilise stabilise: Stabilise,
 });
 
@@ -185,10 +185,10 @@ impl Maps {
     /// These slices, or the nearest to maps of another kind: as many (of one map: 2), with what both kinds have.
     pub fn as_slices(&self) -> Slices {
         match *self {
-            Self::Windows(Windows { count, blend, depth_waste: waste }) => Slices {
+            Self::Windows(Windows { count, blend, max_depth_waste: waste }) => Slices {
                 count: count.max(2),
-                choice: MapChoice::Coverage { blend },
-                stabilise: Stabilise::Hysteresis(HoldSettings { waste, ..HoldSettings::default() }),
+                selection: MapSelection::Coverage { blend },
+                stabilise: Stabilise::Hysteresis(Hysteresis { max_waste: waste, ..Hysteresis::default() }),
                 ..Slices::default()
             },
             Self::Slices(slices) => slices,
@@ -198,14 +198,14 @@ impl Maps {
 
     /// These windows, or the nearest to maps of another kind: as many, with what both kinds have.
     pub fn as_windows(&self) -> Windows {
-        let windows = |count, blend, waste| Windows { count, blend, depth_waste: waste };
+        let windows = |count, blend, waste| Windows { count, blend, max_depth_waste: waste };
         match *self {
             Self::Windows(windows) => windows,
-            Self::Slices(Slices { count, choice, stabilise, .. }) => {
-                let blend = if choice.is_by_coverage() { choice.blend() } else { MapChoice::DEFAULT_BLEND };
-                windows(count, blend, stabilise.waste())
+            Self::Slices(Slices { count, selection: choice, stabilise, .. }) => {
+                let blend = if choice.is_by_coverage() { choice.blend() } else { MapSelection::DEFAULT_BLEND };
+                windows(count, blend, stabilise.max_waste())
             }
-            Self::One(OneMap { stabilise, .. }) => windows(1, MapChoice::DEFAULT_BLEND, stabilise.waste()),
+            Self::One(OneMap { stabilise, .. }) => windows(1, MapSelection::DEFAULT_BLEND, stabilise.max_waste()),
         }
     }
 
@@ -228,11 +228,11 @@ impl Maps {
     }
 
     /// Which of the maps a point reads.
-    pub const fn choice(&self) -> MapChoice {
+    pub const fn selection(&self) -> MapSelection {
         match self {
-            Self::Windows(windows) => MapChoice::Coverage { blend: windows.blend },
-            Self::Slices(slices) => slices.choice,
-            Self::One(_) => MapChoice::Coverage { blend: 0.0 },
+            Self::Windows(windows) => MapSelection::Coverage { blend: windows.blend },
+            Self::Slices(slices) => slices.selection,
+            Self::One(_) => MapSelection::Coverage { blend: 0.0 },
         }
     }
 
@@ -264,17 +264,17 @@ impl Maps {
     pub(crate) fn check(&self) -> Result<(), FitError> {
         let least = if matches!(self, Self::Slices(_)) { 2.0 } else { 1.0 };
         checks::within("the number of maps", f64::from(self.count()), least, MAX_MAPS as f64)?;
-        match self.choice() {
-            MapChoice::Coverage { blend } => {
-                checks::within("the maps' blend", f64::from(blend), 0.0, f64::from(MapChoice::MAX_BLEND))?;
+        match self.selection() {
+            MapSelection::Coverage { blend } => {
+                checks::within("the maps' blend", f64::from(blend), 0.0, f64::from(MapSelection::MAX_BLEND))?;
             }
-            MapChoice::ViewDepth { overlap } => {
+            MapSelection::ViewDepth { overlap } => {
                 checks::within("the maps' overlap", f64::from(overlap), 0.0, 1.0)?;
             }
         }
         match self {
             Self::Windows(windows) => {
-                checks::within("the windows' depth waste", f64::from(windows.depth_waste), 1.0, 100.0)?;
+                checks::within("the windows' depth waste", f64::from(windows.max_depth_waste), 1.0, 100.0)?;
             }
             Self::Slices(Slices { stabilise, .. }) | Self::One(OneMap { stabilise, .. }) => check_kept(*stabilise)?,
         }
@@ -286,8 +286,8 @@ impl Maps {
 fn check_kept(stabilise: Stabilise) -> Result<(), FitError> {
     if let Stabilise::Hysteresis(hold) = stabilise {
         checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
-        checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
+        checks::within("the hold's growth", f64::from(hold.max_growth), 1.0, 100.0)?;
     }
-    checks::within("the hold's waste", f64::from(stabilise.waste()), 1.0, 100.0)?;
+    checks::within("the hold's waste", f64::from(stabilise.max_waste()), 1.0, 100.0)?;
     Ok(())
 }

@@ -148,6 +148,6 @@ impl Technique {
     /// Whether more may read a map than the receivers that it is made for: those of other view depths, or of
     /// later frames.
     pub(crate) const fn shares_maps(&self) -> bool {
-        self.maps.choice().is_by_coverage() && (self.maps.count() > 1 || self.maps.are_kept())
+        self.maps.selection().is_by_coverage() && (self.maps.count() > 1 || self.maps.are_kept())
     }
 }

@@ -56,7 +56,7 @@ pub static PRESETS: [Preset; 9] = [
         name: "stable-4",
         summary: "4 maps around spheres on a fixed grid of texels, splits from the boxes and held",
         advice: "Where no edge may ever crawl, and coarser shadows are a fair price.",
-        make: || several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap { waste: 4.0 }),
+        make: || several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap { max_waste: 4.0 }),
     },
     Preset {
         name: "focused-4",

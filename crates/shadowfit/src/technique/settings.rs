@@ -90,7 +90,7 @@ pub enum CasterPolicy {
     /// At the first caster that can cast a shadow into view: each box is clipped to that volume.
     /// As [`Self::Extend`] where the casters are not known. The default.
     #[default]
-    List,
+    PerObject,
     /// At the covered region, with the pipeline's depth clamp keeping casters before it
     /// ("pancaking"). Culling still uses the unclamped volume, and filters cannot use the distance
     /// to a clamped caster.
@@ -143,7 +143,7 @@ pub struct MapSettings {
     /// [`Technique::border`]: crate::Technique::border
     pub border: Option<f32>,
     /// What places the near plane. [`FitKind::XnaSample`] ignores it: the sample has none. Default:
-    /// [`CasterPolicy::List`].
+    /// [`CasterPolicy::PerObject`].
     pub casters: CasterPolicy,
     /// How far [`CasterPolicy::Extend`] moves the near plane toward the light, in metres. Default:
     /// 50, which holds most buildings. It also stands in where the casters are not known.
@@ -167,7 +167,7 @@ impl Default for MapSettings {
             max_distance: f32::MAX,
             margin: 0.0,
             border: None,
-            casters: CasterPolicy::List,
+            casters: CasterPolicy::PerObject,
             caster_extension: 50.0,
             up: Vec3::Y,
             least_texel: 0.0,
@@ -241,7 +241,7 @@ pub enum SplitScheme {
 /// Which of several maps a point reads; [`crate::selection`] has the rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum MapChoice {
+pub enum MapSelection {
     /// The finest one that holds the point with all that the filter reads around it, whatever the
     /// point's view depth. The default, with [`Self::DEFAULT_BLEND`].
     Coverage {
@@ -257,13 +257,13 @@ pub enum MapChoice {
     },
 }
 
-impl Default for MapChoice {
+impl Default for MapSelection {
     fn default() -> Self {
         Self::Coverage { blend: Self::DEFAULT_BLEND }
     }
 }
 
-impl MapChoice {
+impl MapSelection {
     /// Texels over which maps are blended by default.
     pub const DEFAULT_BLEND: f32 = 8.0;
 
@@ -296,28 +296,28 @@ pub enum Stabilise {
     /// still change when the camera turns.
     Snap {
         /// Splits and depth ranges are kept until they are larger than necessary by this factor, 1..=100.
-        waste: f32,
+        max_waste: f32,
     },
     /// A map is kept, its angle included, and moved by whole texels as long as it covers what it
-    /// must and wastes no more than [`HoldSettings::waste`]. A new map is made large enough for the
+    /// must and wastes no more than [`Hysteresis::max_waste`]. A new map is made large enough for the
     /// predicted motion. The default.
-    Hysteresis(HoldSettings),
+    Hysteresis(Hysteresis),
 }
 
 impl Default for Stabilise {
     fn default() -> Self {
-        Self::Hysteresis(HoldSettings::default())
+        Self::Hysteresis(Hysteresis::default())
     }
 }
 
 impl Stabilise {
     /// How many times larger than necessary something that is kept may become.
-    pub const fn waste(self) -> f32 {
+    pub const fn max_waste(self) -> f32 {
         match self {
             // Nothing but the depth range of a sphere, which lies on the world's grid.
             Self::Off => DEFAULT_WASTE,
-            Self::Snap { waste } => waste,
-            Self::Hysteresis(hold) => hold.waste,
+            Self::Snap { max_waste } => max_waste,
+            Self::Hysteresis(hold) => hold.max_waste,
         }
     }
 }
@@ -325,22 +325,22 @@ impl Stabilise {
 /// When [`Stabilise::Hysteresis`] keeps a map and how much room a new one gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct HoldSettings {
+pub struct Hysteresis {
     /// Room left around what a new map must cover, as a share of its extent, 0..=10. Default: 0.02.
     pub margin: f32,
     /// A new map also covers what the camera will see if it goes on moving as it did, for as many
     /// frames as make the map wider by at most this factor, 1..=100. Default: 1.4.
-    pub growth: f32,
+    pub max_growth: f32,
     /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
     /// splits are chosen anew by the same rule. Default: 1.8.
-    pub waste: f32,
+    pub max_waste: f32,
     /// Greatest number of frames to look ahead. Default: 32.
-    pub horizon: u32,
+    pub look_ahead: u32,
 }
 
-impl Default for HoldSettings {
+impl Default for Hysteresis {
     fn default() -> Self {
-        Self { margin: 0.02, growth: 1.4, waste: DEFAULT_WASTE, horizon: 32 }
+        Self { margin: 0.02, max_growth: 1.4, max_waste: DEFAULT_WASTE, look_ahead: 32 }
     }
 }
 
@@ -551,11 +551,11 @@ setters!(FitSettings.map {
     with_depth depth: DepthConvention,
 });
 
-setters!(HoldSettings {
+setters!(Hysteresis {
     with_margin margin: f32,
-    with_growth growth: f32,
-    with_waste waste: f32,
-    with_horizon horizon: u32,
+    with_max_growth max_growth: f32,
+    with_max_waste max_waste: f32,
+    with_look_ahead look_ahead: u32,
 });
 
 setters!(BiasSettings {

@@ -11,7 +11,7 @@ use super::cells::{Cells, Counted};
 use crate::base::checks;
 use crate::content::Content;
 use crate::content::normal_cone::NormalCone;
-use crate::demand::need::{NeedSpace, PIXELS, Plane, needed_texel};
+use crate::demand::grid::{DemandSpace, PIXELS, Plane, needed_texel};
 use crate::fits::FitInput;
 use crate::view::{Picture as Positions, RayCount, Slice, View, covered, crossing};
 
@@ -41,7 +41,7 @@ struct Ray {
 /// Adds what the views see of the boxes, up to a view depth. `up` is the world's.
 pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane: &Plane, (up, distance): (DVec3, f32)) {
     for (view, frustum) in content.views().zip(content.views) {
-        let Ok(space) = NeedSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
+        let Ok(space) = DemandSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
         let picture = Picture::new(&view, plane);
         #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
         let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];

@@ -7,7 +7,7 @@
 use glam::{DVec3, Vec2};
 
 use crate::base::checks::{greater, lesser};
-use crate::demand::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
+use crate::demand::grid::{DemandGrid, DemandSpace, LEVELS, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
 pub(super) const MAX_CELLS: usize = 1024;
@@ -154,7 +154,7 @@ impl Cells {
     }
 
     /// Adds points that were counted in a space.
-    pub(super) fn add(&mut self, counted: &Counted, share: f32, (space, plane): (&NeedSpace, &Plane), origin: DVec3) {
+    pub(super) fn add(&mut self, counted: &Counted, share: f32, (space, plane): (&DemandSpace, &Plane), origin: DVec3) {
         let offset = plane.of(plane.axes.project(space.origin - origin));
         let finest = counted.finest(share);
         for (index, weight) in &counted.cells[..counted.len] {
@@ -178,7 +178,7 @@ impl Cells {
     }
 
     /// Adds the cells of a grid.
-    pub(super) fn add_grid(&mut self, grid: &NeedGrid, plane: &Plane, origin: DVec3) {
+    pub(super) fn add_grid(&mut self, grid: &DemandGrid, plane: &Plane, origin: DVec3) {
         let mut counted = Counted::new();
         for (row, counts) in grid.counts.chunks(SIDE).enumerate() {
             if counts.iter().fold(0, |all, count| all | count) == 0 {

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use crate::base::checks::{ROUNDING, THINNEST};
 use crate::base::{Boxes, FitError, moved};
 use crate::content::Content;
-use crate::demand::need::Plane;
+use crate::demand::grid::Plane;
 use crate::fits::{Constraint, Depth, FitRule};
 use crate::light::LightAxes;
 use crate::view::Range;
@@ -34,7 +34,7 @@ impl<'a> Shadows<'a> {
         let count = |boxes: &Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len() * PER_BOX);
         let (r, c) = (count(&content.receivers), count(&content.casters));
         if points.len() < r + c {
-            return Err(FitError::WorkspaceTooSmall { given: points.len(), required: r + c });
+            return Err(FitError::ScratchTooSmall { given: points.len(), required: r + c });
         }
         let (for_receivers, rest) = points.split_at_mut(r);
         let for_casters = &mut rest[..c];

@@ -24,7 +24,7 @@
 //! texels are square.
 //!
 //! **Sharp.** Each visible point asks for a texel that is as wide as the point's pixel along its
-//! narrower axis, as the light sees it; [`need`](crate::need) counts points by place and by that
+//! narrower axis, as the light sees it; [`demand`](crate::demand) counts points by place and by that
 //! width s. A point that reads texels of width t costs (t / s)^(3/2), and the windows are to make the
 //! sum small. Since t and s are separate factors, the best place for a window of a given size is where
 //! the sum of s^(-3/2) over the points inside, those in finer windows left out, is greatest, whatever
@@ -33,16 +33,16 @@
 //! moves as little as it can, when it holds less than 98.5% of what it could. One of them is replaced by its
 //! counterpart in the background plan when all of them together cost 1.35 times as much as the plan; this limit
 //! falls to 1.1 within a second (at 60 frames a second) after the last replacement. Several are replaced at once
-//! only in the frame in which the first grid of need arrives.
+//! only in the frame in which the first demand grid arrives.
 //!
 //! **Whole.** The last window holds the boxes of all receivers in view, and every window's depth range
 //! holds all receivers' and casters' boxes over it, seen or not: what stands still need not be drawn
-//! again ([`scroll`](crate::scroll)), and a late or wrong grid of need costs sharpness, never coverage.
+//! again ([`scroll`](crate::scroll)), and a late or wrong demand grid costs sharpness, never coverage.
 //! Without a grid (the first frame, a camera cut, no depth buffer) what is visible is estimated by rays
 //! through the boxes.
 //!
 //! They are the maps of a technique with [`Windows`], fitted by
-//! [`MapFitter`](crate::MapFitter), and read by [coverage](crate::selection).
+//! [`FitState`](crate::FitState), and read by [coverage](crate::selection).
 //!
 //! The idea of maps nested around the eye on a grid fixed to the world is that of clipmaps (C. Tanner,
 //! C. Migdal, M. Jones, "The clipmap: a virtual mipmap", 1998; F. Losasso and H. Hoppe, "Geometry
@@ -62,7 +62,7 @@ pub(crate) use search::Held as HeldWindows;
 use glam::{DVec2, DVec3};
 
 use crate::base::{FitError, checks};
-use crate::demand::need::Plane;
+use crate::demand::grid::Plane;
 use crate::fits::{Constraint, FitRule, Frame, PlacedMap, PlacedMaps, Volume};
 use crate::light::grid::{self, Grid};
 use crate::technique::Windows;
@@ -96,7 +96,7 @@ pub(crate) fn place(
     for (i, map) in maps.iter_mut().enumerate().take(last + 1) {
         let window = &mut held.drawn[i];
         window.z = drawn_before.map(|drawn| &drawn[i]).filter(|was| was.steps == window.steps).and_then(|was| was.z);
-        let volume = volume(frame, settings.depth_waste, &lattice, window, &shadows);
+        let volume = volume(frame, settings.max_depth_waste, &lattice, window, &shadows);
         // Only the last one holds all that is seen between any depths.
         let covered_near = if i < last { frame.range.far } else { frame.range.near };
         *map = Some(PlacedMap { volume, near: frame.range.near, far: frame.range.far, covered_near });
@@ -107,7 +107,7 @@ pub(crate) fn place(
 /// What is visible, and whether that is only estimated from the boxes.
 fn visible(frame: &Frame, plane: &Plane) -> (Cells, bool) {
     let mut cells = Cells::new();
-    for grid in frame.input.need.iter().filter(|grid| grid.is_for(plane)) {
+    for grid in frame.input.demand.iter().filter(|grid| grid.is_for(plane)) {
         cells.add_grid(grid, plane, frame.content.origin);
     }
     let is_guess = cells.len == 0;

@@ -43,7 +43,7 @@ struct Served {
 const LADDERS: [i32; 6] = [4, 7, 10, 13, 17, 22];
 
 /// How much finer than the last window's the first one's texels may be, in eighths of an octave: more than the
-/// octaves of a grid of need, and little enough that all its lines are exact.
+/// octaves of a demand grid, and little enough that all its lines are exact.
 const FINEST: i32 = 20 * 8;
 
 /// Changes of a window's texels that are tried, in eighths of an octave.

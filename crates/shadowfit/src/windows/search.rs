@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::cells::{Cells, Rect};
 use super::plan::{Plan, Planner, SERVES};
 use super::{Lattice, Window};
-use crate::demand::need::Plane;
+use crate::demand::grid::Plane;
 use crate::technique::settings::MAX_MAPS;
 
 /// What windows begin with in the next frame.
@@ -38,7 +38,7 @@ struct Progress {
     holds: [f32; MAX_MAPS],
     /// Frames since a drawn window was replaced, up to [`OLD`].
     age: u8,
-    /// Whether no grid of need is known yet, so that what is visible is estimated from boxes.
+    /// Whether no demand grid is known yet, so that what is visible is estimated from boxes.
     is_guess: bool,
 }
 

@@ -12,7 +12,7 @@ use shadowfit::bias::{MIN_COSINE, depth_gradient, depth_precision, normal_offset
 use shadowfit::diagnostics::{DepthStorage, acne_margin, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FitKind, MapFormat};
-use shadowfit::{Bias, DepthConvention, LightFit};
+use shadowfit::{Bias, DepthConvention, LightProjection};
 
 use crate::filters::{Filter, filters};
 use crate::support::{any_camera, any_direction, apply, cases, exact, fitted, float};
@@ -25,7 +25,7 @@ const SNAPS: f64 = 256.0;
 
 /// The plane through a point, as the shadow pass stores it.
 struct Stored<'a> {
-    fit: &'a LightFit,
+    fit: &'a LightProjection,
     storage: DepthStorage,
     /// World position, relative to the fit's origin, from texture coordinates and from the plane.
     world_from_rows: DMat3,
@@ -75,7 +75,7 @@ fn rounded(storage: DepthStorage, depth: f64) -> [f64; 3] {
 /// A point of a plane under a fit, and the normal on the light's side.
 #[derive(Clone, Copy, Debug)]
 struct Case {
-    fit: LightFit,
+    fit: LightProjection,
     point: Vec3,
     normal: Vec3,
 }
@@ -135,7 +135,7 @@ impl Case {
 
 /// Fits of any camera and light, with maps from 64 texels on and uneven texels, relative to the eye
 /// or to points up to 60 boxes away, where f32 is coarse.
-fn any_fit() -> impl Strategy<Value = LightFit> {
+fn any_fit() -> impl Strategy<Value = LightProjection> {
     let depth = prop_oneof![Just(DepthConvention::ZeroToOne), Just(DepthConvention::Reversed)];
     let resolution =
         (prop_oneof![Just(64_u32), Just(500), Just(2048)], prop_oneof![Just(64_u32), Just(1024), Just(8192)]);
@@ -170,7 +170,7 @@ fn any_case() -> impl Strategy<Value = Case> {
 
 /// Whether a plane that faces the light shadows itself at any of a thousand depths of a fit's range, with a number of
 /// depth steps and no other bias, however the format rounds the stored depth.
-fn has_bands(fit: &LightFit, format: MapFormat, depth_steps: f32) -> bool {
+fn has_bands(fit: &LightProjection, format: MapFormat, depth_steps: f32) -> bool {
     let settings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps };
     let bias = f64::from(Bias::from_texels(&settings, format, fit).constant_depth);
     // The rounding of a 32-bit float, which the constant in texels covers.

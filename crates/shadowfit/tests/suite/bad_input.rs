@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::FitSettings;
-use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::{DepthConvention, FitError, LightProjection, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{DIRECTION, KINDS, any_kind, camera, cases, exact, fitted};
 
@@ -21,7 +21,7 @@ struct Inputs {
 }
 
 impl Inputs {
-    fn fit(&self) -> Result<LightFit, FitError> {
+    fn fit(&self) -> Result<LightProjection, FitError> {
         shadowfit::fit(&self.camera.frustum()?, self.direction, &self.settings)
     }
 }
@@ -53,7 +53,7 @@ fn good(kind: shadowfit::settings::FitKind) -> Inputs {
     Inputs { camera: camera(), direction: DIRECTION, settings: exact(kind) }
 }
 
-fn is_finite(fit: &LightFit) -> bool {
+fn is_finite(fit: &LightProjection) -> bool {
     let world = fit.world_matrices();
     let matrices = [
         fit.light_from_world,

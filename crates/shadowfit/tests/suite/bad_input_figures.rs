@@ -7,7 +7,7 @@ use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at,
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::settings::{BiasSettings, FitKind, MapFormat};
-use shadowfit::{Bias, FitError, LightFit};
+use shadowfit::{Bias, FitError, LightProjection};
 
 use crate::support::{DIRECTION, camera, cases, exact, fitted};
 
@@ -87,7 +87,7 @@ fn good() -> Inputs {
 }
 
 /// Calls everything and gives all numbers that come back, as soon as none of them is an error.
-fn figures(fit: &LightFit, i: &Inputs) -> Result<Vec<f32>, FitError> {
+fn figures(fit: &LightProjection, i: &Inputs) -> Result<Vec<f32>, FitError> {
     let point = (i.point - fit.origin).as_vec3();
     let on_plane = i.bias.on_plane(fit, i.normal)?;
     let automatic = Bias::automatic(i.reach, DepthStorage::Unorm16, fit)?;
@@ -114,7 +114,7 @@ fn figures(fit: &LightFit, i: &Inputs) -> Result<Vec<f32>, FitError> {
     Ok(all)
 }
 
-fn fit() -> LightFit {
+fn fit() -> LightProjection {
     fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb))
 }
 
@@ -195,7 +195,7 @@ fn bias_settings_that_are_not_finite_are_refused_once_converted() {
 
 #[test]
 fn a_fit_filled_with_bad_numbers_by_hand_gives_an_error_or_finite_figures() {
-    let sets: [fn(&mut LightFit, f32); 5] = [
+    let sets: [fn(&mut LightProjection, f32); 5] = [
         |fit, v| fit.texel_size = Vec2::splat(v),
         |fit, v| fit.depth_range = v,
         |fit, v| fit.light_from_world.x_axis.y = v,

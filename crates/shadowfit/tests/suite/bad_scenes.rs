@@ -6,12 +6,12 @@ use shadowfit::NormalCone;
 use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, RectangleKind, Shape, SoftRadius,
+    CasterPolicy, FilterKind, FitKind, FitSettings, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius,
     SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, FitError, FitInput, FittedMaps, LightFit, MapFitter, Maps, OneMap, Slices, Technique, ViewFrustum,
-    Windows, Workspace,
+    Aabb, Boxes, FitError, FitInput, FitState, FittedMaps, LightProjection, Maps, OneMap, Scratch, Slices, Technique,
+    ViewFrustum, Windows,
 };
 
 use crate::support::{DIRECTION, camera, cases, every_stabilise, sliced};
@@ -50,12 +50,12 @@ fn good() -> Inputs {
         bins: vec![1, 5, 9, 2, 0, 3],
         classes: 2,
         settings: Technique::preset("calm-4").unwrap().with_count(3),
-        storage: Workspace::required(2, 2),
+        storage: Scratch::required(2, 2),
     }
 }
 
 impl Inputs {
-    fn with<T>(&self, run: impl FnOnce(&FitInput, &mut Workspace) -> T) -> T {
+    fn with<T>(&self, run: impl FnOnce(&FitInput, &mut Scratch) -> T) -> T {
         let histogram = DepthHistogram { near: self.near, far: self.far, bins: &self.bins, classes: self.classes };
         let input = FitInput {
             receivers: Some(Boxes { origin: self.origins[0], boxes: &self.receivers }),
@@ -66,14 +66,14 @@ impl Inputs {
             ..FitInput::new(&self.views, self.direction)
         };
         let mut storage = vec![DVec2::NAN; self.storage];
-        run(&input, &mut Workspace::new(&mut storage))
+        run(&input, &mut Scratch::new(&mut storage))
     }
 
-    fn fit(&self, fitter: &mut MapFitter) -> Result<FittedMaps, FitError> {
+    fn fit(&self, fitter: &mut FitState) -> Result<FittedMaps, FitError> {
         self.with(|input, workspace| fitter.fit(input, &self.settings, workspace))
     }
 
-    fn single(&self) -> Result<LightFit, FitError> {
+    fn single(&self) -> Result<LightProjection, FitError> {
         let settings = FitSettings { shape: self.settings.maps.shape().unwrap_or_default(), map: self.settings.fit };
         self.with(|input, workspace| shadowfit::fit_scene(input, &settings, workspace))
     }
@@ -94,7 +94,7 @@ impl Inputs {
     }
 
     /// Changes how maps are held, where they are.
-    fn hold(&mut self, change: impl FnOnce(&mut HoldSettings)) {
+    fn hold(&mut self, change: impl FnOnce(&mut Hysteresis)) {
         self.stabilise(|stabilise| {
             if let Stabilise::Hysteresis(hold) = stabilise {
                 change(hold);
@@ -112,28 +112,28 @@ impl Inputs {
     fn set_blend(&mut self, texels: f32) {
         match &mut self.settings.maps {
             Maps::Windows(windows) => windows.blend = texels,
-            Maps::Slices(slices) => slices.choice = MapChoice::Coverage { blend: texels },
+            Maps::Slices(slices) => slices.selection = MapSelection::Coverage { blend: texels },
             Maps::One(_) => {}
         }
     }
 
     fn set_waste(&mut self, factor: f32) {
         if let Maps::Windows(windows) = &mut self.settings.maps {
-            windows.depth_waste = factor;
+            windows.max_depth_waste = factor;
         }
         self.stabilise(|stabilise| match stabilise {
             Stabilise::Off => {}
-            Stabilise::Snap { waste } => *waste = factor,
-            Stabilise::Hysteresis(hold) => hold.waste = factor,
+            Stabilise::Snap { max_waste } => *max_waste = factor,
+            Stabilise::Hysteresis(hold) => hold.max_waste = factor,
         });
     }
 
     /// Fits twice, so that what is kept from the first frame is used by the second.
     fn check(&self, name: &str) {
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         for _ in 0..2 {
             for map in self.fit(&mut fitter).iter().flat_map(|maps| maps.iter()) {
-                assert!(is_finite(&map.fit), "{name}: {map:?}");
+                assert!(is_finite(&map.projection), "{name}: {map:?}");
                 assert!(!map.near.is_nan() && !map.far.is_nan() && !map.covered_near.is_nan(), "{name}: {map:?}");
             }
         }
@@ -143,7 +143,7 @@ impl Inputs {
     }
 }
 
-fn is_finite(fit: &LightFit) -> bool {
+fn is_finite(fit: &LightProjection) -> bool {
     [fit.light_from_world, fit.clip_from_light, fit.clip_from_world, fit.uv_from_world].iter().all(Mat4::is_finite)
         && fit.texel_size.is_finite()
         && fit.texel_size.min_element() > 0.0
@@ -201,10 +201,10 @@ const SETTERS: [Setter; 57] = [
     ("second manual split", |i, v| {
         i.slices(|slices| slices.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]));
     }),
-    ("overlap", |i, v| i.slices(|slices| slices.choice = MapChoice::ViewDepth { overlap: v as f32 })),
+    ("overlap", |i, v| i.slices(|slices| slices.selection = MapSelection::ViewDepth { overlap: v as f32 })),
     ("blend", |i, v| i.set_blend(v as f32)),
     ("hold margin", |i, v| i.hold(|hold| hold.margin = v as f32)),
-    ("hold growth", |i, v| i.hold(|hold| hold.growth = v as f32)),
+    ("hold growth", |i, v| i.hold(|hold| hold.max_growth = v as f32)),
     ("waste", |i, v| i.set_waste(v as f32)),
     ("softness in metres", |i, v| i.settings.softness.radius = SoftRadius::Metres(v as f32)),
     ("softness by angle", |i, v| i.settings.softness.radius = SoftRadius::SunAngle(v as f32)),
@@ -220,7 +220,7 @@ const SETTERS: [Setter; 57] = [
     ("normal offset", |i, v| i.settings.bias.normal_offset = v as f32),
     ("receiver-plane bias", |i, v| i.settings.bias.receiver_plane = v as f32),
     ("depth steps", |i, v| i.settings.bias.depth_steps = v as f32),
-    ("hold horizon", |i, v| i.hold(|hold| hold.horizon = v as u32)),
+    ("hold horizon", |i, v| i.hold(|hold| hold.look_ahead = v as u32)),
 ];
 
 const VALUES: [f64; 22] = [
@@ -284,7 +284,7 @@ fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
             for value in VALUES {
                 let mut inputs = good();
                 inputs.settings.maps = maps;
-                inputs.settings.fit.casters = CasterPolicy::List;
+                inputs.settings.fit.casters = CasterPolicy::PerObject;
                 set(&mut inputs, value);
                 inputs.check(name);
             }
@@ -309,12 +309,12 @@ fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
                 // An infinite corner makes a box that holds nothing, which is allowed.
                 let is_emptied = matches!(name, "receiver min" | "caster min") && value == f64::INFINITY
                     || matches!(name, "receiver max" | "caster max") && value == f64::NEG_INFINITY;
-                let mut fitter = MapFitter::new();
+                let mut fitter = FitState::new();
                 before.fit(&mut fitter).unwrap();
                 let result = bad.fit(&mut fitter);
                 if !is_emptied {
                     assert!(matches!(result, Err(FitError::NotFinite { .. })), "{name} = {value}: {result:?}");
-                    let mut undisturbed = MapFitter::new();
+                    let mut undisturbed = FitState::new();
                     before.fit(&mut undisturbed).unwrap();
                     assert_eq!(before.fit(&mut fitter), before.fit(&mut undisturbed), "{name} = {value}");
                 }
@@ -328,7 +328,7 @@ fn counts_outside_of_one_to_eight_windows_and_two_to_eight_slices_are_refused() 
     let refused = |maps: Maps| {
         let mut inputs = good();
         inputs.settings.maps = maps;
-        let result = inputs.fit(&mut MapFitter::new());
+        let result = inputs.fit(&mut FitState::new());
         let count = f64::from(maps.count());
         assert!(matches!(result, Err(FitError::OutOfRange { value, .. }) if value == count), "{maps:?}: {result:?}");
     };
@@ -350,16 +350,16 @@ fn settings_without_meaning_are_refused() {
         ("splits that stay", |i, _| {
             i.slices(|slices| slices.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
         }),
-        ("overlap above", |i, _| i.slices(|slices| slices.choice = MapChoice::ViewDepth { overlap: 1.1 })),
-        ("overlap below", |i, _| i.slices(|slices| slices.choice = MapChoice::ViewDepth { overlap: -0.1 })),
+        ("overlap above", |i, _| i.slices(|slices| slices.selection = MapSelection::ViewDepth { overlap: 1.1 })),
+        ("overlap below", |i, _| i.slices(|slices| slices.selection = MapSelection::ViewDepth { overlap: -0.1 })),
         ("blend above", |i, _| i.set_blend(64.1)),
         ("blend below", |i, _| i.set_blend(-0.1)),
         ("windows' blend above", |i, _| i.settings.maps = Windows::default().with_blend(64.1).into()),
         ("windows' blend below", |i, _| i.settings.maps = Windows::default().with_blend(-0.1).into()),
-        ("windows' waste above", |i, _| i.settings.maps = Windows::default().with_depth_waste(100.1).into()),
-        ("windows' waste below", |i, _| i.settings.maps = Windows::default().with_depth_waste(0.9).into()),
-        ("snapped waste above", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { waste: 100.1 })),
-        ("snapped waste below", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { waste: 0.9 })),
+        ("windows' waste above", |i, _| i.settings.maps = Windows::default().with_max_depth_waste(100.1).into()),
+        ("windows' waste below", |i, _| i.settings.maps = Windows::default().with_max_depth_waste(0.9).into()),
+        ("snapped waste above", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { max_waste: 100.1 })),
+        ("snapped waste below", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { max_waste: 0.9 })),
         ("fade above", |i, _| i.settings.fade = 1.1),
         ("fade below", |i, _| i.settings.fade = -0.1),
         ("least texel", |i, _| i.settings.fit.least_texel = -0.1),
@@ -375,8 +375,8 @@ fn settings_without_meaning_are_refused() {
         }),
         ("ceiling below", |i, _| (i.settings.softness.floor, i.settings.softness.ceiling) = (0.0, 0.9)),
         ("ceiling above", |i, _| i.settings.softness.ceiling = 64.1),
-        ("waste", |i, _| i.hold(|hold| hold.waste = 0.9)),
-        ("growth", |i, _| i.hold(|hold| hold.growth = 0.9)),
+        ("waste", |i, _| i.hold(|hold| hold.max_waste = 0.9)),
+        ("growth", |i, _| i.hold(|hold| hold.max_growth = 0.9)),
         ("hold margin", |i, _| i.hold(|hold| hold.margin = -0.1)),
         ("kernel as wide as the map", |i, _| i.settings.fit.border = Some(1e4)),
         ("no view", |i, _| i.views.clear()),
@@ -384,7 +384,7 @@ fn settings_without_meaning_are_refused() {
     for (name, set) in refused {
         let mut inputs = good();
         set(&mut inputs, 0.0);
-        assert!(inputs.fit(&mut MapFitter::new()).is_err(), "{name}");
+        assert!(inputs.fit(&mut FitState::new()).is_err(), "{name}");
     }
 }
 
@@ -394,14 +394,14 @@ fn penumbrae_by_distance_are_refused_where_depth_clamp_loses_the_distance() {
         for (casters, filter) in [
             (CasterPolicy::DepthClamp, FilterKind::Pcss),
             (CasterPolicy::DepthClamp, FilterKind::Vogel16),
-            (CasterPolicy::List, FilterKind::Pcss),
+            (CasterPolicy::PerObject, FilterKind::Pcss),
         ] {
             let mut inputs = good();
             (inputs.settings.maps, inputs.settings.fit.casters, inputs.settings.filter) = (maps, casters, filter);
             // The XNA sample's fit has no caster policy.
             let is_xna = maps.shape().is_some_and(|shape| shape.kind == FitKind::XnaSample);
             let is_refused = casters == CasterPolicy::DepthClamp && filter == FilterKind::Pcss && !is_xna;
-            let result = inputs.fit(&mut MapFitter::new());
+            let result = inputs.fit(&mut FitState::new());
             let refusal = matches!(result, Err(FitError::ClampedCasters));
             assert!(
                 refusal == is_refused && result.is_ok() != is_refused,
@@ -418,7 +418,7 @@ fn any_number_of_views_is_an_error_or_is_fitted() {
             let mut inputs = good();
             inputs.views = vec![inputs.views[0]; count];
             inputs.settings.maps = maps;
-            inputs.storage = Workspace::required(2, count);
+            inputs.storage = Scratch::required(2, count);
             inputs.check("views");
         }
     }
@@ -428,16 +428,16 @@ fn any_number_of_views_is_an_error_or_is_fitted() {
 fn a_workspace_of_any_length_is_too_small_or_enough() {
     let mut was_small = 0;
     for maps in every_maps() {
-        for storage in 0..=Workspace::required(2, 2) {
+        for storage in 0..=Scratch::required(2, 2) {
             let mut inputs = good();
             inputs.settings.maps = maps;
             inputs.slices(|slices| slices.splits = SplitScheme::Uniform);
             inputs.storage = storage;
-            let results = [inputs.single().map(|_| ()), inputs.fit(&mut MapFitter::new()).map(|_| ())];
+            let results = [inputs.single().map(|_| ()), inputs.fit(&mut FitState::new()).map(|_| ())];
             for result in results {
                 match result {
                     Ok(()) => {}
-                    Err(FitError::WorkspaceTooSmall { given, required }) => {
+                    Err(FitError::ScratchTooSmall { given, required }) => {
                         assert!(given < required && given <= storage, "{given} {required}");
                         was_small += 1;
                     }
@@ -465,7 +465,7 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
             .collect();
         for stabilise in every_stabilise() {
             for rectangle in [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare] {
-                let fit = FitSettings::default().with_rectangle(rectangle).with_casters(CasterPolicy::List);
+                let fit = FitSettings::default().with_rectangle(rectangle).with_casters(CasterPolicy::PerObject);
                 let splits = SplitScheme::Uniform;
                 let inputs = Inputs {
                     views: vec![view],
@@ -475,11 +475,11 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                     casters: boxes.clone(),
                     cones: Vec::new(),
                     settings: sliced(&fit, Slices { count: 2, splits, stabilise, ..Slices::default() }),
-                    storage: Workspace::required(boxes.len(), 1),
+                    storage: Scratch::required(boxes.len(), 1),
                     ..good()
                 };
                 inputs.single().unwrap();
-                let mut fitter = MapFitter::new();
+                let mut fitter = FitState::new();
                 inputs.fit(&mut fitter).unwrap();
                 inputs.fit(&mut fitter).unwrap();
             }
@@ -495,7 +495,7 @@ proptest! {
     fn no_bit_patterns_panic_and_every_map_that_is_made_is_finite(
         bits in prop::collection::vec((0..SETTERS.len(), any::<u32>(), any::<bool>()), 1..6),
         maps in prop::sample::select(every_maps()),
-        policy in prop::sample::select(vec![CasterPolicy::None, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::List]),
+        policy in prop::sample::select(vec![CasterPolicy::None, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::PerObject]),
         splits in crate::scenes::any_splits(),
     ) {
         let mut inputs = good();

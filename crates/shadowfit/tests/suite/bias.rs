@@ -8,7 +8,7 @@ use shadowfit::bias::{
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat, SoftRadius, Softness};
-use shadowfit::{Bias, LightFit};
+use shadowfit::{Bias, LightProjection};
 
 use crate::filters::{Filter, filters};
 use crate::support::{DIRECTION, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
@@ -116,7 +116,7 @@ fn five_percent_less_than_the_plane_offset_leaves_acne() {
 #[test]
 fn texels_become_depth_and_metres_by_the_longer_side() {
     let settings = exact(FitKind::FrustumAabb).with_resolution(UVec2::new(512, 2048));
-    let fit: LightFit = fitted(&camera(), DIRECTION, &settings);
+    let fit: LightProjection = fitted(&camera(), DIRECTION, &settings);
     let texel = fit.texel_size.max_element();
     assert!(fit.texel_size.min_element() < texel);
     let settings =
@@ -161,7 +161,7 @@ fn automatic_settings_follow_the_filter_s_reach() {
 #[test]
 fn the_automatic_bias_is_the_worst_azimuth_s_on_hardware() {
     let settings = exact(FitKind::FrustumAabb).with_resolution(UVec2::new(512, 2048));
-    let fit: LightFit = fitted(&camera(), DIRECTION, &settings);
+    let fit: LightProjection = fitted(&camera(), DIRECTION, &settings);
     let reach = Reach::kernel(3);
     let bias = Bias::automatic(reach, DepthStorage::Unorm16, &fit).unwrap();
     let needed = f64::from(reach.on_hardware(&fit).taps) * fit.texel_size.as_dvec2().length();
@@ -193,7 +193,7 @@ fn reaches_are_what_their_filters_read() {
 
 #[test]
 fn a_bias_on_a_plane_is_the_sum_of_its_forms() {
-    let fit: LightFit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
+    let fit: LightProjection = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
     let bias = Bias { constant_depth: 0.001, slope_depth: 0.002, normal_offset: 0.3, receiver_plane: 1.5 };
     let to_light = -fit.direction;
     let across = to_light.any_orthonormal_vector();

@@ -116,7 +116,7 @@ fn with_depth_clamp_a_map_holds_casters_before_its_near_plane_too() {
     let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
     let corners = fit.corners();
     let before = (corners[0] + corners[2]) * 0.5 - fit.direction * 1000.0;
-    assert!(!CasterVolume::of_map(&fit, CasterPolicy::List).intersects_sphere(before, 1.0));
+    assert!(!CasterVolume::of_map(&fit, CasterPolicy::PerObject).intersects_sphere(before, 1.0));
     let clamped = CasterVolume::of_map(&fit, CasterPolicy::DepthClamp);
     assert!(clamped.intersects_sphere(before, 1.0));
     assert_eq!(clamped.cut_at_near_plane(&fit), CasterVolume::of_map(&fit, CasterPolicy::None));

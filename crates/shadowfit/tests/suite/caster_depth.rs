@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, Stabilise};
-use shadowfit::{Aabb, Boxes, FitInput, LightFit, MapFitter, Technique, Workspace};
+use shadowfit::{Aabb, Boxes, FitInput, FitState, LightProjection, Scratch, Technique};
 
 use crate::scenes::{
     BoxPlan, SceneView, Walk, any_box, any_covering_fit, any_light, any_technique, any_view, any_walk, share,
@@ -79,7 +79,7 @@ fn crossing(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<(f64, f64)> {
 
 /// Fails unless all of a caster that shades a point is in the map. `points` and boxes are relative
 /// to the eye, which is the fit's origin.
-fn assert_kept(fit: &LightFit, point: DVec3, casters: &[Aabb], to_light: DVec3) {
+fn assert_kept(fit: &LightProjection, point: DVec3, casters: &[Aabb], to_light: DVec3) {
     for aabb in casters {
         let Some((enter, leave)) = crossing(point, to_light, aabb) else { continue };
         for t in [enter, (enter + leave) * 0.5, leave] {
@@ -130,7 +130,7 @@ impl Stage {
 }
 
 fn any_policy() -> impl Strategy<Value = CasterPolicy> {
-    prop_oneof![Just(CasterPolicy::SceneBounds), Just(CasterPolicy::List)]
+    prop_oneof![Just(CasterPolicy::SceneBounds), Just(CasterPolicy::PerObject)]
 }
 
 fn solid_boxes() -> impl Strategy<Value = Vec<BoxPlan>> {
@@ -151,8 +151,8 @@ proptest! {
         prop_assume!(stage.is_some());
         let stage = stage.unwrap();
         let views = [view.frustum()];
-        let mut storage = vec![DVec2::ZERO; Workspace::required(6, 1)];
-        let map = shadowfit::fit_scene(&stage.input(&views, direction), &fit, &mut Workspace::new(&mut storage)).unwrap();
+        let mut storage = vec![DVec2::ZERO; Scratch::required(6, 1)];
+        let map = shadowfit::fit_scene(&stage.input(&views, direction), &fit, &mut Scratch::new(&mut storage)).unwrap();
         for point in &stage.points {
             assert_kept(&map, *point, &stage.casters, stage.to_light);
         }
@@ -169,7 +169,7 @@ proptest! {
         let settings = settings.with_fit(settings.fit.with_casters(policy));
         let last = f64::from(settings.fit.max_distance);
         prop_assume!(view.lens.near < last);
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         let frames = if matches!(settings.maps.as_one().stabilise, Stabilise::Hysteresis(_)) { 3 } else { 1 };
         let mut view = view;
         for _ in 0..frames {
@@ -181,13 +181,13 @@ proptest! {
     }
 }
 
-fn check_frame(fitter: &mut MapFitter, view: &SceneView, settings: &Technique, stage: &Stage, direction: Vec3) {
+fn check_frame(fitter: &mut FitState, view: &SceneView, settings: &Technique, stage: &Stage, direction: Vec3) {
     let views = [view.frustum()];
-    let mut storage = vec![DVec2::ZERO; Workspace::required(6, 1)];
-    let maps = fitter.fit(&stage.input(&views, direction), settings, &mut Workspace::new(&mut storage)).unwrap();
+    let mut storage = vec![DVec2::ZERO; Scratch::required(6, 1)];
+    let maps = fitter.fit(&stage.input(&views, direction), settings, &mut Scratch::new(&mut storage)).unwrap();
     for point in &stage.points {
         let depth = views[0].forward.dot(point.as_vec3());
         let map = maps.iter().find(|map| depth < map.far).unwrap();
-        assert_kept(&map.fit, *point, &stage.casters, stage.to_light);
+        assert_kept(&map.projection, *point, &stage.casters, stage.to_light);
     }
 }

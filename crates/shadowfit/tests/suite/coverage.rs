@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::FitKind;
-use shadowfit::{Aabb, Boxes, FitInput, FittedMap, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMap, LightProjection, Scratch, Technique, ViewFrustum};
 
 use crate::scenes::{
     BoxPlan, SceneView, any_box, any_covering_fit, any_light, any_technique, any_view, any_walk, of_camera, share,
@@ -63,7 +63,7 @@ fn seen(samples: &[Sample], view: &SceneView, receivers: Option<Boxes>, last: f6
 }
 
 /// Fails unless the point lies in the map as a shader computes it, with the border around it.
-fn assert_stored(fit: &LightFit, border: f32, point: DVec3) {
+fn assert_stored(fit: &LightProjection, border: f32, point: DVec3) {
     let local = (point - fit.origin).as_vec3();
     let uv = apply(&fit.uv_from_world, local);
     let (texel, size) = (uv.truncate().as_dvec2() * fit.resolution.as_dvec2(), fit.resolution.as_dvec2());
@@ -108,12 +108,12 @@ impl Stage {
 }
 
 fn workspace(boxes: usize, views: usize) -> Vec<DVec2> {
-    vec![DVec2::ZERO; Workspace::required(boxes, views)]
+    vec![DVec2::ZERO; Scratch::required(boxes, views)]
 }
 
 /// Fits one frame and looks up what its views see.
 fn check_frame(
-    fitter: &mut MapFitter,
+    fitter: &mut FitState,
     settings: &Technique,
     views: &[SceneView],
     stage: &Stage,
@@ -126,15 +126,15 @@ fn check_frame(
     let receivers = stage.receivers();
     let input = FitInput { receivers, histogram: Some(histogram), ..FitInput::new(&frusta, direction) };
     let mut storage = workspace(stage.boxes.as_ref().map_or(0, Vec::len), views.len());
-    let maps = fitter.fit(&input, settings, &mut Workspace::new(&mut storage)).unwrap();
+    let maps = fitter.fit(&input, settings, &mut Scratch::new(&mut storage)).unwrap();
     assert_eq!(maps.len(), settings.maps.count() as usize);
     let last = f64::from(settings.fit.max_distance);
     for (view, frustum) in views.iter().zip(&frusta) {
         for point in seen(samples, view, receivers, last) {
             let depth = frustum.forward.dot(point.as_vec3());
             for map in chosen(&maps, depth) {
-                assert!(!map.fit.is_empty, "what is seen at {depth} m lies in a map that nobody draws");
-                assert_stored(&map.fit, settings.border(), view.eye + point);
+                assert!(!map.projection.is_empty, "what is seen at {depth} m lies in a map that nobody draws");
+                assert_stored(&map.projection, settings.border(), view.eye + point);
             }
         }
     }
@@ -153,7 +153,7 @@ proptest! {
         let frusta = [view.frustum()];
         let input = FitInput { receivers: stage.receivers(), ..FitInput::new(&frusta, direction) };
         let mut storage = workspace(10, 1);
-        let map = shadowfit::fit_scene(&input, &fit, &mut Workspace::new(&mut storage)).unwrap();
+        let map = shadowfit::fit_scene(&input, &fit, &mut Scratch::new(&mut storage)).unwrap();
         // Only one fit looks at receivers; the others store all that is in view.
         let receivers = if fit.shape.kind == FitKind::Focused { stage.receivers() } else { None };
         let points = seen(&samples, &view, receivers, f64::from(fit.map.max_distance));
@@ -174,7 +174,7 @@ proptest! {
         if let Some(other) = views.get_mut(1) {
             *other = apart.0.moved(other);
         }
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         for _ in 0..frames {
             check_frame(&mut fitter, &settings, &views, &stage, direction, &samples);
             for view in &mut views {
@@ -193,6 +193,6 @@ proptest! {
         prop_assume!(camera.near < settings.fit.max_distance);
         let view = of_camera(&camera);
         let stage = Stage::new(&plans, &view);
-        check_frame(&mut MapFitter::new(), &settings, &[view], &stage, direction, &samples);
+        check_frame(&mut FitState::new(), &settings, &[view], &stage, direction, &samples);
     }
 }

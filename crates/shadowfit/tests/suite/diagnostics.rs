@@ -7,7 +7,7 @@ use shadowfit::diagnostics::{
 };
 use shadowfit::glam::{DMat2, DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::{FitKind, MapFormat};
-use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera};
+use shadowfit::{Bias, DepthConvention, LightProjection, PerspectiveCamera};
 
 use crate::support::{DIRECTION, any_camera, any_direction, any_kind, camera, cases, double, exact, fitted, float};
 
@@ -18,12 +18,12 @@ fn pixel(clip_from_world: &Mat4, p: DVec3) -> DVec2 {
     clip.truncate().truncate() / clip.w * 0.5 * VIEWPORT.as_dvec2()
 }
 
-fn texel(fit: &LightFit, p: DVec3) -> DVec2 {
+fn texel(fit: &LightProjection, p: DVec3) -> DVec2 {
     (fit.uv_from_world.as_dmat4() * p.extend(1.0)).truncate().truncate() * fit.resolution.as_dvec2()
 }
 
 /// ∂(pixel)/∂(texel) by central differences over the surface.
-fn numeric(fit: &LightFit, clip: &Mat4, point: DVec3, normal: DVec3, step: f64) -> DMat2 {
+fn numeric(fit: &LightProjection, clip: &Mat4, point: DVec3, normal: DVec3, step: f64) -> DMat2 {
     let (a, b) = normal.any_orthonormal_pair();
     let difference = |f: &dyn Fn(DVec3) -> DVec2, t: DVec3| (f(point + t * step) - f(point - t * step)) / (2.0 * step);
     let jacobian = |f: &dyn Fn(DVec3) -> DVec2| DMat2::from_cols(difference(f, a), difference(f, b));
@@ -123,7 +123,7 @@ fn depth_steps_are_those_of_the_formats() {
 }
 
 /// A point at texture coordinates and a distance from the near plane, all 0..1 inside.
-fn in_map(fit: &LightFit, u: f64, v: f64, depth: f64) -> DVec3 {
+fn in_map(fit: &LightProjection, u: f64, v: f64, depth: f64) -> DVec3 {
     let corners = fit.corners().map(Vec3::as_dvec3);
     let edge = |i: usize, share: f64| (corners[i] - corners[0]) * share;
     fit.origin + corners[0] + edge(1, u) + edge(3, v) + edge(4, depth)

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec3, DVec4, Vec3, Vec4};
 use shadowfit::settings::FitKind;
-use shadowfit::{DepthConvention, LightFit, PerspectiveCamera};
+use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera};
 
 use crate::support::{any_camera, any_direction, double, exact, fitted};
 
@@ -28,7 +28,7 @@ fn depth_terms(depth: DepthConvention) -> (f64, f64) {
 
 /// Clip position of a position relative to the fit's origin, by the published axes, box and depth range, and the sum
 /// of the magnitudes that it is made of.
-fn from_box(fit: &LightFit, p: DVec3) -> (DVec3, DVec3) {
+fn from_box(fit: &LightProjection, p: DVec3) -> (DVec3, DVec3) {
     let m = fit.light_from_world;
     let (min, max) = (fit.box_min.as_dvec3(), fit.box_max.as_dvec3());
     let row = |pick: fn(Vec4) -> f32| {
@@ -45,7 +45,7 @@ fn from_box(fit: &LightFit, p: DVec3) -> (DVec3, DVec3) {
 }
 
 /// An f32 matrix times a point, in f64.
-fn applied(fit: &LightFit, p: DVec3) -> DVec3 {
+fn applied(fit: &LightProjection, p: DVec3) -> DVec3 {
     let clip: DVec4 = fit.clip_from_world.as_dmat4() * p.extend(1.0);
     clip.truncate()
 }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::settings::FitKind;
-use shadowfit::{FitError, LightFit};
+use shadowfit::{FitError, LightProjection};
 
 use crate::support::{DIRECTION, camera, double, exact, fitted};
 
@@ -145,8 +145,8 @@ fn an_error_leaves_the_state_as_it_was() {
 }
 
 /// Texels by which a world point moves across the map when the light turns, the map's middle held.
-fn movement(from: &LightFit, to: &LightFit, point: Vec3) -> f64 {
-    let at = |fit: &LightFit| {
+fn movement(from: &LightProjection, to: &LightProjection, point: Vec3) -> f64 {
+    let at = |fit: &LightProjection| {
         let m = fit.light_from_world.as_dmat4();
         (m.transform_vector3(point.as_dvec3()).truncate() / from.texel_size.as_dvec2()).abs()
     };

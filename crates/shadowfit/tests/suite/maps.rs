@@ -4,24 +4,23 @@ use proptest::prelude::*;
 use shadowfit::Constraint;
 use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapSelection, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, FitInput, FitState, FittedMap, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique, ViewFrustum,
 };
 
 use crate::scenes::{COVERING, any_light, any_technique, any_view};
 use crate::support::{DIRECTION, SNAP, any_camera, any_direction, camera, cases, every_stabilise, sliced};
 
-fn fit_with(fitter: &mut MapFitter, input: &FitInput, settings: &Technique) -> FittedMaps {
+fn fit_with(fitter: &mut FitState, input: &FitInput, settings: &Technique) -> FittedMaps {
     let boxes =
         input.receivers.map_or(0, |boxes| boxes.boxes.len()).max(input.casters.map_or(0, |boxes| boxes.boxes.len()));
-    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes, input.views.len())];
-    fitter.fit(input, settings, &mut Workspace::new(&mut storage)).unwrap()
+    let mut storage = vec![DVec2::ZERO; Scratch::required(boxes, input.views.len())];
+    fitter.fit(input, settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
 fn fit_once(input: &FitInput, settings: &Technique) -> FittedMaps {
-    fit_with(&mut MapFitter::new(), input, settings)
+    fit_with(&mut FitState::new(), input, settings)
 }
 
 fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
@@ -30,8 +29,8 @@ fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
 
 fn kept(kind: FitKind, splits: SplitScheme, count: u32, stabilise: Stabilise) -> Technique {
     let fit = FitSettings::default().with_kind(kind).with_max_distance(f32::MAX).with_casters(CasterPolicy::None);
-    let choice = MapChoice::ViewDepth { overlap: 0.0 };
-    sliced(&fit, Slices { count, splits, choice, stabilise, ..Slices::default() })
+    let choice = MapSelection::ViewDepth { overlap: 0.0 };
+    sliced(&fit, Slices { count, splits, selection: choice, stabilise, ..Slices::default() })
 }
 
 /// Ends of all maps but the last.
@@ -62,11 +61,11 @@ proptest! {
         let ranged: Vec<&FittedMap> = maps.iter().filter(|map| map.near < map.far).collect();
         prop_assert_eq!(ranged[0].near, views[0].near);
         prop_assert_eq!(ranged[ranged.len() - 1].far, f32::MAX);
-        let overlap = if let MapChoice::ViewDepth { overlap } = settings.maps.choice() { overlap } else { 0.0 };
+        let overlap = if let MapSelection::ViewDepth { overlap } = settings.maps.selection() { overlap } else { 0.0 };
         for pair in ranged.windows(2) {
             prop_assert_eq!(pair[0].far, pair[1].near);
             let before = pair[1].near - overlap * (pair[0].far - pair[0].near);
-            prop_assert!(pair[1].fit.is_empty || (pair[1].covered_near - before).abs() <= 1e-6 * before.abs());
+            prop_assert!(pair[1].projection.is_empty || (pair[1].covered_near - before).abs() <= 1e-6 * before.abs());
         }
         // Maps without a range are chosen by no depth.
         for depth in [views[0].near, views[0].far, 0.5 * (views[0].near + views[0].far)] {
@@ -108,11 +107,11 @@ proptest! {
     ) {
         prop_assume!(view.lens.near.max(other.lens.near) < f64::from(settings.fit.max_distance));
         let (views, others) = ([view.frustum()], [other.frustum()]);
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         fit_with(&mut fitter, &FitInput::new(&others, direction), &settings);
         fitter.reset();
         let input = FitInput::new(&views, direction);
-        let mut new = MapFitter::new();
+        let mut new = FitState::new();
         for _ in 0..2 {
             prop_assert_eq!(fit_with(&mut fitter, &input, &settings), fit_with(&mut new, &input, &settings));
         }
@@ -126,11 +125,11 @@ proptest! {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
         let views = [view.frustum()];
         let input = FitInput::new(&views, direction);
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         let first = fit_with(&mut fitter, &input, &settings);
         let second = fit_with(&mut fitter, &input, &settings);
         for (a, b) in first.iter().zip(second.iter()) {
-            prop_assert_eq!(a.fit.uv_from_world, b.fit.uv_from_world);
+            prop_assert_eq!(a.projection.uv_from_world, b.projection.uv_from_world);
             prop_assert_eq!((a.near, a.far, a.covered_near), (b.near, b.far, b.covered_near));
         }
         for _ in 0..3 {
@@ -175,7 +174,7 @@ fn quantile(maps: &[FittedMap], view: &ViewFrustum) -> f64 {
         .map(|i| {
             let depth = near * (far / near).powf((f64::from(i) + 0.5) / 1000.0);
             let map = maps.iter().find(|map| depth < f64::from(map.far)).unwrap();
-            f64::from(map.fit.texel_size.max_element()) / depth
+            f64::from(map.projection.texel_size.max_element()) / depth
         })
         .collect();
     errors.sort_by(f64::total_cmp);
@@ -215,7 +214,7 @@ fn manual_splits_outside_of_what_is_shadowed_leave_maps_empty() {
         for stabilise in every_stabilise() {
             let settings = kept(kind, SplitScheme::Manual(given), 8, stabilise);
             let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings);
-            let empty: Vec<bool> = maps.iter().map(|map| map.fit.is_empty).collect();
+            let empty: Vec<bool> = maps.iter().map(|map| map.projection.is_empty).collect();
             assert_eq!(empty, [true, true, false, false, false, true, true, true], "{kind:?}");
             assert_eq!((maps[2].near, maps[4].far), (0.1, f32::MAX));
         }
@@ -238,7 +237,7 @@ fn a_histogram_with_one_narrow_band_splits_around_it() {
         let at = |splits| {
             let maps = fit_once(&input, &settings(kind, splits, 3));
             let map = *maps.iter().find(|map| 19.0 < map.far).unwrap();
-            (map.fit.texel_size.max_element(), map)
+            (map.projection.texel_size.max_element(), map)
         };
         let (chosen, map) = at(SplitScheme::FromHistogram);
         let (logarithmic, _) = at(SplitScheme::Logarithmic);
@@ -261,7 +260,7 @@ fn splits_from_boxes_are_finer_where_boxes_are() {
     for kind in [FitKind::FrustumAabb, FitKind::Focused, FitKind::Sphere] {
         let texel = |splits, depth: f32| {
             let maps = fit_once(&input, &settings(kind, splits, 2));
-            maps.iter().find(|map| depth < map.far).unwrap().fit.texel_size.max_element() / depth
+            maps.iter().find(|map| depth < map.far).unwrap().projection.texel_size.max_element() / depth
         };
         let worst = |splits| texel(splits, 2.5).max(texel(splits, 21.0));
         let (chosen, logarithmic) = (worst(SplitScheme::FromBoxes), worst(SplitScheme::Logarithmic));
@@ -280,7 +279,7 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
             let maps = fit_once(&bounds(near, far), &settings(kind, splits, 3));
             assert!(maps[0].near <= 0.1 && maps[0].covered_near <= 0.1, "{kind:?}");
             let last = maps.iter().rfind(|map| map.near < map.far).unwrap();
-            assert!(last.far >= 100.0 && !last.fit.is_empty, "{kind:?}");
+            assert!(last.far >= 100.0 && !last.projection.is_empty, "{kind:?}");
             [maps[1].near, maps[2].near]
         };
         let is_near = |[a, b]: [f32; 2], [c, d]: [f32; 2]| (a / c - 1.0).abs() < 1e-5 && (b / d - 1.0).abs() < 1e-5;
@@ -295,8 +294,8 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
         assert!(flat.iter().any(|map| map.near <= 4.9 && map.far > 4.9) && flat.iter().any(|map| map.far >= 100.0));
     }
     for (near, far) in [(f32::NAN, 5.0), (1.0, f32::INFINITY), (6.0, 5.0)] {
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-        let result = MapFitter::new().fit(&bounds(near, far), &Technique::default(), &mut Workspace::new(&mut storage));
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+        let result = FitState::new().fit(&bounds(near, far), &Technique::default(), &mut Scratch::new(&mut storage));
         assert!(result.is_err(), "{near} {far}");
     }
 }
@@ -306,7 +305,7 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
 fn held_splits_follow_depth_bounds_that_leave_them() {
     let views = [ahead()];
     let settings = kept(FitKind::Sphere, SplitScheme::Logarithmic, 3, SNAP);
-    let mut fitter = MapFitter::new();
+    let mut fitter = FitState::new();
     let mut split = |near, far| {
         let input = FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
         // Held splits are compared every few frames.
@@ -330,8 +329,8 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = FitInput::new(&views, direction);
         let settings = squared(&settings(kind, SplitScheme::FromBoxes, count));
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-        let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+        let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Scratch::new(&mut storage)).unwrap();
         let found = fewest(waste);
         prop_assert!((1..=count).contains(&found) && fewest(1.0) >= found && fewest(100.0) <= found);
         // Bins and directions are as coarse as for the splits, in both.
@@ -353,10 +352,10 @@ fn no_receivers_give_empty_maps_and_no_error() {
             [SplitScheme::Uniform, SplitScheme::Logarithmic, SplitScheme::FromBoxes, SplitScheme::FromHistogram]
         {
             let settings = kept(FitKind::Focused, splits, 3, stabilise);
-            let mut fitter = MapFitter::new();
+            let mut fitter = FitState::new();
             for _ in 0..2 {
                 let maps = fit_with(&mut fitter, &input, &settings);
-                assert!(maps.len() == 3 && maps.iter().all(|map| map.fit.is_empty), "{settings:?}");
+                assert!(maps.len() == 3 && maps.iter().all(|map| map.projection.is_empty), "{settings:?}");
             }
         }
     }
@@ -369,12 +368,12 @@ fn a_far_plane_that_comes_nearer_leaves_held_splits_without_error() {
         for stabilise in [SNAP, Stabilise::default()] {
             for splits in [SplitScheme::Uniform, SplitScheme::FromBoxes] {
                 let settings = kept(kind, splits, 4, stabilise);
-                let mut fitter = MapFitter::new();
+                let mut fitter = FitState::new();
                 for far in [80.0, 60.0, 50.0, 46.0, 79.0] {
                     let views = [PerspectiveCamera { far, ..camera() }.frustum().unwrap()];
                     let maps = fit_with(&mut fitter, &FitInput::new(&views, DIRECTION), &settings);
                     let last = maps.iter().find(|map| far * 0.999 < map.far).unwrap();
-                    assert!(!last.fit.is_empty, "{kind:?} {far}");
+                    assert!(!last.projection.is_empty, "{kind:?} {far}");
                 }
             }
         }
@@ -388,8 +387,8 @@ fn what_set_each_plane_is_named() {
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let set_by = |input: &FitInput, kind, casters| {
         let fit = FitSettings::default().with_kind(kind).with_casters(casters).with_caster_extension(5.0);
-        let mut storage = [DVec2::ZERO; Workspace::required(2, 1)];
-        shadowfit::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
+        let mut storage = [DVec2::ZERO; Scratch::required(2, 1)];
+        shadowfit::fit_scene(input, &fit, &mut Scratch::new(&mut storage)).unwrap().set_by
     };
     for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Focused] {
         assert_eq!(set_by(&input, kind, CasterPolicy::None), [View; 6]);
@@ -402,7 +401,7 @@ fn what_set_each_plane_is_named() {
     let casters = Boxes { origin: DVec3::ZERO, boxes: &above };
     let boxed = FitInput { receivers, casters: Some(casters), ..input };
     assert_eq!(set_by(&boxed, FitKind::Focused, CasterPolicy::None), [Receivers; 6]);
-    for casters in [CasterPolicy::List, CasterPolicy::SceneBounds] {
+    for casters in [CasterPolicy::PerObject, CasterPolicy::SceneBounds] {
         let expected = [Receivers, Receivers, Receivers, Receivers, Receivers, Casters];
         assert_eq!(set_by(&boxed, FitKind::Focused, casters), expected);
     }
@@ -411,8 +410,8 @@ fn what_set_each_plane_is_named() {
     let floored = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &floor }), ..input };
     let by = set_by(&floored, FitKind::Focused, CasterPolicy::None);
     assert_eq!((by[3], by[4], by[5]), (View, Receivers, Receivers));
-    let mut fitter = MapFitter::new();
+    let mut fitter = FitState::new();
     let held = kept(FitKind::Focused, SplitScheme::Uniform, 1, Stabilise::default());
-    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Receivers; 6]);
-    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Held; 6]);
+    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].projection.set_by, [Receivers; 6]);
+    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].projection.set_by, [Held; 6]);
 }

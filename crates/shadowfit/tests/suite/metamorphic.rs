@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec3};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, LightFit, MapFitter, OneMap, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, DepthConvention, FitInput, FitState, LightProjection, OneMap, Scratch, Technique, ViewFrustum,
 };
 
 use crate::scenes::{BoxPlan, COVERING, SceneView, any_box, any_light, any_view};
@@ -31,14 +31,14 @@ fn scene(view: &SceneView, direction: Vec3, boxes: Option<&[BoxPlan]>) -> Scene 
 }
 
 impl Scene {
-    fn fit(&self, settings: &FitSettings) -> LightFit {
+    fn fit(&self, settings: &FitSettings) -> LightProjection {
         let origin = self.frustum.origin;
         let views = [self.frustum];
         let receivers = self.receivers.as_ref().map(|boxes| Boxes { origin, boxes });
         let casters = Boxes { origin, boxes: &self.casters };
         let input = FitInput { receivers, casters: Some(casters), ..FitInput::new(&views, self.direction) };
-        let mut storage = vec![DVec2::ZERO; Workspace::required(self.casters.len(), 1)];
-        shadowfit::fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
+        let mut storage = vec![DVec2::ZERO; Scratch::required(self.casters.len(), 1)];
+        shadowfit::fit_scene(&input, settings, &mut Scratch::new(&mut storage)).unwrap()
     }
 
     /// The scene seen through a linear map that takes boxes to boxes, or that has none to take.
@@ -75,7 +75,7 @@ impl Scene {
     }
 
     /// Texture coordinates of the view's corners.
-    fn uvs(&self, fit: &LightFit) -> [Vec3; 8] {
+    fn uvs(&self, fit: &LightProjection) -> [Vec3; 8] {
         self.frustum.corners.map(|c| apply(&fit.uv_from_world, c))
     }
 }
@@ -84,7 +84,7 @@ fn settings(kind: FitKind, rectangle: RectangleKind) -> FitSettings {
     FitSettings::default()
         .with_kind(kind)
         .with_rectangle(rectangle)
-        .with_casters(CasterPolicy::List)
+        .with_casters(CasterPolicy::PerObject)
         .with_max_distance(f32::MAX)
         .with_caster_extension(0.0)
         .with_border(0.0)
@@ -96,14 +96,14 @@ fn snapped(fit: &FitSettings) -> Technique {
     Technique::default().with_maps(OneMap { shape: fit.shape, stabilise: SNAP }).with_fit(fit.map)
 }
 
-fn area(fit: &LightFit) -> f64 {
+fn area(fit: &LightProjection) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3();
     size.x * size.y
 }
 
 /// Rounding of corners and axes in f32, 2⁻²³ of the view's reach, as a share of the map's least
 /// extent: a map of a far small thing has all the more of it.
-fn rounding(scene: &Scene, fit: &LightFit) -> f64 {
+fn rounding(scene: &Scene, fit: &LightProjection) -> f64 {
     let reach = scene.frustum.corners.iter().fold(0.0, |m: f64, c| m.max(c.as_dvec3().length()));
     reach / (fit.box_max - fit.box_min).as_dvec3().min_element() / 8_388_608.0
 }
@@ -149,7 +149,7 @@ fn is_ambiguous(points: &[DVec2]) -> bool {
 }
 
 /// Compares two fits that must be the same but for the map's symmetries.
-fn assert_same_shape(a: (&Scene, &LightFit), b: (&Scene, &LightFit), rectangle: RectangleKind) {
+fn assert_same_shape(a: (&Scene, &LightProjection), b: (&Scene, &LightProjection), rectangle: RectangleKind) {
     let ratio = area(a.1) / area(b.1);
     assert!((ratio - 1.0).abs() < 1e-5 + 8.0 * rounding(a.0, a.1), "areas differ by {ratio}");
     let axes = Mat3::from_mat4(a.1.light_from_world).as_dmat3();
@@ -273,9 +273,9 @@ proptest! {
         let technique = snapped(&settings(kind, RectangleKind::AxisAligned));
         let texel = |scene: &Scene| {
             let views = [scene.frustum];
-            let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+            let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
             let input = FitInput::new(&views, scene.direction);
-            MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap()[0].fit.texel_size
+            FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap()[0].projection.texel_size
         };
         let scale = (f64::from(eighths) / 8.0).exp2();
         let here = scene(&view, direction, None);
@@ -351,7 +351,7 @@ proptest! {
         let origin = here.frustum.origin + DVec3::new(x, y, z);
         let there = Scene { frustum: ViewFrustum { origin, ..here.frustum }, ..here.clone() };
         let settings = settings(kind, rectangle);
-        prop_assert_eq!(LightFit { origin, ..here.fit(&settings) }, there.fit(&settings));
+        prop_assert_eq!(LightProjection { origin, ..here.fit(&settings) }, there.fit(&settings));
     }
 
     /// Snapped maps move with a world that moves by whole texels.
@@ -364,10 +364,10 @@ proptest! {
         let here = scene(&view, direction, boxes.as_deref());
         let snapped = |scene: &Scene| {
             let (views, origin) = ([scene.frustum], scene.frustum.origin);
-            let mut storage = vec![DVec2::ZERO; Workspace::required(scene.casters.len(), 1)];
+            let mut storage = vec![DVec2::ZERO; Scratch::required(scene.casters.len(), 1)];
             let receivers = scene.receivers.as_ref().map(|boxes| Boxes { origin, boxes });
             let input = FitInput { receivers, ..FitInput::new(&views, scene.direction) };
-            MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap()[0].fit
+            FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap()[0].projection
         };
         let a = snapped(&here);
         let [right, up] = [a.light_from_world.row(0), a.light_from_world.row(1)].map(|r| r.truncate().as_dvec3());
@@ -380,7 +380,7 @@ proptest! {
         let b = snapped(&Scene { frustum: ViewFrustum { origin, ..here.frustum }, ..here.clone() });
         prop_assert_eq!(a.texel_size, b.texel_size);
         // The map's middle is rounded to f32, and so is the view's position in f64, 1e-16 of it.
-        let centre = |fit: &LightFit| fit.light_from_world.w_axis.truncate().truncate().as_dvec2();
+        let centre = |fit: &LightProjection| fit.light_from_world.w_axis.truncate().truncate().as_dvec2();
         let shift = ((centre(&b) - centre(&a)) / texel).abs().max_element();
         let rounding = 2e-7 * centre(&a).abs().max_element() / texel.min_element();
         prop_assert!(shift <= 1e-3 + rounding, "{shift} texels");

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Mat3, UVec2, Vec3};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind};
-use shadowfit::{LightFit, ViewFrustum};
+use shadowfit::{LightProjection, ViewFrustum};
 
 use crate::scenes::{any_light, any_view, of_camera};
 use crate::support::{any_camera, any_direction, cases};
@@ -40,12 +40,12 @@ fn least(points: &[DVec2], cost: impl Fn(DVec2) -> f64) -> f64 {
 }
 
 /// Corners in the plane of a fit's own axes.
-fn projected(fit: &LightFit, frustum: &ViewFrustum) -> Vec<DVec2> {
+fn projected(fit: &LightProjection, frustum: &ViewFrustum) -> Vec<DVec2> {
     let axes = Mat3::from_mat4(fit.light_from_world).as_dmat3();
     frustum.corners.iter().map(|corner| (axes * corner.as_dvec3()).truncate()).collect()
 }
 
-fn oriented(frustum: &ViewFrustum, direction: Vec3, rectangle: RectangleKind) -> LightFit {
+fn oriented(frustum: &ViewFrustum, direction: Vec3, rectangle: RectangleKind) -> LightProjection {
     let settings = FitSettings::default()
         .with_kind(FitKind::Oriented)
         .with_rectangle(rectangle)

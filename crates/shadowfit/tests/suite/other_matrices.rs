@@ -2,11 +2,11 @@
 
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings};
-use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, fit};
+use shadowfit::{DepthConvention, FitError, LightProjection, PerspectiveCamera, fit};
 
 const DIRECTION: Vec3 = Vec3::new(0.4, -0.8, 0.3);
 
-fn known(kind: FitKind, depth: DepthConvention) -> LightFit {
+fn known(kind: FitKind, depth: DepthConvention) -> LightProjection {
     let camera = PerspectiveCamera {
         eye: DVec3::new(120.0, 30.0, -75.0),
         forward: Vec3::new(0.3, -0.2, -1.0),
@@ -21,7 +21,7 @@ fn known(kind: FitKind, depth: DepthConvention) -> LightFit {
 }
 
 /// Clip space from world space, in f64.
-fn world_matrix(fit: &LightFit) -> DMat4 {
+fn world_matrix(fit: &LightProjection) -> DMat4 {
     fit.clip_from_world.as_dmat4() * DMat4::from_translation(-fit.origin)
 }
 
@@ -31,7 +31,7 @@ fn the_matrix_of_a_fit_gives_the_fit_back() {
         for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
             let known = known(kind, depth);
             let again =
-                LightFit::from_clip_from_world(&world_matrix(&known), DIRECTION, known.resolution, known.origin)
+                LightProjection::from_clip_from_world(&world_matrix(&known), DIRECTION, known.resolution, known.origin)
                     .unwrap();
             assert_eq!((again.depth, again.resolution, again.origin), (depth, known.resolution, known.origin));
             // Rows are normalised once more: a few roundings of the extent, of some 100 m.
@@ -49,7 +49,7 @@ fn the_matrix_of_a_fit_gives_the_fit_back() {
 fn what_is_no_orthographic_view_projection_of_the_light_is_refused() {
     let known = known(FitKind::Oriented, DepthConvention::ZeroToOne);
     let good = world_matrix(&known);
-    let why = |matrix: DMat4, direction: Vec3| match LightFit::from_clip_from_world(
+    let why = |matrix: DMat4, direction: Vec3| match LightProjection::from_clip_from_world(
         &matrix,
         direction,
         UVec2::splat(64),
@@ -68,6 +68,6 @@ fn what_is_no_orthographic_view_projection_of_the_light_is_refused() {
     let mut broken = good;
     broken.w_axis.x = f64::NAN;
     assert!(why(broken, DIRECTION).contains("NotFinite"));
-    assert!(LightFit::from_clip_from_world(&good, Vec3::ZERO, UVec2::ONE, DVec3::ZERO).is_err());
-    assert!(LightFit::from_clip_from_world(&good, DIRECTION, UVec2::ZERO, DVec3::ZERO).is_err());
+    assert!(LightProjection::from_clip_from_world(&good, Vec3::ZERO, UVec2::ONE, DVec3::ZERO).is_err());
+    assert!(LightProjection::from_clip_from_world(&good, DIRECTION, UVec2::ZERO, DVec3::ZERO).is_err());
 }

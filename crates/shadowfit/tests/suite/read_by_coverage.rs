@@ -1,13 +1,13 @@
 //! Maps that are read by coverage: whichever map a visible point reads has all of its casters, in depth and among what
-//! culling leaves, and the certificate proves it.
+//! culling leaves, and the proof proves it.
 
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::proof::{Certificate, CoverageQuery, verify};
-use shadowfit::settings::{CasterPolicy, FitKind, MapChoice, SplitScheme};
+use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
+use shadowfit::settings::{CasterPolicy, FitKind, MapSelection, SplitScheme};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, FitInput, FitState, FittedMaps, LightProjection, PerspectiveCamera, Scratch, Technique, ViewFrustum,
 };
 
 use crate::scenes::{BoxPlan, any_box, any_light, any_technique, any_view, any_walk, share};
@@ -27,11 +27,11 @@ pub(crate) fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
 }
 
 fn any_shared_technique() -> impl Strategy<Value = Technique> {
-    let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
+    let casters = prop::sample::select(vec![CasterPolicy::PerObject, CasterPolicy::SceneBounds]);
     (any_technique(), casters).prop_map(|(technique, casters)| {
         let border = technique.fit.border.unwrap_or(0.0).max(4.0);
         let technique = technique.with_fit(technique.fit.with_casters(casters).with_border(border));
-        read_by(&technique, MapChoice::default())
+        read_by(&technique, MapSelection::default())
     })
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn above(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<f64> {
 const TOLERANCE: f64 = 1e-5;
 
 /// How far a point lies before the map's near plane, as a share of the depth range.
-fn before_near(fit: &LightFit, point: DVec3) -> f64 {
+fn before_near(fit: &LightProjection, point: DVec3) -> f64 {
     let local = (point - fit.origin).as_vec3();
     let p = fit.light_from_world.as_dmat4().transform_point3(local.as_dvec3());
     (p.z - f64::from(fit.box_max.z)) / f64::from(fit.depth_range)
@@ -89,9 +89,9 @@ pub(crate) fn check(
             let Some(distance) = above(*point - origin, to_light, caster) else { continue };
             let occluder = *point + to_light * distance;
             assert!(
-                before_near(&map.fit, occluder) < TOLERANCE,
+                before_near(&map.projection, occluder) < TOLERANCE,
                 "{occluder} is before the near plane of {:?}",
-                map.fit
+                map.projection
             );
             let moved = |v: Vec3| (v.as_dvec3() + origin - volume.origin).as_vec3();
             assert!(volume.intersects_aabb(moved(caster.min), moved(caster.max)), "{caster:?} is culled");
@@ -112,12 +112,12 @@ proptest! {
         prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
         let origin = view.eye.round();
         let boxes: Vec<Aabb> = plans.iter().map(|plan: &BoxPlan| plan.aabb(&view, origin)).collect();
-        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 3)];
-        let (mut fitter, mut view) = (MapFitter::new(), view);
+        let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 3)];
+        let (mut fitter, mut view) = (FitState::new(), view);
         for _ in 0..3 {
             let views = [view.frustum()];
             let input = input(&views, direction, origin, &boxes);
-            let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+            let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
             let last = f64::from(technique.fit.max_distance);
             let points = samples.iter().map(|sample| {
                 let aabb = &boxes[sample.receiver % boxes.len()];
@@ -132,24 +132,24 @@ proptest! {
     }
 
     #[test]
-    fn the_certificate_proves_maps_that_are_read_by_coverage(
+    fn maps_that_are_read_by_coverage_are_proven(
         view in any_view(), direction in any_light(), technique in any_shared_technique(), walk in any_walk(),
         plans in prop::collection::vec(any_box(), 0..12),
     ) {
         prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
         let origin = view.eye.round();
         let boxes: Vec<Aabb> = plans.iter().map(|plan: &BoxPlan| plan.aabb(&view, origin)).collect();
-        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 3)];
-        let (mut fitter, mut view) = (MapFitter::new(), view);
+        let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 3)];
+        let (mut fitter, mut view) = (FitState::new(), view);
         for frame in 0..3 {
             let views = [view.frustum()];
             let input = input(&views, direction, origin, &boxes);
-            let mut workspace = Workspace::new(&mut storage);
+            let mut workspace = Scratch::new(&mut storage);
             let maps = fitter.fit(&input, &technique, &mut workspace).unwrap();
             for (i, map) in maps.iter().enumerate() {
                 let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
-                let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
-                prop_assert!(certificate.is_proven(), "frame {frame}, map {i}: {certificate:?} of {map:?}");
+                let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+                prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
             view = walk.moved(&view);
         }
@@ -157,7 +157,7 @@ proptest! {
 }
 
 /// A tower beside the view that stands over a part of the first map: it is lost where the near plane serves the map's
-/// slice alone, and the certificate says so.
+/// slice alone, and the proof says so.
 #[test]
 fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
     let camera = PerspectiveCamera {
@@ -175,20 +175,20 @@ fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
         Aabb::new(Vec3::new(5.0, 0.0, -4.0), Vec3::new(6.0, 40.0, -3.0)),
     ];
     let input = input(&views, direction, DVec3::ZERO, &boxes);
-    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 1)];
-    let mut workspace = Workspace::new(&mut storage);
+    let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 1)];
+    let mut workspace = Scratch::new(&mut storage);
     let manual = SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
-    let mut certificate = |choice| {
+    let mut proof = |choice| {
         // Spheres serve all of their map anyway, rectangles do not.
         let stable = Technique::preset("stable-4").unwrap().maps.with_kind(FitKind::FrustumAabb).as_slices();
-        let slices = stable.with_count(3).with_splits(manual).with_choice(choice);
+        let slices = stable.with_count(3).with_splits(manual).with_selection(choice);
         let technique = Technique::default().with_maps(slices);
-        let map = MapFitter::new().fit(&input, &technique, &mut workspace).unwrap()[0];
+        let map = FitState::new().fit(&input, &technique, &mut workspace).unwrap()[0];
         let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
         let query = CoverageQuery { is_shared: true, ..query };
-        verify(&input, &map.fit, &query, &mut workspace).unwrap()
+        prove(&input, &map.projection, &query, &mut workspace).unwrap()
     };
-    assert!(certificate(MapChoice::default()).is_proven());
-    let lost = certificate(MapChoice::ViewDepth { overlap: 0.0 });
-    assert!(matches!(lost, Certificate::CasterLost { by, .. } if by > 10.0), "{lost:?}");
+    assert!(proof(MapSelection::default()).is_proven());
+    let lost = proof(MapSelection::ViewDepth { overlap: 0.0 });
+    assert!(matches!(lost, CoverageProof::CasterLost { by, .. } if by > 10.0), "{lost:?}");
 }

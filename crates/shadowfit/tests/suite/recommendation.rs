@@ -2,7 +2,7 @@
 
 use shadowfit::Preset;
 use shadowfit::settings::{
-    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings, Shape,
+    BiasSettings, FilterKind, FitKind, FitSettings, Hysteresis, MapFormat, MapSelection, MapSettings, Shape,
     SplitScheme, Stabilise,
 };
 use shadowfit::{Maps, OneMap, PRESETS, Slices, Technique, Windows};
@@ -30,10 +30,10 @@ fn the_kinds_of_maps_have_the_same_defaults() {
     let single = FitSettings::default();
     assert_eq!((single.shape.kind, single.map), (FitKind::Focused, MapSettings::default()));
     assert_eq!([single.shape, slices.shape, one.shape], [Shape::default(); 3]);
-    assert_eq!((slices.splits, slices.choice), (SplitScheme::default(), MapChoice::default()));
+    assert_eq!((slices.splits, slices.selection), (SplitScheme::default(), MapSelection::default()));
     assert_eq!([slices.stabilise, one.stabilise], [Stabilise::default(); 2]);
-    assert_eq!([windows.blend, slices.choice.blend()], [MapChoice::DEFAULT_BLEND; 2]);
-    assert_eq!([windows.depth_waste, slices.stabilise.waste()], [HoldSettings::default().waste; 2]);
-    assert_eq!(slices.stabilise, Stabilise::Hysteresis(HoldSettings::default()));
+    assert_eq!([windows.blend, slices.selection.blend()], [MapSelection::DEFAULT_BLEND; 2]);
+    assert_eq!([windows.max_depth_waste, slices.stabilise.max_waste()], [Hysteresis::default().max_waste; 2]);
+    assert_eq!(slices.stabilise, Stabilise::Hysteresis(Hysteresis::default()));
     assert_eq!(windows.count, slices.count);
 }

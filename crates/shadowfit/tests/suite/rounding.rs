@@ -3,12 +3,12 @@
 use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
-use shadowfit::proof::{CoverageQuery, verify};
+use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::scroll::Scroll;
 use shadowfit::settings::{FitKind, Shape, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, DepthConvention, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique,
+    ViewFrustum,
 };
 
 /// Frames of a camera that stands still.
@@ -97,7 +97,7 @@ fn boxes(waver: &mut Waver) -> Vec<Aabb> {
 /// Fits frame by frame, everything wavering; proves each map.
 fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut(&FittedMaps)) {
     let mut waver = Waver(7);
-    let mut fitter = MapFitter::new();
+    let mut fitter = FitState::new();
     let counts: Vec<u32> = (0..64).map(|i| 5 + i % 11).collect();
     for _ in 0..FRAMES {
         let views = [view(way, &mut waver)];
@@ -110,14 +110,14 @@ fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut
             histogram: Some(DepthHistogram { near, far, bins: &counts, classes: 1 }),
             ..FitInput::new(&views, waver.vec3(Vec3::new(0.3, -0.8, 0.4)))
         };
-        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 1)];
-        let mut workspace = Workspace::new(&mut storage);
+        let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 1)];
+        let mut workspace = Scratch::new(&mut storage);
         let maps = fitter.fit(&input, technique, &mut workspace).unwrap();
         for map in maps.iter() {
-            let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.fit))
+            let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
                 .with_normal_offset(map.bias.normal_offset);
-            let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
-            assert!(certificate.is_proven(), "{way:?}: {certificate:?}");
+            let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+            assert!(proof.is_proven(), "{way:?}: {proof:?}");
         }
         visit(&maps);
     }
@@ -135,7 +135,7 @@ fn assert_kept(name: &str, technique: &Technique) {
             for (a, b) in last.iter().flat_map(|last| last.iter()).zip(maps.iter()) {
                 let what = format!("{name}, {way:?}, boxes known: {knows_boxes}");
                 assert_eq!((a.near, a.far), (b.near, b.far), "splits of {what}");
-                assert_eq!(a.fit.texel_size, b.fit.texel_size, "texels of {what}");
+                assert_eq!(a.projection.texel_size, b.projection.texel_size, "texels of {what}");
                 let scroll = Scroll::between(a, b);
                 assert!(!scroll.is_new, "{what}: {a:?} {b:?}");
             }

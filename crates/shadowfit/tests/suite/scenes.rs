@@ -6,7 +6,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::settings::{
-    CasterPolicy, FitKind, FitSettings, MapChoice, MapSettings, RectangleKind, Shape, SplitScheme,
+    CasterPolicy, FitKind, FitSettings, MapSelection, MapSettings, RectangleKind, Shape, SplitScheme,
 };
 use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Slices, Technique, ViewFrustum};
 
@@ -246,9 +246,9 @@ pub(crate) fn any_splits() -> impl Strategy<Value = SplitScheme> {
 }
 
 /// By coverage, and by view depth with any overlap.
-pub(crate) fn any_choice() -> impl Strategy<Value = MapChoice> {
+pub(crate) fn any_choice() -> impl Strategy<Value = MapSelection> {
     let overlap = prop_oneof![Just(0.0), Just(1.0), float(0.0, 0.5)];
-    prop_oneof![Just(MapChoice::default()), overlap.prop_map(|overlap| MapChoice::ViewDepth { overlap })]
+    prop_oneof![Just(MapSelection::default()), overlap.prop_map(|overlap| MapSelection::ViewDepth { overlap })]
 }
 
 /// One map, or slices of the view.
@@ -256,7 +256,7 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     let stabilise = prop::sample::select(every_stabilise().to_vec());
     (any_covering_fit(), 1..=8_u32, any_splits(), any_choice(), stabilise).prop_map(
         |(fit, count, splits, choice, stabilise)| {
-            sliced(&fit, Slices { count, splits, choice, stabilise, ..Slices::default() })
+            sliced(&fit, Slices { count, splits, selection: choice, stabilise, ..Slices::default() })
         },
     )
 }

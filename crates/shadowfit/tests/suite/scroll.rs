@@ -7,8 +7,8 @@ use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::scroll::{GridAnchor, Scroll, TexelRect, Tile, tiles};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FittedMap, FittedMaps, LightFit, MapFitter,
-    PerspectiveCamera, Slices, Technique, Workspace,
+    Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FitState, FittedMap, FittedMaps, LightProjection,
+    PerspectiveCamera, Scratch, Slices, Technique,
 };
 
 use crate::support::{DIRECTION, SNAP, any_direction, camera, double, sliced};
@@ -17,7 +17,7 @@ fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> Technique {
     let fit = FitSettings::default()
         .with_kind(kind)
         .with_rectangle(RectangleKind::AxisAligned)
-        .with_casters(CasterPolicy::List)
+        .with_casters(CasterPolicy::PerObject)
         .with_resolution(UVec2::new(resolution, resolution * 3 / 4));
     let splits = SplitScheme::Manual([8.0, 18.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     sliced(&fit, Slices { count: 3, splits, stabilise, ..Slices::default() })
@@ -35,7 +35,7 @@ fn town() -> Vec<Aabb> {
 }
 
 fn frame(
-    fitter: &mut MapFitter,
+    fitter: &mut FitState,
     camera: &PerspectiveCamera,
     direction: Vec3,
     settings: &Technique,
@@ -44,14 +44,18 @@ fn frame(
     let views = [camera.frustum().unwrap()];
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, direction) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
-    fitter.fit(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
+    let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.boxes.len(), 3)];
+    fitter.fit(&input, settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
 /// A map of 2 m texels straight below the light, whose left bottom corner is at a grid line.
 fn plain_map(first: [i64; 2], resolution: UVec2) -> FittedMap {
     let anchor = GridAnchor { first, texel: DVec2::splat(2.0), depth: [-10.0, 30.0] };
-    FittedMap { fit: LightFit { resolution, ..LightFit::default() }, anchor: Some(anchor), ..FittedMap::default() }
+    FittedMap {
+        projection: LightProjection { resolution, ..LightProjection::default() },
+        anchor: Some(anchor),
+        ..FittedMap::default()
+    }
 }
 
 /// World column and row, counted upward, of a texel of a map.
@@ -99,7 +103,7 @@ proptest! {
         stabilise in prop::sample::select(vec![SNAP, Stabilise::default()]),
         far_out in prop::sample::select(vec![0.0, 1e3, 1e5]), turn in double(0.0, 0.05),
     ) {
-        let (settings, town, mut fitter) = (settings(kind, stabilise, 512), town(), MapFitter::new());
+        let (settings, town, mut fitter) = (settings(kind, stabilise, 512), town(), FitState::new());
         let mut camera = camera();
         camera.eye += DVec3::new(far_out, 0.0, -far_out);
         let town: Vec<Aabb> = town.iter().map(|b| {
@@ -115,12 +119,12 @@ proptest! {
             if scroll.is_new {
                 continue;
             }
-            let centre = now.fit.corners().map(Vec3::as_dvec3).into_iter().sum::<DVec3>() / 8.0 + now.fit.origin;
-            let apart = texel(&before.fit, centre) - texel(&now.fit, centre) - scroll.shift.as_dvec2();
+            let centre = now.projection.corners().map(Vec3::as_dvec3).into_iter().sum::<DVec3>() / 8.0 + now.projection.origin;
+            let apart = texel(&before.projection, centre) - texel(&now.projection, centre) - scroll.shift.as_dvec2();
             prop_assert!(apart.abs().max_element() < 0.02, "{apart} texels");
-            prop_assert!(scroll.depth_changed || (before.fit.depth_range - now.fit.depth_range).abs() < 1e-6 * now.fit.depth_range);
-            let depth = |fit: &LightFit| place(fit, centre).z;
-            prop_assert!(scroll.depth_changed || (depth(&before.fit) - depth(&now.fit)).abs() < 1e-4);
+            prop_assert!(scroll.depth_changed || (before.projection.depth_range - now.projection.depth_range).abs() < 1e-6 * now.projection.depth_range);
+            let depth = |fit: &LightProjection| place(fit, centre).z;
+            prop_assert!(scroll.depth_changed || (depth(&before.projection) - depth(&now.projection)).abs() < 1e-4);
         }
     }
 
@@ -135,57 +139,57 @@ proptest! {
         settings.fit.depth = depth;
         let mut camera = camera();
         camera.eye += DVec3::splat(far_out);
-        let maps = frame(&mut MapFitter::new(), &camera, direction, &settings, &[]);
+        let maps = frame(&mut FitState::new(), &camera, direction, &settings, &[]);
         let map = &maps[1];
-        let (min, max) = (map.fit.box_min.as_dvec3(), map.fit.box_max.as_dvec3());
+        let (min, max) = (map.projection.box_min.as_dvec3(), map.projection.box_max.as_dvec3());
         let inside = |x: f64, y: f64, z: f64| {
-            let m = &map.fit.light_from_world;
+            let m = &map.projection.light_from_world;
             let p = min + (max - min) * DVec3::new(x, y, z) - m.w_axis.truncate().as_dvec3();
             let rows = m.transpose();
-            map.fit.origin + rows.x_axis.truncate().as_dvec3() * p.x + rows.y_axis.truncate().as_dvec3() * p.y
+            map.projection.origin + rows.x_axis.truncate().as_dvec3() * p.x + rows.y_axis.truncate().as_dvec3() * p.y
                 + rows.z_axis.truncate().as_dvec3() * p.z
         };
         let point = inside(a, b, 0.5);
         let all: Vec<Tile> = tiles(map, size).unwrap().collect();
         prop_assert_eq!(all.len(), tiles(map, size).unwrap().len());
         let area: u32 = all.iter().map(|tile| tile.map.size.x * tile.map.size.y).sum();
-        prop_assert_eq!(area, map.fit.resolution.x * map.fit.resolution.y);
-        let at = texel(&map.fit, point);
+        prop_assert_eq!(area, map.projection.resolution.x * map.projection.resolution.y);
+        let at = texel(&map.projection, point);
         let (x, y) = (at.x as u32, at.y as u32);
         let owners: Vec<&Tile> = all.iter().filter(|tile| is_in(&tile.map, x, y)).collect();
         prop_assert_eq!(owners.len(), 1);
         let tile = owners[0];
         let expected = at - tile.map.min.as_dvec2() + tile.from.as_dvec2();
-        prop_assert!((texel(&tile.fit, point) - expected).abs().max_element() < 0.02);
-        prop_assert!((place(&tile.fit, point).z - place(&map.fit, point).z).abs() < 1e-5);
-        prop_assert!(tile.fit.direction == map.fit.direction && tile.fit.depth == depth);
+        prop_assert!((texel(&tile.projection, point) - expected).abs().max_element() < 0.02);
+        prop_assert!((place(&tile.projection, point).z - place(&map.projection, point).z).abs() < 1e-5);
+        prop_assert!(tile.projection.direction == map.projection.direction && tile.projection.depth == depth);
     }
 }
 
 /// Texture coordinates and depth of a world position, in f64.
-fn place(fit: &LightFit, point: DVec3) -> DVec3 {
+fn place(fit: &LightProjection, point: DVec3) -> DVec3 {
     let m = fit.uv_from_world.as_dmat4();
     let p = point - fit.origin;
     (m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis).truncate()
 }
 
-fn texel(fit: &LightFit, point: DVec3) -> DVec2 {
+fn texel(fit: &LightProjection, point: DVec3) -> DVec2 {
     place(fit, point).truncate() * fit.resolution.as_dvec2()
 }
 
 #[test]
 fn tiles_have_the_same_bits_wherever_the_camera_is() {
     let settings = settings(FitKind::Sphere, SNAP, 512);
-    let (town, mut fitter, mut camera) = (town(), MapFitter::new(), camera());
-    let mut known: HashMap<(usize, [i64; 2], [u64; 2]), LightFit> = HashMap::new();
+    let (town, mut fitter, mut camera) = (town(), FitState::new(), camera());
+    let mut known: HashMap<(usize, [i64; 2], [u64; 2]), LightProjection> = HashMap::new();
     let (mut again, mut levels) = (0, std::collections::HashSet::new());
     for _ in 0..60 {
         for (level, map) in frame(&mut fitter, &camera, DIRECTION, &settings, &town).iter().enumerate() {
             let depth = map.anchor.unwrap().depth.map(f64::to_bits);
             for tile in tiles(map, 64).unwrap() {
                 levels.insert((level, depth));
-                let first = *known.entry((level, tile.index, depth)).or_insert(tile.fit);
-                assert_eq!(first, tile.fit);
+                let first = *known.entry((level, tile.index, depth)).or_insert(tile.projection);
+                assert_eq!(first, tile.projection);
                 again += 1;
             }
         }
@@ -209,7 +213,7 @@ fn depth_ranges_hold_while_a_camera_walks() {
         (FitKind::Focused, Stabilise::default()),
     ] {
         let settings = settings(kind, stabilise, 1024);
-        let (mut fitter, mut camera) = (MapFitter::new(), camera());
+        let (mut fitter, mut camera) = (FitState::new(), camera());
         let mut before = frame(&mut fitter, &camera, DIRECTION, &settings, &town);
         let (mut depth_changes, mut new, mut shifts, frames) = (0, 0, 0, 600);
         for i in 0..frames {
@@ -242,16 +246,16 @@ fn what_changes_the_projection_makes_a_new_map() {
     assert!(!same.is_redraw() && same.exposed().count() == 0);
     let anchor = before.anchor.unwrap();
     let with = |anchor: GridAnchor| FittedMap { anchor: Some(anchor), ..before };
-    let with_fit = |fit: LightFit| FittedMap { fit, ..before };
+    let with_fit = |fit: LightProjection| FittedMap { projection: fit, ..before };
     let depth = Scroll::between(&before, &with(GridAnchor { depth: [-10.0, 31.0], ..anchor }));
     assert!(!depth.is_new && depth.depth_changed && depth.is_redraw() && depth.exposed().count() == 0);
-    let mut turned = before.fit;
+    let mut turned = before.projection;
     turned.light_from_world.x_axis.y = 1e-7;
     for other in [
         with(GridAnchor { texel: DVec2::new(2.0, 2.000_001), ..anchor }),
         with(GridAnchor { first: [i64::MAX, i64::MIN], ..anchor }),
-        with_fit(LightFit { resolution: UVec2::new(8, 9), ..before.fit }),
-        with_fit(LightFit { depth: DepthConvention::Reversed, ..before.fit }),
+        with_fit(LightProjection { resolution: UVec2::new(8, 9), ..before.projection }),
+        with_fit(LightProjection { depth: DepthConvention::Reversed, ..before.projection }),
         with_fit(turned),
         FittedMap { anchor: None, ..before },
     ] {
@@ -259,20 +263,20 @@ fn what_changes_the_projection_makes_a_new_map() {
             assert!(scroll.is_new && scroll.is_redraw(), "{other:?}");
         }
         let all: Vec<TexelRect> = Scroll::between(&before, &other).exposed().collect();
-        assert_eq!(all, [TexelRect { min: UVec2::ZERO, size: other.fit.resolution }]);
+        assert_eq!(all, [TexelRect { min: UVec2::ZERO, size: other.projection.resolution }]);
     }
     // Nothing was drawn into an empty map.
-    assert!(Scroll::between(&with_fit(LightFit { is_empty: true, ..before.fit }), &before).is_new);
-    assert!(!Scroll::between(&before, &with_fit(LightFit { is_empty: true, ..before.fit })).is_new);
+    assert!(Scroll::between(&with_fit(LightProjection { is_empty: true, ..before.projection }), &before).is_new);
+    assert!(!Scroll::between(&before, &with_fit(LightProjection { is_empty: true, ..before.projection })).is_new);
 }
 
 #[test]
 fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
     let free =
-        frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Off, 64), &town());
+        frame(&mut FitState::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Off, 64), &town());
     assert!(free[0].anchor.is_none());
     assert_eq!(tiles(&free[0], 64).unwrap_err(), FitError::NotOnGrid);
-    let good = frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, SNAP, 64), &town())[0];
+    let good = frame(&mut FitState::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, SNAP, 64), &town())[0];
     assert!(tiles(&good, 64).is_ok());
     let anchor = good.anchor.unwrap();
     for size in [0, 65_537, u32::MAX] {
@@ -282,10 +286,10 @@ fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
         let with = |anchor: GridAnchor| FittedMap { anchor: Some(anchor), ..good };
         assert!(tiles(&with(GridAnchor { texel: DVec2::new(bad, 1.0), ..anchor }), 64).is_err(), "{bad}");
         assert!(tiles(&with(GridAnchor { depth: [0.0, bad], ..anchor }), 64).is_err(), "{bad}");
-        let mut fit = good.fit;
+        let mut fit = good.projection;
         fit.light_from_world.y_axis.y = bad as f32;
         fit.light_from_world.z_axis.y = bad as f32;
-        assert!(tiles(&FittedMap { fit, ..good }, 64).is_err(), "{bad}");
+        assert!(tiles(&FittedMap { projection: fit, ..good }, 64).is_err(), "{bad}");
     }
     let far = GridAnchor { first: [i64::MIN, i64::MAX], ..anchor };
     assert!(tiles(&FittedMap { anchor: Some(far), ..good }, 64).is_err());

@@ -6,7 +6,7 @@
 use shadowfit::bias::{Reach, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use shadowfit::settings::FitKind;
-use shadowfit::{DepthConvention, LightFit};
+use shadowfit::{DepthConvention, LightProjection};
 
 use crate::filters::{Filter, LookUp, filters};
 use crate::support::{DIRECTION, camera, exact, fitted};
@@ -19,7 +19,7 @@ struct Plane {
 
 impl Plane {
     /// The plane with a slope of `theta` that falls toward `azimuth` in the map's axes.
-    fn new(fit: &LightFit, theta: f64, azimuth: f64) -> Self {
+    fn new(fit: &LightProjection, theta: f64, azimuth: f64) -> Self {
         let light = DVec3::new(theta.sin() * azimuth.cos(), theta.sin() * azimuth.sin(), theta.cos());
         let m = fit.light_from_world.as_dmat4();
         let axes = [m.x_axis, m.y_axis, m.z_axis].map(DVec4::truncate);
@@ -45,11 +45,11 @@ fn positions() -> impl Iterator<Item = DVec2> {
 }
 
 /// Fits whose texels are square, uneven and very uneven.
-fn fits() -> impl Iterator<Item = LightFit> {
+fn fits() -> impl Iterator<Item = LightProjection> {
     let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
     [Vec2::splat(0.25), Vec2::new(0.4, 0.15), Vec2::new(0.01, 0.12)]
         .into_iter()
-        .map(move |texel_size| LightFit { texel_size, ..fit })
+        .map(move |texel_size| LightProjection { texel_size, ..fit })
 }
 
 /// Whether a point of the plane, seen at `lifted` in light space, finds a texel in the filter's
@@ -73,7 +73,7 @@ fn acne(plane: &Plane, filter: &Filter, texel: DVec2, offset: f64, depth: f64) -
 }
 
 /// Runs a proof for every fit, filter and slope.
-fn every_case(prove: impl Fn(&LightFit, &Filter, &Plane, &str)) {
+fn every_case(prove: impl Fn(&LightProjection, &Filter, &Plane, &str)) {
     for fit in fits() {
         for filter in filters() {
             for (theta, azimuth) in slopes() {
@@ -138,7 +138,7 @@ fn five_percent_less_than_the_reach_leaves_acne_for_every_filter() {
 #[test]
 fn the_depth_gradient_is_that_of_the_plane_in_every_depth_convention() {
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne] {
-        for fit in fits().map(|fit| LightFit { depth, ..fit }) {
+        for fit in fits().map(|fit| LightProjection { depth, ..fit }) {
             for (theta, azimuth) in slopes() {
                 let plane = Plane::new(&fit, theta, azimuth);
                 let gradient = depth_gradient(&fit, plane.world_normal).unwrap().as_dvec2();

@@ -9,11 +9,10 @@ use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
-use shadowfit::proof::{Certificate, CoverageQuery, MapPlane, Margins};
-use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme};
+use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, Margins};
+use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, MapSelection, RectangleKind, SplitScheme};
 use shadowfit::{
-    Aabb, Bias, DepthConvention, FitInput, MapFitter, OneMap, Slices, SpotBias, Technique, ViewFrustum, Windows,
-    Workspace,
+    Aabb, Bias, DepthConvention, FitInput, FitState, OneMap, Scratch, Slices, SpotBias, Technique, ViewFrustum, Windows,
 };
 
 use crate::support::{DIRECTION, camera, every_stabilise, fitted};
@@ -43,11 +42,11 @@ fn settings_survive() {
     survives(&technique.with_maps(slices));
     survives(&technique.with_maps(slices.with_splits(SplitScheme::Practical(0.7))));
     for stabilise in every_stabilise() {
-        let choice = MapChoice::ViewDepth { overlap: 0.1 };
-        survives(&technique.with_maps(slices.with_stabilise(stabilise).with_choice(choice)));
+        let choice = MapSelection::ViewDepth { overlap: 0.1 };
+        survives(&technique.with_maps(slices.with_stabilise(stabilise).with_selection(choice)));
         survives(&technique.with_maps(OneMap { shape: single.shape, stabilise }));
     }
-    survives(&technique.with_maps(Windows { count: 7, blend: 0.1, depth_waste: 1.3 }));
+    survives(&technique.with_maps(Windows { count: 7, blend: 0.1, max_depth_waste: 1.3 }));
     survives(&LightStepSettings::default());
 }
 
@@ -86,8 +85,8 @@ fn outputs_survive() {
     survives(&Reach::HARDWARE_2X2.over_disc(3.0));
     survives(&Coverage::BeforeNear);
     survives(&CoverageQuery::of_fit(&FitSettings::default(), Reach::POINT));
-    survives(&Certificate::Uncovered { plane: MapPlane::Far, point: DVec3::splat(0.1), by: 0.3 });
-    survives(&Certificate::Proven(Margins { planes: [0.1; 6], casters: 2.5 }));
+    survives(&CoverageProof::Uncovered { plane: MapPlane::Far, point: DVec3::splat(0.1), by: 0.3 });
+    survives(&CoverageProof::Proven(Margins { planes: [0.1; 6], casters: 2.5 }));
     survives(&AcneMargin { metres: 0.1, texels: -0.3 });
     survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
     let spot = crate::spot::lamp().fit(UVec2::splat(512), DepthConvention::Reversed).unwrap();
@@ -108,14 +107,14 @@ fn lights_that_step_go_on() {
 #[test]
 fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
     for settings in [Technique::preset("calm-4").unwrap(), Technique::default()] {
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 4)];
-        let mut fit = |fitter: &mut MapFitter, frame: u8| {
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 4)];
+        let mut fit = |fitter: &mut FitState, frame: u8| {
             let mut camera = camera();
             camera.eye.x += f64::from(frame) * 0.3;
             let views: [ViewFrustum; 1] = [camera.frustum().unwrap()];
-            fitter.fit(&FitInput::new(&views, DIRECTION), &settings, &mut Workspace::new(&mut storage)).unwrap()
+            fitter.fit(&FitInput::new(&views, DIRECTION), &settings, &mut Scratch::new(&mut storage)).unwrap()
         };
-        let mut fitter = MapFitter::new();
+        let mut fitter = FitState::new();
         for frame in 0..3 {
             survives(&fit(&mut fitter, frame));
         }
@@ -123,16 +122,16 @@ fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
         for frame in 3..12 {
             assert_eq!(fit(&mut fitter, frame), fit(&mut other, frame), "frame {frame}");
         }
-        assert_ne!(fit(&mut MapFitter::new(), 11), fit(&mut fitter, 11), "the state matters");
+        assert_ne!(fit(&mut FitState::new(), 11), fit(&mut fitter, 11), "the state matters");
     }
 }
 
 #[test]
 fn a_damaged_number_of_maps_is_read_as_the_greatest() {
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let views = [camera().frustum().unwrap()];
-    let maps = MapFitter::new()
-        .fit(&FitInput::new(&views, DIRECTION), &Technique::default(), &mut Workspace::new(&mut storage))
+    let maps = FitState::new()
+        .fit(&FitInput::new(&views, DIRECTION), &Technique::default(), &mut Scratch::new(&mut storage))
         .unwrap();
     let mut json = serde_json::to_value(maps).unwrap();
     json["count"] = 1000.into();

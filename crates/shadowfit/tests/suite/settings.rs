@@ -1,8 +1,8 @@
 //! What follows from a technique's settings.
 
 use shadowfit::glam::DVec2;
-use shadowfit::settings::{BiasSettings, FilterKind, MapChoice, MapFormat, MapSettings, SoftRadius, Softness};
-use shadowfit::{FitInput, FittedMaps, MapFitter, Maps, Technique, Windows, Workspace};
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, MapSelection, MapSettings, SoftRadius, Softness};
+use shadowfit::{FitInput, FitState, FittedMaps, Maps, Scratch, Technique, Windows};
 
 use crate::support::{DIRECTION, camera};
 
@@ -46,12 +46,12 @@ fn the_lengths_of_another_technique_are_the_shadow_distance_and_the_caster_exten
 
 /// The maps of three frames of a camera that flies on.
 fn fitted(technique: &Technique) -> Vec<FittedMaps> {
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 3)];
-    let (mut fitter, mut camera) = (MapFitter::new(), camera());
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 3)];
+    let (mut fitter, mut camera) = (FitState::new(), camera());
     let mut next = || {
         camera.eye.x += 0.7;
         let views = [camera.frustum().expect("a frustum")];
-        fitter.fit(&FitInput::new(&views, DIRECTION), technique, &mut Workspace::new(&mut storage)).expect("maps")
+        fitter.fit(&FitInput::new(&views, DIRECTION), technique, &mut Scratch::new(&mut storage)).expect("maps")
     };
     [(); 3].map(|()| next()).to_vec()
 }
@@ -65,9 +65,9 @@ fn the_border_has_an_effect_on_windows() {
 #[test]
 fn windows_are_read_by_coverage_and_slices_as_they_say() {
     let windows = Windows::default().with_blend(5.0);
-    assert_eq!(Maps::from(windows).choice(), MapChoice::Coverage { blend: 5.0 });
-    let by_depth = MapChoice::ViewDepth { overlap: 0.5 };
+    assert_eq!(Maps::from(windows).selection(), MapSelection::Coverage { blend: 5.0 });
+    let by_depth = MapSelection::ViewDepth { overlap: 0.5 };
     let slices = Technique::preset("focused-4").expect("a preset").maps;
-    let chosen = [slices, slices.as_slices().with_choice(by_depth).into()].map(|maps| maps.choice());
-    assert_eq!(chosen, [MapChoice::default(), by_depth]);
+    let chosen = [slices, slices.as_slices().with_selection(by_depth).into()].map(|maps| maps.selection());
+    assert_eq!(chosen, [MapSelection::default(), by_depth]);
 }

@@ -3,11 +3,11 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
-use shadowfit::proof::{CoverageQuery, verify};
+use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::settings::{
     FilterKind, FitKind, FitSettings, MapSettings, RectangleKind, Shape, SoftRadius, Softness, SplitScheme,
 };
-use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Maps, Slices, Technique, ViewFrustum, Workspace};
+use shadowfit::{FitInput, FitState, FittedMaps, LightProjection, Maps, Scratch, Slices, Technique, ViewFrustum};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, exact, fitted, float};
 
@@ -18,8 +18,8 @@ fn metres(metres: f32) -> Softness {
 }
 
 /// A fit with texels of a size, in metres.
-fn with_texels(texel_size: Vec2) -> LightFit {
-    LightFit { texel_size, ..fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb)) }
+fn with_texels(texel_size: Vec2) -> LightProjection {
+    LightProjection { texel_size, ..fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb)) }
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn are_windows(maps: &FittedMaps) -> bool {
     let step = |map: &shadowfit::FittedMap| map.anchor.map(|anchor| anchor.texel.x.log2() * 8.0);
     let on_ladder = |step: Option<f64>| step.is_some_and(|step| (step - step.round()).abs() < 1e-6);
     maps.iter().map(step).all(on_ladder)
-        && maps.windows(2).all(|pair| pair[0].fit.texel_size.cmplt(pair[1].fit.texel_size).all())
+        && maps.windows(2).all(|pair| pair[0].projection.texel_size.cmplt(pair[1].projection.texel_size).all())
 }
 
 proptest! {
@@ -173,22 +173,22 @@ proptest! {
         camera in any_camera(), direction in any_direction(), technique in any_limited(),
         (turn, step) in (float(-0.05, 0.05), float(-0.01, 0.01)),
     ) {
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 3)];
-        let mut fitter = MapFitter::new();
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 3)];
+        let mut fitter = FitState::new();
         let mut camera = camera;
         for _ in 0..4 {
             let views: [ViewFrustum; 1] = [camera.frustum().unwrap()];
             let input = FitInput::new(&views, direction);
-            let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+            let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
             for map in maps.iter() {
-                let (texel, least) = (map.fit.texel_size.min_element(), technique.least_texel());
+                let (texel, least) = (map.projection.texel_size.min_element(), technique.least_texel());
                 prop_assert!(texel >= least * (1.0 - 1e-5), "{texel} of {least}");
-                let reach = technique.reach_in(&map.fit);
+                let reach = technique.reach_in(&map.projection);
                 prop_assert!(reach.per_axis() <= technique.reach(), "{reach:?}");
                 let query = CoverageQuery::of_map(map, &technique, reach);
-                let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).unwrap();
+                let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
                 // Only the last of windows holds all that it is asked for.
-                prop_assert!(certificate.is_proven(), "{certificate:?}");
+                prop_assert!(proof.is_proven(), "{proof:?}");
             }
             prop_assert!(!matches!(technique.maps, Maps::Windows(_)) || are_windows(&maps), "{maps:?}");
             camera.forward += Vec3::new(turn, -turn, turn) * camera.forward.length();
@@ -206,10 +206,10 @@ proptest! {
         let map = shadowfit::fit(&frustum, direction, &settings).unwrap();
         prop_assert!(map.texel_size.min_element() >= settings.map.least_texel * (1.0 - 1e-5), "{map:?}");
         let query = CoverageQuery::of_fit(&settings, Reach::kernel(5));
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
         let views = [frustum];
         let input = FitInput::new(&views, direction);
-        let certificate = verify(&input, &map, &query, &mut Workspace::new(&mut storage)).unwrap();
-        prop_assert!(certificate.is_proven(), "{certificate:?}");
+        let proof = prove(&input, &map, &query, &mut Scratch::new(&mut storage)).unwrap();
+        prop_assert!(proof.is_proven(), "{proof:?}");
     }
 }

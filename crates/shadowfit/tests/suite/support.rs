@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use serde_json::Value;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
-use shadowfit::settings::{FitKind, FitSettings, MapChoice, Stabilise};
-use shadowfit::{LightFit, Maps, PerspectiveCamera, Slices, Technique};
+use shadowfit::settings::{FitKind, FitSettings, MapSelection, Stabilise};
+use shadowfit::{LightProjection, Maps, PerspectiveCamera, Slices, Technique};
 
 /// Both fits.
 pub(crate) const KINDS: [FitKind; 2] = [FitKind::XnaSample, FitKind::FrustumAabb];
@@ -20,7 +20,7 @@ pub(crate) fn exact(kind: FitKind) -> FitSettings {
 }
 
 /// Snapped maps, kept as long as held ones are by default.
-pub(crate) const SNAP: Stabilise = Stabilise::Snap { waste: 1.8 };
+pub(crate) const SNAP: Stabilise = Stabilise::Snap { max_waste: 1.8 };
 
 /// Every way to keep maps, with the defaults of the rest.
 pub(crate) fn every_stabilise() -> [Stabilise; 3] {
@@ -34,9 +34,9 @@ pub(crate) fn sliced(fit: &FitSettings, slices: Slices) -> Technique {
 }
 
 /// The same with slices that are read by another choice; of a single map there is none.
-pub(crate) fn read_by(technique: &Technique, choice: MapChoice) -> Technique {
+pub(crate) fn read_by(technique: &Technique, choice: MapSelection) -> Technique {
     match technique.maps {
-        Maps::Slices(slices) => technique.with_maps(slices.with_choice(choice)),
+        Maps::Slices(slices) => technique.with_maps(slices.with_selection(choice)),
         Maps::Windows(_) | Maps::One(_) => *technique,
     }
 }
@@ -107,7 +107,7 @@ pub(crate) fn any_kind() -> impl Strategy<Value = FitKind> {
 }
 
 /// The fit of a camera by settings that must succeed.
-pub(crate) fn fitted(camera: &PerspectiveCamera, direction: Vec3, settings: &FitSettings) -> LightFit {
+pub(crate) fn fitted(camera: &PerspectiveCamera, direction: Vec3, settings: &FitSettings) -> LightProjection {
     shadowfit::fit(&camera.frustum().unwrap(), direction, settings).unwrap()
 }
 

@@ -5,8 +5,10 @@ use shadowfit::bias::Reach;
 use shadowfit::culling::Sweep;
 use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
-use shadowfit::settings::{FitKind, FitSettings, MapChoice, SplitScheme, Stabilise};
-use shadowfit::{Aabb, Boxes, CasterVolume, FitError, FitInput, LightFit, MapFitter, Slices, ViewFrustum, Workspace};
+use shadowfit::settings::{FitKind, FitSettings, MapSelection, SplitScheme, Stabilise};
+use shadowfit::{
+    Aabb, Boxes, CasterVolume, FitError, FitInput, FitState, LightProjection, Scratch, Slices, ViewFrustum,
+};
 
 use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float, sliced};
 
@@ -85,10 +87,10 @@ fn point_in(view: &ViewFrustum, near: f64, far: f64, share: DVec3) -> DVec3 {
     view.origin + top * (1.0 - share.y) + bottom * share.y
 }
 
-fn fit_of(views: &[ViewFrustum], direction: Vec3, settings: &FitSettings, receivers: Option<Boxes>) -> LightFit {
-    let mut storage = vec![DVec2::ZERO; Workspace::required(1, views.len())];
+fn fit_of(views: &[ViewFrustum], direction: Vec3, settings: &FitSettings, receivers: Option<Boxes>) -> LightProjection {
+    let mut storage = vec![DVec2::ZERO; Scratch::required(1, views.len())];
     let input = FitInput { receivers, ..FitInput::new(views, direction) };
-    fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
+    fit_scene(&input, settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
 /// A box in f32 that holds a point given in f64.
@@ -103,7 +105,7 @@ fn box_around(point: DVec3, half: f32, share: Vec3) -> (Vec3, Vec3) {
 }
 
 /// Texture coordinates of a world position, in f64.
-fn uv(fit: &LightFit, p: DVec3) -> DVec2 {
+fn uv(fit: &LightProjection, p: DVec3) -> DVec2 {
     let m = fit.uv_from_world.as_dmat4();
     let p = p - fit.origin;
     (m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis).truncate().truncate()
@@ -203,7 +205,7 @@ proptest! {
     fn no_map_of_several_loses_a_caster_by_its_own_volume(
         lens in any_lens(), direction in any_direction(), kind in 0..5_usize,
         (is_bordered, is_held) in any::<(bool, bool)>(), choice in prop::sample::select(vec![
-            MapChoice::default(), MapChoice::ViewDepth { overlap: 0.0 }, MapChoice::ViewDepth { overlap: 0.3 },
+            MapSelection::default(), MapSelection::ViewDepth { overlap: 0.0 }, MapSelection::ViewDepth { overlap: 0.3 },
         ]),
         points in prop::collection::vec(prop::array::uniform3(double(0.0, 1.0)), 12), half in float(0.001, 0.2),
     ) {
@@ -212,10 +214,10 @@ proptest! {
         let fit = if is_bordered { fit } else { fit.with_border(0.0) };
         let stabilise = if is_held { Stabilise::default() } else { Stabilise::Off };
         let splits = SplitScheme::Practical(0.5);
-        let technique = sliced(&fit, Slices { splits, stabilise, choice, ..Slices::default() });
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let technique = sliced(&fit, Slices { splits, stabilise, selection: choice, ..Slices::default() });
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
         let input = FitInput::new(&views, direction);
-        let fitted = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage));
+        let fitted = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage));
         prop_assume!(fitted.is_ok());
         let maps = fitted.unwrap();
         let volumes = maps.caster_volumes(&views, &technique).unwrap();
@@ -226,7 +228,7 @@ proptest! {
             let Some(read) = maps.read(&technique, point, depth) else { continue };
             for map in [Some(read.map), read.blend.map(|blend| blend.map)].into_iter().flatten() {
                 let (map, volume) = (&maps[map], &volumes[map]);
-                let over = point + to_light * f64::from(view.far) * share.x - map.fit.origin;
+                let over = point + to_light * f64::from(view.far) * share.x - map.projection.origin;
                 let half = Vec3::splat(half * view.far);
                 let centre = over.as_vec3();
                 let kind = ALL_KINDS[kind];
@@ -335,7 +337,7 @@ impl Counts {
 }
 
 /// Counts, having made sure that no box which casts a shadow into view is culled.
-fn count(fit: &LightFit, view: &ViewFrustum, half: f64) -> Counts {
+fn count(fit: &LightProjection, view: &ViewFrustum, half: f64) -> Counts {
     let sweep = Sweep { reach: Reach::taps(0.0), ..Sweep::new(std::slice::from_ref(view)) };
     let volume = CasterVolume::swept(fit, &sweep).unwrap();
     let slice = planes_of(view);

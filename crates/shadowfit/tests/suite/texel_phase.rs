@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use shadowfit::Constraint;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
-use shadowfit::{FitInput, FittedMap, FittedMaps, LightFit, MapFitter, Slices, Technique, ViewFrustum, Workspace};
+use shadowfit::{FitInput, FitState, FittedMap, FittedMaps, LightProjection, Scratch, Slices, Technique, ViewFrustum};
 
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
 use crate::support::{SNAP, apply, cases, double, sliced};
@@ -17,7 +17,7 @@ use crate::support::{SNAP, apply, cases, double, sliced};
 const STEP_ROOM: f64 = 1e-5;
 
 /// The exact texel size: extents are eighths of an octave over the texels that the grid leaves.
-pub(crate) fn exact_texel(fit: &LightFit, border: f32) -> DVec2 {
+pub(crate) fn exact_texel(fit: &LightProjection, border: f32) -> DVec2 {
     let usable = fit.resolution.as_dvec2() - (2.0 * f64::from(border) + 1.0);
     let exact = |rounded: f32, usable: f64| {
         let steps = (8.0 * (f64::from(rounded) * usable / (1.0 + STEP_ROOM)).log2()).round();
@@ -30,13 +30,13 @@ pub(crate) fn exact_texel(fit: &LightFit, border: f32) -> DVec2 {
 
 /// Position of a world point on the map's grid, in texels right and down from the world's origin,
 /// all in f64 but for the light's axes, which are f32 by definition.
-pub(crate) fn grid_position(fit: &LightFit, texel: DVec2, point: DVec3) -> DVec2 {
+pub(crate) fn grid_position(fit: &LightProjection, texel: DVec2, point: DVec3) -> DVec2 {
     let [x, y] = [fit.light_from_world.row(0), fit.light_from_world.row(1)].map(|row| row.truncate().as_dvec3());
     DVec2::new(x.dot(point) / texel.x, -y.dot(point) / texel.y)
 }
 
 /// Position in the map, in texels, as a shader finds it.
-pub(crate) fn shader_position(fit: &LightFit, point: DVec3) -> DVec2 {
+pub(crate) fn shader_position(fit: &LightProjection, point: DVec3) -> DVec2 {
     let uv = apply(&fit.uv_from_world, (point - fit.origin).as_vec3());
     (uv.truncate() * fit.resolution.as_vec2()).as_dvec2()
 }
@@ -57,10 +57,10 @@ fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, bo
     sliced(&fit, Slices { count, splits: SplitScheme::Practical(0.7), stabilise, ..Slices::default() })
 }
 
-fn frame(fitter: &mut MapFitter, view: &SceneView, direction: Vec3, settings: &Technique) -> FittedMaps {
+fn frame(fitter: &mut FitState, view: &SceneView, direction: Vec3, settings: &Technique) -> FittedMaps {
     let views: [ViewFrustum; 1] = [view.frustum()];
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    fitter.fit(&FitInput::new(&views, direction), settings, &mut Workspace::new(&mut storage)).unwrap()
+    let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+    fitter.fit(&FitInput::new(&views, direction), settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
 /// Points that the first frame sees in one of its maps.
@@ -77,9 +77,9 @@ fn walk(
     direction: Vec3,
     settings: &Technique,
     places: &[[f64; 3]],
-    is_kept: impl Fn(&LightFit) -> bool,
+    is_kept: impl Fn(&LightProjection) -> bool,
 ) -> usize {
-    let mut fitter = MapFitter::new();
+    let mut fitter = FitState::new();
     let mut before = frame(&mut fitter, &view, direction, settings);
     let points: Vec<Vec<DVec3>> = before.iter().map(|map| points_in(map, &view, places)).collect();
     let (mut view, mut kept) = (view, 0);
@@ -87,21 +87,22 @@ fn walk(
         view = step.moved(&view);
         let now = frame(&mut fitter, &view, direction, settings);
         for ((map, old), points) in now.iter().zip(before.iter()).zip(&points) {
-            let is_kept = is_kept(&map.fit);
+            let is_kept = is_kept(&map.projection);
             kept += usize::from(is_kept);
             assert!(
-                !is_kept || map.fit.texel_size == old.fit.texel_size,
+                !is_kept || map.projection.texel_size == old.projection.texel_size,
                 "{} {}",
-                map.fit.texel_size,
-                old.fit.texel_size
+                map.projection.texel_size,
+                old.projection.texel_size
             );
-            let texel = exact_texel(&map.fit, settings.border());
+            let texel = exact_texel(&map.projection, settings.border());
             // Leaps take the camera to where the points are in no map, which rounds them the more.
-            for point in points.iter().filter(|point| map.fit.covers(**point) && old.fit.covers(**point)) {
-                let place = shader_position(&map.fit, *point);
-                let by_grid = apart(place, grid_position(&map.fit, texel, *point));
+            for point in points.iter().filter(|point| map.projection.covers(**point) && old.projection.covers(**point))
+            {
+                let place = shader_position(&map.projection, *point);
+                let by_grid = apart(place, grid_position(&map.projection, texel, *point));
                 assert!(by_grid <= 0.02, "{by_grid} texels from the f64 chain at {point}");
-                let crawl = if is_kept { apart(place, shader_position(&old.fit, *point)) } else { 0.0 };
+                let crawl = if is_kept { apart(place, shader_position(&old.projection, *point)) } else { 0.0 };
                 assert!(crawl <= 0.005, "{crawl} texels of crawl at {point}");
             }
         }
@@ -143,7 +144,7 @@ proptest! {
         places in any_places(),
     ) {
         let settings = settings(FitKind::Sphere, SNAP, count, size, border);
-        let maps = frame(&mut MapFitter::new(), &view, direction, &settings);
+        let maps = frame(&mut FitState::new(), &view, direction, &settings);
         prop_assume!(!is_on_a_step(&view, &maps, |map| sphere_radius(&view, map)));
         walk(view, step, direction, &settings, &places, |_| true);
     }

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
-use shadowfit::proof::{CoverageQuery, verify};
+use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme};
-use shadowfit::{FitError, FitInput, LightFit, MapFitter, Slices, Workspace};
+use shadowfit::{FitError, FitInput, FitState, LightProjection, Scratch, Slices};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, float, sliced};
 
@@ -14,15 +14,15 @@ const GRAZING: Vec3 = Vec3::new(0.3, -0.05, 0.9);
 const RECTANGLES: [RectangleKind; 3] =
     [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare];
 
-fn ratio(fit: &LightFit) -> f32 {
+fn ratio(fit: &LightProjection) -> f32 {
     fit.texel_size.max_element() / fit.texel_size.min_element()
 }
 
-fn area(fit: &LightFit) -> f32 {
+fn area(fit: &LightProjection) -> f32 {
     fit.texel_size.element_product()
 }
 
-fn fitted(settings: &FitSettings, direction: Vec3) -> LightFit {
+fn fitted(settings: &FitSettings, direction: Vec3) -> LightProjection {
     shadowfit::fit(&camera().frustum().unwrap(), direction, settings).unwrap()
 }
 
@@ -74,19 +74,19 @@ proptest! {
         let fit = FitSettings::default().with_kind(kind).with_rectangle(RECTANGLES[rectangle]);
         let fit = fit.with_resolution(resolution).with_max_texel_ratio(limit);
         let technique = sliced(&fit, Slices { splits: SplitScheme::Logarithmic, stabilise, ..Slices::default() });
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 3)];
-        let mut fitter = MapFitter::new();
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 3)];
+        let mut fitter = FitState::new();
         let mut camera = camera;
         for _ in 0..3 {
             let Ok(view) = camera.frustum() else { return Ok(()) };
             let views = [view];
             let input = FitInput::new(&views, direction);
-            let Ok(maps) = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)) else { return Ok(()) };
+            let Ok(maps) = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)) else { return Ok(()) };
             for map in maps.iter() {
-                prop_assert!(ratio(&map.fit) <= limit * (1.0 + 1e-5), "{} of {limit}", ratio(&map.fit));
-                let query = CoverageQuery::of_map(map, &technique, technique.reach_in(&map.fit));
-                let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).unwrap();
-                prop_assert!(certificate.is_proven(), "{certificate:?}");
+                prop_assert!(ratio(&map.projection) <= limit * (1.0 + 1e-5), "{} of {limit}", ratio(&map.projection));
+                let query = CoverageQuery::of_map(map, &technique, technique.reach_in(&map.projection));
+                let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
+                prop_assert!(proof.is_proven(), "{proof:?}");
             }
             camera.forward += Vec3::new(turn, -turn, turn) * camera.forward.length();
         }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::FitKind;
-use shadowfit::{DepthConvention, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
 
@@ -17,18 +17,18 @@ const TOLERANCE: f32 = 1e-5;
 /// 4.4e-5 in clip space.
 const ROOM: f32 = 6e-5;
 
-fn clip_bounds(fit: &LightFit, frustum: &ViewFrustum) -> (Vec3, Vec3) {
+fn clip_bounds(fit: &LightProjection, frustum: &ViewFrustum) -> (Vec3, Vec3) {
     let clip = frustum.corners.map(|c| apply(&fit.clip_from_world, c));
     (clip.into_iter().fold(Vec3::MAX, Vec3::min), clip.into_iter().fold(Vec3::MIN, Vec3::max))
 }
 
-fn assert_bounds(fit: &LightFit, frustum: &ViewFrustum, min: Vec3, max: Vec3, tolerance: f32) {
+fn assert_bounds(fit: &LightProjection, frustum: &ViewFrustum, min: Vec3, max: Vec3, tolerance: f32) {
     let (low, high) = clip_bounds(fit, frustum);
     let error = (low - min).abs().max((high - max).abs()).max_element();
     assert!(error <= tolerance, "{low}..{high} instead of {min}..{max}");
 }
 
-fn fit_in(camera: &PerspectiveCamera, direction: Vec3, kind: FitKind, depth: DepthConvention) -> LightFit {
+fn fit_in(camera: &PerspectiveCamera, direction: Vec3, kind: FitKind, depth: DepthConvention) -> LightProjection {
     fitted(camera, direction, &exact(kind).with_depth(depth))
 }
 

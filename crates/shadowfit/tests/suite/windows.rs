@@ -1,4 +1,4 @@
-//! Windows: what they promise whatever camera, light and grid of need are, by what comes out of a [`MapFitter`].
+//! Windows: what they promise whatever camera, light and demand grid are, by what comes out of a [`FitState`].
 
 mod content;
 mod coverage;
@@ -11,11 +11,11 @@ mod state;
 mod still;
 
 use proptest::prelude::*;
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace, PIXELS};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace, PIXELS};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind, MapSettings, SoftRadius, Softness};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Windows, Workspace,
+    Aabb, Boxes, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique, ViewFrustum, Windows,
 };
 
 use crate::scenes::{SceneView, any_depth, of_camera};
@@ -88,18 +88,18 @@ fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<H
     all.filter_map(hit).collect()
 }
 
-/// A grid of need and its counts.
+/// A demand grid and its counts.
 #[derive(Clone, Debug)]
-struct Need {
-    space: NeedSpace,
+struct Demand {
+    space: DemandSpace,
     counts: Vec<u32>,
 }
 
-impl Need {
+impl Demand {
     /// What a frame asks for, by [`hits`].
     fn of(view: &SceneView, hits: &[Hit], direction: Vec3, technique: &Technique) -> Self {
         let fit = &technique.fit;
-        let space = NeedSpace::new(&view.frustum(), direction, fit.up, fit.max_distance).unwrap();
+        let space = DemandSpace::new(&view.frustum(), direction, fit.up, fit.max_distance).unwrap();
         let mut counts = vec![0; CELLS];
         for hit in hits {
             let [point, normal, right, down] = [hit.point, hit.normal, hit.right, hit.down].map(DVec3::as_vec3);
@@ -110,8 +110,8 @@ impl Need {
         Self { space, counts }
     }
 
-    fn grid(&self) -> NeedGrid<'_> {
-        NeedGrid { space: self.space, counts: &self.counts }
+    fn grid(&self) -> DemandGrid<'_> {
+        DemandGrid { space: self.space, counts: &self.counts }
     }
 }
 
@@ -123,9 +123,9 @@ struct World {
 }
 
 impl World {
-    fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3, need: &'a [NeedGrid<'a>]) -> FitInput<'a> {
+    fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3, demand: &'a [DemandGrid<'a>]) -> FitInput<'a> {
         let boxes = Some(Boxes { origin: self.origin, boxes: &self.boxes });
-        FitInput { receivers: boxes, casters: boxes, need, ..FitInput::new(views, direction) }
+        FitInput { receivers: boxes, casters: boxes, demand, ..FitInput::new(views, direction) }
     }
 }
 
@@ -133,19 +133,19 @@ impl World {
 struct Run {
     world: World,
     technique: Technique,
-    fitter: MapFitter,
+    fitter: FitState,
     /// Whether there is a depth buffer to read.
     is_seen: bool,
-    need: Option<Need>,
-    /// The view and the light that the grid of need is of.
+    demand: Option<Demand>,
+    /// The view and the light that the demand grid is of.
     seen: Option<(ViewFrustum, Vec3)>,
     storage: Vec<DVec2>,
 }
 
 impl Run {
     fn new(world: World, technique: &Technique) -> Self {
-        let storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
-        Self { world, technique: *technique, fitter: MapFitter::new(), is_seen: true, need: None, seen: None, storage }
+        let storage = vec![DVec2::ZERO; Scratch::required(world.boxes.len(), 1)];
+        Self { world, technique: *technique, fitter: FitState::new(), is_seen: true, demand: None, seen: None, storage }
     }
 
     /// The same, without a depth buffer to read unless it is seen.
@@ -155,13 +155,13 @@ impl Run {
 
     fn frame(&mut self, view: &SceneView, direction: Vec3) -> FittedMaps {
         let views = [view.frustum()];
-        let need: Vec<NeedGrid> = self.need.iter().filter(|_| self.is_seen).map(Need::grid).collect();
-        let input = self.world.input(&views, direction, &need);
-        let maps = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage)).unwrap();
+        let demand: Vec<DemandGrid> = self.demand.iter().filter(|_| self.is_seen).map(Demand::grid).collect();
+        let input = self.world.input(&views, direction, &demand);
+        let maps = self.fitter.fit(&input, &self.technique, &mut Scratch::new(&mut self.storage)).unwrap();
         if self.seen.replace((views[0], direction)) != Some((views[0], direction)) {
             let distance = f64::from(self.technique.fit.max_distance);
             let hits = hits(view, self.world.origin, &self.world.boxes, distance);
-            self.need = Some(Need::of(view, &hits, direction, &self.technique));
+            self.demand = Some(Demand::of(view, &hits, direction, &self.technique));
         }
         maps
     }
@@ -193,7 +193,7 @@ fn any_windows() -> impl Strategy<Value = Technique> {
     let size = || prop::sample::select(vec![64_u32, 300, 1024, 2048]);
     let up = prop_oneof![2 => Just(Vec3::Y), 1 => Just(Vec3::Z), 1 => any_direction()];
     let border = prop_oneof![2 => Just(None), 1 => float(0.0, 8.0).prop_map(Some)];
-    let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
+    let casters = prop::sample::select(vec![CasterPolicy::PerObject, CasterPolicy::SceneBounds]);
     let fit = (up, border, casters, prop_oneof![2 => Just(f32::MAX), 1 => float(3.0, 500.0)], any_depth());
     // The widest disc and its look-ups leave half of the smallest map.
     let radius =

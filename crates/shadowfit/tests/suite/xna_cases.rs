@@ -1,6 +1,6 @@
 //! The XNA fit against the published vectors of the sample, 24 cameras and lights.
 
-use shadowfit::LightFit;
+use shadowfit::LightProjection;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::FitKind;
 
@@ -18,7 +18,7 @@ fn check(index: usize, case: &XnaCase, quantity: &str, actual: &[f64]) {
     assert!(error <= TOLERANCE, "case {index}: {quantity} is off by {error:e}");
 }
 
-fn fit_of(case: &XnaCase) -> LightFit {
+fn fit_of(case: &XnaCase) -> LightProjection {
     fitted(&case.camera, case.direction, &exact(FitKind::XnaSample))
 }
 

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
 use shadowfit::settings::{FitKind, RectangleKind};
-use shadowfit::{Aabb, FitInput, LightFit};
+use shadowfit::{Aabb, FitInput, LightProjection};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, MIDDLE, PURPLE, RED, RIGHT, YELLOW, bounds, fill, stroke};
 use super::scene::{Fitter, Look, boxes, camera, draw_box, draw_frustum, one_map, plain_fit};
@@ -39,7 +39,7 @@ pub(super) fn draw() -> Result<String> {
     let input = FitInput { receivers: village, casters: village, ..FitInput::new(&view, LIGHT) };
     let mut fits = Vec::new();
     for (_, kind, rectangle, _) in MAPS {
-        fits.push(Fitter::new().fit(&input, &one_map(plain_fit(kind).with_rectangle(rectangle)))?[0].fit);
+        fits.push(Fitter::new().fit(&input, &one_map(plain_fit(kind).with_rectangle(rectangle)))?[0].projection);
     }
     let mut canvas = Canvas::new(2.0 * ROW + 36.0, "Six maps of one camera and one sun, seen from the light");
     let look = Look::from_light(&fits[1]);
@@ -68,7 +68,7 @@ pub(super) fn draw() -> Result<String> {
 }
 
 /// Size of a fit's texels, and their area beside another fit's.
-fn texels(fit: &LightFit, other: &LightFit) -> String {
+fn texels(fit: &LightProjection, other: &LightProjection) -> String {
     let (size, other) = (fit.texel_size * 100.0, other.texel_size * 100.0);
     let share = 100.0 * size.x * size.y / (other.x * other.y);
     format!("{:.2} × {:.2} cm, {share:.0}%", size.x, size.y)

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, Stabilise};
-use shadowfit::{FitInput, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::{FitInput, LightProjection, PerspectiveCamera, ViewFrustum};
 
 use super::canvas::{Canvas, Frame, GREY, INK, LEFT, MAPS, MIDDLE, RIGHT, fill, stroke};
 use super::scene::{Fitter, Look, camera, draw_frustum, one_map, plain_fit};
@@ -26,7 +26,7 @@ pub(super) fn draw() -> Result<String> {
     for view in [&views[0], &views[FRAMES - 1]] {
         draw_frustum(&mut canvas, &frame, &look.frustum(view));
     }
-    let rectangle = |fit: &LightFit| look.map(fit).map(|p| frame.at(p));
+    let rectangle = |fit: &LightProjection| look.map(fit).map(|p| frame.at(p));
     for fit in fresh.iter().step_by(FRAMES / 6) {
         canvas.polygon(rectangle(fit), stroke(GREY, 0.9));
     }
@@ -36,11 +36,11 @@ pub(super) fn draw() -> Result<String> {
     }
     canvas.text(DVec2::new(18.0, 366.0), RIGHT, GREY, "grey: some of the 96 fresh fits");
     canvas.text(DVec2::new(18.0, 386.0), RIGHT, INK, "coloured: held maps, dashed when given up");
-    let turn = |fit: &LightFit| {
+    let turn = |fit: &LightProjection| {
         let x = Look::from_light(fit).right;
         libm::atan2(look.up.dot(x), look.right.dot(x)).to_degrees()
     };
-    let side = |fit: &LightFit| libm::sqrt(f64::from(fit.texel_size.x * fit.texel_size.y)) * 100.0;
+    let side = |fit: &LightProjection| libm::sqrt(f64::from(fit.texel_size.x * fit.texel_size.y)) * 100.0;
     plot(&mut canvas, ("turn of the map, degrees", 42.0, [-45.0, 45.0]), &turn, &fresh, &held);
     plot(&mut canvas, ("side of a texel, cm", 204.0, [0.0, 2.0]), &side, &fresh, &held);
     canvas.small(DVec2::new(565.0, 332.0), MIDDLE, GREY, "96 frames");
@@ -58,17 +58,17 @@ fn view(frame: usize) -> Result<ViewFrustum> {
 }
 
 /// One map a frame.
-fn maps(views: &[ViewFrustum], fit: FitSettings, stabilise: Stabilise) -> Result<Vec<LightFit>> {
+fn maps(views: &[ViewFrustum], fit: FitSettings, stabilise: Stabilise) -> Result<Vec<LightProjection>> {
     let technique = one_map(fit);
     let technique = technique.with_maps(technique.maps.with_stabilise(stabilise));
     let mut fitter = Fitter::new();
-    let fit = |view| Ok(fitter.fit(&FitInput::new(std::slice::from_ref(view), LIGHT), &technique)?[0].fit);
+    let fit = |view| Ok(fitter.fit(&FitInput::new(std::slice::from_ref(view), LIGHT), &technique)?[0].projection);
     views.iter().map(fit).collect()
 }
 
 /// Runs of frames whose texels keep their size and direction: the first frame, and the one after the last.
-fn runs(maps: &[LightFit]) -> Vec<[usize; 2]> {
-    let texels = |fit: &LightFit| (fit.texel_size, fit.light_from_world.x_axis, fit.light_from_world.y_axis);
+fn runs(maps: &[LightProjection]) -> Vec<[usize; 2]> {
+    let texels = |fit: &LightProjection| (fit.texel_size, fit.light_from_world.x_axis, fit.light_from_world.y_axis);
     let runs = maps.chunk_by(|a, b| texels(a) == texels(b));
     runs.scan(0, |first, run| {
         let begin = *first;
@@ -82,9 +82,9 @@ fn runs(maps: &[LightFit]) -> Vec<[usize; 2]> {
 fn plot(
     canvas: &mut Canvas,
     (name, top, [low, high]): (&str, f64, [f64; 2]),
-    figure: &dyn Fn(&LightFit) -> f64,
-    fresh: &[LightFit],
-    held: &[LightFit],
+    figure: &dyn Fn(&LightProjection) -> f64,
+    fresh: &[LightProjection],
+    held: &[LightProjection],
 ) {
     let (min, max) = (DVec2::new(434.0, top), DVec2::new(696.0, top + 108.0));
     let frame = Frame::stretched(DVec2::new(0.0, low), DVec2::new(FRAMES as f64, high), min, max);

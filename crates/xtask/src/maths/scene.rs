@@ -4,8 +4,8 @@ use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, OneMap, PerspectiveCamera, Technique, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, FitInput, FitState, FittedMaps, LightProjection, OneMap, PerspectiveCamera, Scratch, Technique,
+    ViewFrustum,
 };
 
 use super::canvas::{Canvas, Frame, GREY, Paint, stroke};
@@ -43,17 +43,17 @@ pub(super) fn boxes(boxes: &[Aabb]) -> Boxes<'_> {
 
 /// Fits frames one after the other, with a memory of their own.
 pub(super) struct Fitter {
-    fitter: MapFitter,
+    fitter: FitState,
     storage: Vec<DVec2>,
 }
 
 impl Fitter {
     pub(super) fn new() -> Self {
-        Self { fitter: MapFitter::new(), storage: vec![DVec2::ZERO; Workspace::required(MOST_BOXES, 1)] }
+        Self { fitter: FitState::new(), storage: vec![DVec2::ZERO; Scratch::required(MOST_BOXES, 1)] }
     }
 
     pub(super) fn fit(&mut self, input: &FitInput, technique: &Technique) -> Result<FittedMaps> {
-        Ok(self.fitter.fit(input, technique, &mut Workspace::new(&mut self.storage))?)
+        Ok(self.fitter.fit(input, technique, &mut Scratch::new(&mut self.storage))?)
     }
 }
 
@@ -67,7 +67,7 @@ pub(super) struct Look {
 
 impl Look {
     /// What the light sees: the map's right and up.
-    pub(super) fn from_light(fit: &LightFit) -> Self {
+    pub(super) fn from_light(fit: &LightProjection) -> Self {
         let rows = fit.light_from_world.transpose();
         let [right, up] = [rows.x_axis, rows.y_axis].map(|row: Vec4| row.truncate().as_dvec3());
         Self { origin: fit.origin, right, up }
@@ -92,7 +92,7 @@ impl Look {
     }
 
     /// The map's rectangle, from a look along the light.
-    pub(super) fn map(&self, fit: &LightFit) -> [DVec2; 4] {
+    pub(super) fn map(&self, fit: &LightProjection) -> [DVec2; 4] {
         let [a, b, c, d, ..] = fit.corners();
         self.points([a, b, c, d], fit.origin)
     }

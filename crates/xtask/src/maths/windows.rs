@@ -1,7 +1,7 @@
 //! Windows: what a street's visible points ask for, and where the four windows of `windows-4` stand.
 
 use anyhow::Result;
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace, SIDE};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace, SIDE};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{Aabb, FitInput, FittedMaps, PerspectiveCamera, Technique};
 
@@ -50,7 +50,7 @@ pub(super) fn draw() -> Result<String> {
         [(20.0, 4, "The four windows, as the light sees them"), (376.0, 3, "The three finest, enlarged")]
     {
         let (low, size) = (DVec2::new(left, 38.0), DVec2::splat(324.0));
-        let windows = shown.maps[..count].iter().flat_map(|map| look.map(&map.fit));
+        let windows = shown.maps[..count].iter().flat_map(|map| look.map(&map.projection));
         let frame = Frame::around(windows, low + 10.0, low + size - 10.0);
         canvas.panel(low, size, title, |canvas| panel(canvas, &shown, &look, &frame));
     }
@@ -93,7 +93,7 @@ fn legend(canvas: &mut Canvas, shown: &Step) {
     for (i, (map, colour)) in shown.maps.iter().zip(MAPS).enumerate() {
         let at = DVec2::new(263.0 + 86.0 * i as f64, 425.0);
         canvas.rectangle(at - 7.0, at + 7.0, stroke(colour, 3.0));
-        canvas.text(at + DVec2::new(14.0, 5.0), RIGHT, INK, &format!("{:.1}", map.fit.texel_size.x * 1000.0));
+        canvas.text(at + DVec2::new(14.0, 5.0), RIGHT, INK, &format!("{:.1}", map.projection.texel_size.x * 1000.0));
     }
     eye(canvas, DVec2::new(636.0, 425.0));
     canvas.text(DVec2::new(646.0, 430.0), RIGHT, INK, "eye");
@@ -110,7 +110,7 @@ pub(super) struct Step {
     pub(super) camera: PerspectiveCamera,
     pub(super) maps: FittedMaps,
     pub(super) seen: Vec<Visible>,
-    pub(super) space: NeedSpace,
+    pub(super) space: DemandSpace,
 }
 
 impl Step {
@@ -124,7 +124,7 @@ impl Step {
     /// Draws the outlines of the maps, and the eye.
     pub(super) fn outline(&self, canvas: &mut Canvas, look: &Look, frame: &Frame, width: f64) {
         for (map, colour) in self.maps.iter().zip(MAPS).rev() {
-            canvas.polygon(look.map(&map.fit).map(|p| frame.at(p)), stroke(colour, width));
+            canvas.polygon(look.map(&map.projection).map(|p| frame.at(p)), stroke(colour, width));
         }
         eye(canvas, frame.at(look.relative(DVec3::ZERO)));
     }
@@ -140,32 +140,32 @@ pub(super) struct Walk {
     technique: Technique,
     fitter: Fitter,
     /// The points that the last frame showed, and the space that they were counted in.
-    need: Option<(NeedSpace, Vec<u32>)>,
+    demand: Option<(DemandSpace, Vec<u32>)>,
 }
 
 impl Walk {
     pub(super) fn new(technique: &Technique) -> Self {
-        Self { technique: *technique, fitter: Fitter::new(), need: None }
+        Self { technique: *technique, fitter: Fitter::new(), demand: None }
     }
 
     /// The next frame, with the camera at a heading in degrees from -z toward +x.
     pub(super) fn step(&mut self, heading: f64) -> Result<Step> {
         let camera = PerspectiveCamera { near: 0.1, ..scene::camera(heading, -4.0, 0.8, 120.0) };
         let view = [camera.frustum()?];
-        let need = self.need.as_ref().map(|(space, counts)| NeedGrid { space: *space, counts });
+        let demand = self.demand.as_ref().map(|(space, counts)| DemandGrid { space: *space, counts });
         let street = Some(boxes(&STREET));
         let input =
-            FitInput { receivers: street, casters: street, need: need.as_slice(), ..FitInput::new(&view, LIGHT) };
+            FitInput { receivers: street, casters: street, demand: demand.as_slice(), ..FitInput::new(&view, LIGHT) };
         let maps = self.fitter.fit(&input, &self.technique)?;
         let seen = visible(&camera, &STREET, (0..RAYS).map(place))?;
-        let space = NeedSpace::new(&view[0], LIGHT, Vec3::Y, self.technique.fit.max_distance)?;
+        let space = DemandSpace::new(&view[0], LIGHT, Vec3::Y, self.technique.fit.max_distance)?;
         let mut counts = vec![0; CELLS];
         for Visible { point, normal, right, down, .. } in &seen {
             if let Some(cell) = space.index(*point, *normal, *right, *down) {
                 counts[cell] += 1;
             }
         }
-        self.need = Some((space, counts));
+        self.demand = Some((space, counts));
         Ok(Step { camera, maps, seen, space })
     }
 }

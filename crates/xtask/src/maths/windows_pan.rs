@@ -83,7 +83,7 @@ fn mean(technique: &Technique, steps: &[Step]) -> Result<f64> {
         for seen in step.seen.iter().filter(|seen| step.octave(seen).is_some()) {
             let point = step.camera.eye + seen.point.as_dvec3();
             let read = step.maps.read(technique, point, seen.depth).context("a point in no map")?;
-            let fit = &step.maps[read.main()].fit;
+            let fit = &step.maps[read.main()].projection;
             let found = pixels_per_texel(fit, &clip_from_world, PICTURE, seen.point, seen.normal)?;
             pixels.extend(found.map(|found| f64::from(found.worse_axis)));
         }

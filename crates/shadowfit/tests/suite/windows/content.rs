@@ -1,11 +1,11 @@
-//! What a point reads is complete: depth ranges, culling and the certificate of windows.
+//! What a point reads is complete: depth ranges, culling and the proof of windows.
 
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::proof::{Certificate, CoverageQuery, verify};
+use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, Boxes, FitInput, FittedMap, MapFitter, Workspace};
+use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMap, Scratch};
 
 use super::{World, any_seen, any_windows, windows};
 use crate::read_by_coverage::{Sample, any_samples, check};
@@ -43,7 +43,7 @@ proptest! {
 
     /// The last window is proven to hold all that is seen, and every one to have all casters over it.
     #[test]
-    fn the_certificate_proves_windows(
+    fn windows_are_proven(
         view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(), is_seen in any_seen(),
         plans in prop::collection::vec(any_box(), 0..12),
     ) {
@@ -53,15 +53,15 @@ proptest! {
         let world = World { origin, boxes: plans.iter().map(|plan| plan.aabb(&view, origin)).collect() };
         let mut run = super::Run::new(world.clone(), &technique).seen_if(is_seen);
         let mut view = view;
-        let mut storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
+        let mut storage = vec![DVec2::ZERO; Scratch::required(world.boxes.len(), 1)];
         for frame in 0..5 {
             let maps = run.frame(&view, direction);
             let views = [view.frustum()];
             for (i, map) in maps.iter().enumerate() {
                 let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
                 let input = world.input(&views, direction, &[]);
-                let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).unwrap();
-                prop_assert!(certificate.is_proven(), "frame {frame}, map {i}: {certificate:?} of {map:?}");
+                let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
+                prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
             view = walk.moved(&view);
         }
@@ -77,26 +77,26 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     let tower = [ground[0], Aabb::new(Vec3::new(-1.0, 0.0, -8.0), Vec3::new(1.0, 100.0, -6.0))];
     let (receivers, casters) = [&ground[..], &tower].map(|boxes| Some(Boxes { origin: DVec3::ZERO, boxes })).into();
     let input = FitInput { receivers, casters, ..FitInput::new(&views, direction) };
-    let mut storage = vec![DVec2::ZERO; Workspace::required(tower.len(), 1)];
-    let mut workspace = Workspace::new(&mut storage);
-    // Whether a window has the tower's foot, and its certificate.
-    let mut certificates = |policy| -> Vec<(bool, Certificate)> {
+    let mut storage = vec![DVec2::ZERO; Scratch::required(tower.len(), 1)];
+    let mut workspace = Scratch::new(&mut storage);
+    // Whether a window has the tower's foot, and its proof.
+    let mut proofs = |policy| -> Vec<(bool, CoverageProof)> {
         let technique = windows(4, 1024);
         let technique = technique.with_fit(technique.fit.with_casters(policy));
-        let maps = MapFitter::new().fit(&input, &technique, &mut workspace).unwrap();
+        let maps = FitState::new().fit(&input, &technique, &mut workspace).unwrap();
         let proof = |map: &FittedMap| {
             let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
-            let foot = map.fit.free_texels(DVec3::new(0.0, -0.05, -7.0));
-            (foot.is_some(), verify(&input, &map.fit, &query, &mut workspace).unwrap())
+            let foot = map.projection.free_texels(DVec3::new(0.0, -0.05, -7.0));
+            (foot.is_some(), prove(&input, &map.projection, &query, &mut workspace).unwrap())
         };
         maps.iter().map(proof).collect()
     };
-    assert!(certificates(CasterPolicy::List).iter().all(|(_, certificate)| certificate.is_proven()));
-    let cut = certificates(CasterPolicy::None);
+    assert!(proofs(CasterPolicy::PerObject).iter().all(|(_, proof)| proof.is_proven()));
+    let cut = proofs(CasterPolicy::None);
     assert!(cut.iter().filter(|(is_under, _)| *is_under).count() >= 2, "{cut:?}");
-    for (is_under, certificate) in cut {
+    for (is_under, proof) in cut {
         // The depth range over the ground alone is no longer than a few metres.
-        let is_lost = matches!(certificate, Certificate::CasterLost { by, .. } if by > 95.0);
-        assert!(is_lost || !is_under, "{certificate:?}");
+        let is_lost = matches!(proof, CoverageProof::CasterLost { by, .. } if by > 95.0);
+        assert!(is_lost || !is_under, "{proof:?}");
     }
 }

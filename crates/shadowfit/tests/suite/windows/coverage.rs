@@ -1,11 +1,11 @@
-//! Nothing is ever uncovered: a wrong grid of need costs sharpness only.
+//! Nothing is ever uncovered: a wrong demand grid costs sharpness only.
 
 use proptest::prelude::*;
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMaps, Scratch, Technique, ViewFrustum};
 
-use super::{Need, any_windows, hits, windows};
+use super::{Demand, any_windows, hits, windows};
 use crate::scenes::{BoxPlan, SceneView, any_box, any_lens, any_light, any_view, any_walk, share};
 use crate::support::{any_direction, cases};
 
@@ -54,7 +54,7 @@ fn random_counts(seed: u64, one_in: u32) -> Vec<u32> {
 }
 
 impl GridPlan {
-    fn need(self, space: NeedSpace, right: &Need, stale: &Need) -> Option<Need> {
+    fn demand(self, space: DemandSpace, right: &Demand, stale: &Demand) -> Option<Demand> {
         let counts = match self {
             Self::None => return None,
             Self::Right => return Some(right.clone()),
@@ -65,7 +65,7 @@ impl GridPlan {
             Self::Elsewhere(..) => random_counts(7, 50),
         };
         let space = match self {
-            Self::Elsewhere(cell, texel, away) => NeedSpace {
+            Self::Elsewhere(cell, texel, away) => DemandSpace {
                 cell: space.cell * (cell as f32).exp2(),
                 texel: space.texel * (texel as f32).exp2(),
                 origin: space.origin + DVec3::new(away, -away, away),
@@ -73,7 +73,7 @@ impl GridPlan {
             },
             _ => space,
         };
-        Some(Need { space, counts })
+        Some(Demand { space, counts })
     }
 }
 
@@ -83,7 +83,7 @@ const ROUNDING: f64 = 1e-3;
 
 /// Fails unless the last window holds a visible point with all that the filter reads, and the point reads a window.
 fn assert_covered(maps: &FittedMaps, technique: &Technique, point: DVec3, view_depth: f64) {
-    let last = &maps[maps.len() - 1].fit;
+    let last = &maps[maps.len() - 1].projection;
     let needed = f64::from(technique.reach().min(technique.border())) - ROUNDING;
     let free = last.free_texels(point).unwrap_or(f64::MIN);
     assert!(free >= needed, "{point} has {free} of {needed} texels to the border of {last:?}");
@@ -148,17 +148,17 @@ proptest! {
         });
         let known: &[Aabb] = boxes.as_deref().unwrap_or_default();
         let last = f64::from(technique.fit.max_distance);
-        let mut storage = vec![DVec2::ZERO; Workspace::required(known.len(), 1)];
-        let (mut fitter, mut view, mut stale) = (MapFitter::new(), view, None);
+        let mut storage = vec![DVec2::ZERO; Scratch::required(known.len(), 1)];
+        let (mut fitter, mut view, mut stale) = (FitState::new(), view, None);
         for plan in grids {
             let views = [view.frustum()];
-            let space = NeedSpace::new(&views[0], direction, technique.fit.up, technique.fit.max_distance).unwrap();
-            let right = Need::of(&view, &hits(&view, origin, known, last), direction, &technique);
-            let need = plan.need(space, &right, stale.get_or_insert(right.clone()));
-            let need: Vec<NeedGrid> = need.iter().map(Need::grid).collect();
+            let space = DemandSpace::new(&views[0], direction, technique.fit.up, technique.fit.max_distance).unwrap();
+            let right = Demand::of(&view, &hits(&view, origin, known, last), direction, &technique);
+            let demand = plan.demand(space, &right, stale.get_or_insert(right.clone()));
+            let demand: Vec<DemandGrid> = demand.iter().map(Demand::grid).collect();
             let receivers = boxes.as_deref().map(|boxes| Boxes { origin, boxes });
-            let input = FitInput { receivers, casters: receivers, need: &need, ..FitInput::new(&views, direction) };
-            let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+            let input = FitInput { receivers, casters: receivers, demand: &demand, ..FitInput::new(&views, direction) };
+            let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
             prop_assert_eq!(maps.len(), technique.maps.count() as usize);
             for (point, depth) in visible(&view, origin, boxes.as_deref(), last, &places) {
                 assert_covered(&maps, &technique, point, depth);
@@ -183,23 +183,23 @@ proptest! {
         let boxes: Vec<Aabb> =
             plans.iter().enumerate().map(|(i, plan)| plan.aabb(&all[i % all.len()], origin)).collect();
         let last = f64::from(technique.fit.max_distance);
-        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), all.len())];
-        let mut fitter = MapFitter::new();
-        let mut needs: Vec<Need> = Vec::new();
+        let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), all.len())];
+        let mut fitter = FitState::new();
+        let mut needs: Vec<Demand> = Vec::new();
         for _ in 0..4 {
             let frusta: Vec<ViewFrustum> = all.iter().map(SceneView::frustum).collect();
-            let grids: Vec<NeedGrid> = needs.iter().map(Need::grid).collect();
+            let grids: Vec<DemandGrid> = needs.iter().map(Demand::grid).collect();
             let known = Some(Boxes { origin, boxes: &boxes });
-            let input = FitInput { receivers: known, casters: known, need: &grids, ..FitInput::new(&frusta, direction) };
-            let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+            let input = FitInput { receivers: known, casters: known, demand: &grids, ..FitInput::new(&frusta, direction) };
+            let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
             for view in &all {
                 for (point, depth) in visible(view, origin, Some(&boxes), last, &places) {
                     assert_covered(&maps, &technique, point, depth);
                 }
             }
             if with_grids {
-                let need = |view: &SceneView| Need::of(view, &hits(view, origin, &boxes, last), direction, &technique);
-                needs = all.iter().map(need).collect();
+                let demand = |view: &SceneView| Demand::of(view, &hits(view, origin, &boxes, last), direction, &technique);
+                needs = all.iter().map(demand).collect();
             }
             all = all.map(|view| walk.moved(&view));
         }
@@ -215,15 +215,15 @@ fn ground_without_an_end_is_held_as_far_as_shadows_reach() {
     for (count, (x, y)) in (1..=8).flat_map(|count| lights.map(|light| (count, light))) {
         let technique = windows(count, 512).with_max_distance(400.0);
         for height in [0.2, 1.7, 80.0] {
-            let mut fitter = MapFitter::new();
+            let mut fitter = FitState::new();
             for frame in 0..4_u8 {
                 let eye = DVec3::new(f64::from(frame) * 30.0, height, 0.0);
                 let view = super::street_view(eye, Vec3::new(1.0, -0.3, f32::from(frame)));
                 let (views, ground) = ([view.frustum()], Some(Boxes { origin: DVec3::ZERO, boxes: &boxes }));
                 let direction = Vec3::new(x, y, 0.3);
                 let input = FitInput { receivers: ground, casters: ground, ..FitInput::new(&views, direction) };
-                let mut storage = [DVec2::ZERO; Workspace::required(1, 1)];
-                let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+                let mut storage = [DVec2::ZERO; Scratch::required(1, 1)];
+                let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
                 let seen = hits(&view, DVec3::ZERO, &boxes, 400.0);
                 assert!(seen.len() > 100);
                 for hit in seen {
@@ -239,15 +239,15 @@ fn ground_without_an_end_is_held_as_far_as_shadows_reach() {
 fn windows_over_nothing_are_empty_and_hold_what_comes() {
     let technique = windows(4, 512);
     let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.2, -0.2, -1.0));
-    let (views, mut fitter) = ([view.frustum()], MapFitter::new());
+    let (views, mut fitter) = ([view.frustum()], FitState::new());
     let town = super::town();
-    let mut storage = vec![DVec2::ZERO; Workspace::required(town.boxes.len(), 1)];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(town.boxes.len(), 1)];
     for boxes in [&[][..], &town.boxes, &[Aabb::EMPTY], &town.boxes[..1], &[]] {
         let known = Some(Boxes { origin: DVec3::ZERO, boxes });
         let input = FitInput { receivers: known, casters: known, ..FitInput::new(&views, Vec3::new(0.3, -0.8, 0.4)) };
-        let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+        let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
         let seen = hits(&view, DVec3::ZERO, boxes, f64::MAX);
-        assert!(maps.iter().all(|map| map.fit.is_empty == seen.is_empty()));
+        assert!(maps.iter().all(|map| map.projection.is_empty == seen.is_empty()));
         for hit in seen {
             assert_covered(&maps, &technique, view.eye + hit.point, hit.point.dot(view.axes()[2]));
         }

@@ -23,7 +23,9 @@ fn a_light_that_differs_by_rounding_changes_nothing() {
             let first = if frame == 0 { light } else { rounded };
             let (plain, rounded) = (run.frame(&view, light), other.frame(&view, first));
             let same = |a: &FittedMaps, b: &FittedMaps| {
-                a.iter().zip(b.iter()).all(|(a, b)| a.anchor == b.anchor && a.fit == b.fit && a.bias == b.bias)
+                a.iter()
+                    .zip(b.iter())
+                    .all(|(a, b)| a.anchor == b.anchor && a.projection == b.projection && a.bias == b.bias)
             };
             assert!(same(&plain, &rounded), "frame {frame} of {light}");
         }
@@ -51,13 +53,13 @@ fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
                 taken += 1;
                 assert!(f64::from((light - old_light).length()) < 0.003, "{light} after {old_light}");
                 for (old, map) in old.iter().zip(now.iter()) {
-                    resized += usize::from(old.fit.texel_size.x != map.fit.texel_size.x);
+                    resized += usize::from(old.projection.texel_size.x != map.projection.texel_size.x);
                     // The point in the middle of the window, as far along the light as the eye is.
-                    let rows = old.fit.light_from_world.transpose();
-                    let t = old.fit.light_from_world.w_axis.truncate();
-                    let middle =
-                        old.fit.origin - (rows.x_axis.truncate() * t.x + rows.y_axis.truncate() * t.y).as_dvec3();
-                    let uv = map.fit.uv_from_world.transform_point3((middle - map.fit.origin).as_vec3());
+                    let rows = old.projection.light_from_world.transpose();
+                    let t = old.projection.light_from_world.w_axis.truncate();
+                    let middle = old.projection.origin
+                        - (rows.x_axis.truncate() * t.x + rows.y_axis.truncate() * t.y).as_dvec3();
+                    let uv = map.projection.uv_from_world.transform_point3((middle - map.projection.origin).as_vec3());
                     moved.push((f64::from(uv.x) - 0.5).abs().max((f64::from(uv.y) - 0.5).abs()));
                 }
             }
@@ -83,7 +85,7 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
         let mut run = Run::new(world.clone(), &technique.with_fit(technique.fit.with_up(up)));
         for degrees in (-180..180_i16).step_by(if off == 0.0 && up == Vec3::Y { 1 } else { 5 }) {
             let maps = run.frame(&view, sun(f64::from(degrees).to_radians(), off));
-            let last = &maps[3].fit;
+            let last = &maps[3].projection;
             assert!(seen.iter().all(|point| last.free_texels(*point).is_some_and(|free| free > 2.0)), "at {degrees}°");
         }
     }
@@ -101,7 +103,7 @@ fn nothing_is_uncovered_where_light_and_camera_leap() {
         let view = street_view(eye, (turn * DVec3::new(0.1, -0.5, -1.0)).as_vec3());
         let maps = run.frame(&view, (turn * DVec3::NEG_X).as_vec3());
         for hit in hits(&view, world.origin, &world.boxes, f64::MAX) {
-            let free = maps[5].fit.free_texels(view.eye + hit.point);
+            let free = maps[5].projection.free_texels(view.eye + hit.point);
             assert!(free.is_some_and(|free| free > 2.0), "{free:?} texels in frame {frame}");
         }
     }

@@ -41,7 +41,7 @@ fn room_on_a_plain() -> World {
 /// far a point moves in the map for a pixel.
 fn pixels_per_texel(maps: &FittedMaps, run: &Run, view: &SceneView, hit: &Hit) -> Option<f64> {
     let read = maps.read(&run.technique, view.eye + hit.point, hit.point.dot(view.axes()[2]))?;
-    let fit = &maps[read.main()].fit;
+    let fit = &maps[read.main()].projection;
     let rows = fit.light_from_world.transpose();
     let texels = |v: DVec3| {
         let [x, y] = [rows.x_axis, rows.y_axis].map(|row| row.truncate().as_dvec3().dot(v));

@@ -32,7 +32,7 @@ struct Drawn {
 
 impl Drawn {
     fn new(map: &FittedMap, world: &World, technique: &Technique) -> Self {
-        let volume = CasterVolume::of_map(&map.fit, technique.fit.casters);
+        let volume = CasterVolume::of_map(&map.projection, technique.fit.casters);
         let moved = |v: Vec3| v.as_dvec3() + world.origin - volume.origin;
         let drawn = world.boxes.iter().map(|b| (moved(b.min), moved(b.max)));
         let is_drawn = |b: &(DVec3, DVec3)| volume.intersects_aabb(b.0.as_vec3(), b.1.as_vec3());
@@ -41,7 +41,7 @@ impl Drawn {
 
     /// The depth at a position in texels right and down: 0..1, and 1 where nothing is drawn.
     fn depth(&self, texel: DVec2) -> f64 {
-        let fit = &self.map.fit;
+        let fit = &self.map.projection;
         let rows = fit.light_from_world.transpose();
         let [x, y, z] = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().as_dvec3());
         let t = fit.light_from_world.w_axis.truncate().as_dvec3();

@@ -1,10 +1,10 @@
 //! What a fitter of windows remembers, what it ignores, and what it refuses.
 
-use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
+use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
 use shadowfit::glam::{DQuat, DVec2, DVec3, Vec3};
-use shadowfit::{FitError, FitInput, FittedMaps, MapFitter, ViewFrustum, Workspace};
+use shadowfit::{FitError, FitInput, FitState, FittedMaps, Scratch, ViewFrustum};
 
-use super::{Need, Run, hits, street_view, town, windows};
+use super::{Demand, Run, hits, street_view, town, windows};
 use crate::scenes::SceneView;
 
 const LIGHT: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -24,11 +24,11 @@ fn reset_forgets_all_earlier_frames() {
     for frame in 0..20 {
         run.frame(&walk(frame), LIGHT);
     }
-    let need = run.need.clone();
+    let demand = run.demand.clone();
     let kept =
-        Run { world: town(), storage: run.storage.clone(), ..Run { fitter: run.fitter.clone(), need, ..run_of(4) } };
+        Run { world: town(), storage: run.storage.clone(), ..Run { fitter: run.fitter.clone(), demand, ..run_of(4) } };
     run.fitter.reset();
-    let mut fresh = Run { fitter: MapFitter::new(), need: kept.need.clone(), ..run_of(4) };
+    let mut fresh = Run { fitter: FitState::new(), demand: kept.demand.clone(), ..run_of(4) };
     let (reset, fresh) = (run.frame(&walk(60), LIGHT), fresh.frame(&walk(60), LIGHT));
     assert_eq!(reset, fresh);
     let mut kept = kept;
@@ -42,7 +42,7 @@ fn another_technique_begins_anew() {
         run.frame(&walk(frame), LIGHT);
     }
     run.technique = windows(5, 512);
-    let mut fresh = Run { need: run.need.clone(), technique: run.technique, ..run_of(4) };
+    let mut fresh = Run { demand: run.demand.clone(), technique: run.technique, ..run_of(4) };
     assert_eq!(run.frame(&walk(20), LIGHT), fresh.frame(&walk(20), LIGHT));
 }
 
@@ -56,7 +56,7 @@ fn a_cut_without_a_reset_leaves_nothing_uncovered_and_grows_sharp_again() {
     for _ in 0..30 {
         let maps = run.frame(&there, LIGHT);
         for hit in hits(&there, DVec3::ZERO, &run.world.boxes, f64::MAX) {
-            assert!(maps[3].fit.free_texels(there.eye + hit.point).is_some_and(|free| free > 2.0));
+            assert!(maps[3].projection.free_texels(there.eye + hit.point).is_some_and(|free| free > 2.0));
         }
     }
 }
@@ -69,7 +69,7 @@ fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
         run.frame(&walk(frame), LIGHT);
     }
     let json = serde_json::to_string(&run.fitter).unwrap();
-    let mut other = Run { fitter: serde_json::from_str(&json).unwrap(), need: run.need.clone(), ..run_of(4) };
+    let mut other = Run { fitter: serde_json::from_str(&json).unwrap(), demand: run.demand.clone(), ..run_of(4) };
     for frame in 10..40 {
         assert_eq!(run.frame(&walk(frame), LIGHT), other.frame(&walk(frame), LIGHT), "frame {frame}");
     }
@@ -82,9 +82,9 @@ fn an_error_leaves_the_fitter_as_it_was() {
         assert_eq!(run.frame(&walk(frame), LIGHT), other.frame(&walk(frame), LIGHT));
         let views = [walk(frame + 100).frustum()];
         let bad = run.world.input(&views, Vec3::NAN, &[]);
-        assert!(run.fitter.fit(&bad, &run.technique, &mut Workspace::new(&mut run.storage)).is_err());
+        assert!(run.fitter.fit(&bad, &run.technique, &mut Scratch::new(&mut run.storage)).is_err());
         let small = run.world.input(&views, LIGHT, &[]);
-        assert!(run.fitter.fit(&small, &run.technique, &mut Workspace::new(&mut [])).is_err());
+        assert!(run.fitter.fit(&small, &run.technique, &mut Scratch::new(&mut [])).is_err());
     }
 }
 
@@ -92,9 +92,8 @@ fn an_error_leaves_the_fitter_as_it_was() {
 fn too_little_storage_is_an_error_and_what_is_required_is_enough() {
     let (world, views) = (town(), [walk(0).frustum(), walk(30).frustum()]);
     let input = world.input(&views, LIGHT, &[]);
-    let required = Workspace::required(world.boxes.len(), views.len());
-    let fit =
-        |len: usize| MapFitter::new().fit(&input, &windows(8, 64), &mut Workspace::new(&mut vec![DVec2::ZERO; len]));
+    let required = Scratch::required(world.boxes.len(), views.len());
+    let fit = |len: usize| FitState::new().fit(&input, &windows(8, 64), &mut Scratch::new(&mut vec![DVec2::ZERO; len]));
     let whole = fit(required).unwrap();
     let mut refused = 0;
     for len in (0..required).step_by(61).chain([required - 1]) {
@@ -102,7 +101,7 @@ fn too_little_storage_is_an_error_and_what_is_required_is_enough() {
             Ok(maps) => assert_eq!(maps, whole, "{len} elements"),
             Err(error) => {
                 assert!(
-                    matches!(error, FitError::WorkspaceTooSmall { given, required } if given <= len && required > given)
+                    matches!(error, FitError::ScratchTooSmall { given, required } if given <= len && required > given)
                 );
                 refused += 1;
             }
@@ -112,14 +111,14 @@ fn too_little_storage_is_an_error_and_what_is_required_is_enough() {
 }
 
 /// Fits of one frame with some grids, by a fitter that is new and one that has seen two frames.
-fn with_grids(grids: &[NeedGrid], view: &SceneView, light: Vec3) -> [FittedMaps; 2] {
+fn with_grids(grids: &[DemandGrid], view: &SceneView, light: Vec3) -> [FittedMaps; 2] {
     let (world, technique) = (town(), windows(4, 1024));
-    let mut storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
+    let mut storage = vec![DVec2::ZERO; Scratch::required(world.boxes.len(), 1)];
     let views = [view.frustum()];
-    let mut fit = |fitter: &mut MapFitter| {
-        fitter.fit(&world.input(&views, light, grids), &technique, &mut Workspace::new(&mut storage)).unwrap()
+    let mut fit = |fitter: &mut FitState| {
+        fitter.fit(&world.input(&views, light, grids), &technique, &mut Scratch::new(&mut storage)).unwrap()
     };
-    let mut fitter = MapFitter::new();
+    let mut fitter = FitState::new();
     [fit(&mut fitter), fit(&mut fitter)]
 }
 
@@ -127,38 +126,38 @@ fn with_grids(grids: &[NeedGrid], view: &SceneView, light: Vec3) -> [FittedMaps;
 fn grids_that_cannot_be_used_are_ignored() {
     let view = walk(0);
     let seen = hits(&view, DVec3::ZERO, &town().boxes, f64::MAX);
-    let right = Need::of(&view, &seen, LIGHT, &windows(4, 1024));
+    let right = Demand::of(&view, &seen, LIGHT, &windows(4, 1024));
     let (without, with) = (with_grids(&[], &view, LIGHT), with_grids(&[right.grid()], &view, LIGHT));
     assert_ne!(with, without, "a right grid matters");
     let space = right.space;
     let mut bad = vec![
-        NeedSpace { direction: (DQuat::from_rotation_x(0.1) * LIGHT.as_dvec3()).as_vec3().normalize(), ..space },
-        NeedSpace { direction: -space.direction, ..space },
-        NeedSpace { direction: Vec3::NAN, ..space },
-        NeedSpace { direction: Vec3::ZERO, ..space },
-        NeedSpace { origin: DVec3::NAN, ..space },
-        NeedSpace { origin: DVec3::new(0.0, f64::INFINITY, 0.0), ..space },
-        NeedSpace { x: Vec3::NAN, ..space },
-        NeedSpace { y: Vec3::new(0.0, f32::INFINITY, 0.0), ..space },
+        DemandSpace { direction: (DQuat::from_rotation_x(0.1) * LIGHT.as_dvec3()).as_vec3().normalize(), ..space },
+        DemandSpace { direction: -space.direction, ..space },
+        DemandSpace { direction: Vec3::NAN, ..space },
+        DemandSpace { direction: Vec3::ZERO, ..space },
+        DemandSpace { origin: DVec3::NAN, ..space },
+        DemandSpace { origin: DVec3::new(0.0, f64::INFINITY, 0.0), ..space },
+        DemandSpace { x: Vec3::NAN, ..space },
+        DemandSpace { y: Vec3::new(0.0, f32::INFINITY, 0.0), ..space },
     ];
     for number in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        bad.extend([NeedSpace { cell: number, ..space }, NeedSpace { texel: number, ..space }]);
+        bad.extend([DemandSpace { cell: number, ..space }, DemandSpace { texel: number, ..space }]);
     }
     for space in bad {
-        let grid = NeedGrid { space, ..right.grid() };
+        let grid = DemandGrid { space, ..right.grid() };
         assert_eq!(with_grids(&[grid], &view, LIGHT), without, "{space:?}");
         assert_eq!(with_grids(&[grid, right.grid()], &view, LIGHT), with, "beside a good one: {space:?}");
     }
     let long = vec![1; CELLS + 1];
     for counts in [&[][..], &right.counts[1..], &long, &vec![0; CELLS]] {
-        assert_eq!(with_grids(&[NeedGrid { space, counts }], &view, LIGHT), without, "{} counts", counts.len());
+        assert_eq!(with_grids(&[DemandGrid { space, counts }], &view, LIGHT), without, "{} counts", counts.len());
     }
 }
 
 /// The texels of the finest window that holds a point, by area.
 fn finest(maps: &FittedMaps, point: DVec3) -> f32 {
-    let areas = maps.iter().filter(|map| map.fit.free_texels(point).is_some_and(|free| free > 3.0));
-    areas.map(|map| map.fit.texel_size.element_product()).fold(f32::MAX, f32::min)
+    let areas = maps.iter().filter(|map| map.projection.free_texels(point).is_some_and(|free| free > 3.0));
+    areas.map(|map| map.projection.texel_size.element_product()).fold(f32::MAX, f32::min)
 }
 
 /// Two players far apart: with a grid for each both have fine texels, with one's alone the other has the last window's.
@@ -171,15 +170,15 @@ fn each_view_is_served_by_its_own_grid() {
     let (world, technique) = (town(), windows(6, 1024));
     let views: Vec<ViewFrustum> = players.iter().map(SceneView::frustum).collect();
     let seen = players.map(|view| hits(&view, DVec3::ZERO, &world.boxes, f64::MAX));
-    let needs = [0, 1].map(|i| Need::of(&players[i], &seen[i], LIGHT, &technique));
+    let needs = [0, 1].map(|i| Demand::of(&players[i], &seen[i], LIGHT, &technique));
     let grids = [needs[0].grid(), needs[1].grid()];
-    let mut storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 2)];
-    let mut settle = |grids: &[NeedGrid]| {
-        let mut fitter = MapFitter::new();
+    let mut storage = vec![DVec2::ZERO; Scratch::required(world.boxes.len(), 2)];
+    let mut settle = |grids: &[DemandGrid]| {
+        let mut fitter = FitState::new();
         let mut maps = FittedMaps::default();
         for _ in 0..40 {
-            let input = FitInput { need: grids, ..world.input(&views, LIGHT, &[]) };
-            maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+            let input = FitInput { demand: grids, ..world.input(&views, LIGHT, &[]) };
+            maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)).unwrap();
         }
         maps
     };
@@ -191,7 +190,7 @@ fn each_view_is_served_by_its_own_grid() {
         all[all.len() / 2]
     };
     for player in 0..2 {
-        assert!(median(&both, player) < both[5].fit.texel_size.element_product() / 16.0, "player {player}");
+        assert!(median(&both, player) < both[5].projection.texel_size.element_product() / 16.0, "player {player}");
     }
     assert!(median(&both, 1) < median(&first, 1) / 4.0, "{} {}", median(&both, 1), median(&first, 1));
 }

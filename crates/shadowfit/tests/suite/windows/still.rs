@@ -16,7 +16,7 @@ fn texel(map: &FittedMap) -> DVec2 {
 
 /// Rows of the light's axes.
 fn axes(map: &FittedMap) -> [Vec3; 3] {
-    let rows = map.fit.light_from_world.transpose();
+    let rows = map.projection.light_from_world.transpose();
     [rows.x_axis, rows.y_axis, rows.z_axis].map(shadowfit::glam::Vec4::truncate)
 }
 
@@ -48,17 +48,17 @@ const FARTHEST: f64 = 0.005 / 4.0 * 16_777_216.0;
 fn compare(before: &FittedMaps, now: &FittedMaps, eyes: [DVec3; 2], points: &[DVec3]) -> usize {
     let mut compared = 0;
     for (old, map) in before.iter().zip(now.iter()) {
-        for point in points.iter().filter(|point| old.fit.covers(**point) && map.fit.covers(**point)) {
+        for point in points.iter().filter(|point| old.projection.covers(**point) && map.projection.covers(**point)) {
             let texel = texel(map);
             let farthest = eyes.map(|eye| (*point - eye).length()).into_iter().fold(0.0, f64::max);
             if farthest > FARTHEST * texel.min_element() {
                 continue;
             }
-            let place = shader_position(&map.fit, *point);
-            let by_grid = apart(place, grid_position(&map.fit, texel, *point));
+            let place = shader_position(&map.projection, *point);
+            let by_grid = apart(place, grid_position(&map.projection, texel, *point));
             assert!(by_grid <= 0.02, "{by_grid} texels from the f64 chain at {point}");
             if texel == self::texel(old) {
-                let crawl = apart(place, shader_position(&old.fit, *point));
+                let crawl = apart(place, shader_position(&old.projection, *point));
                 assert!(crawl <= 0.005, "{crawl} texels of crawl at {point}");
                 compared += 1;
             }

@@ -46,7 +46,7 @@ impl Drop for Told {
 impl ReadBack {
     pub(super) fn new(device: &wgpu::Device) -> Self {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("shadowfit need read back"),
+            label: Some("shadowfit demand read back"),
             size: (COUNTS * size_of::<u32>()) as u64,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,

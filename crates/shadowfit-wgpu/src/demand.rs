@@ -1,7 +1,7 @@
 //! What the last frame showed, for fits that put their maps where it helps most: a compute pass over the depth buffer.
 //!
-//! [`NeedPass`] counts the visible points that face the light: by their place across the light and the texel that they
-//! ask for (the grid of need of [`shadowfit::demand`], for windows), and by view depth and foreshortening (the
+//! [`DemandPass`] counts the visible points that face the light: by their place across the light and the texel that they
+//! ask for (the demand grid of [`shadowfit::demand`], for windows), and by view depth and foreshortening (the
 //! [`DepthHistogram`](shadowfit::demand::DepthHistogram)). Position and slope of a point come from the depths of its
 //! pixel and of the neighbours. Nothing waits for the GPU: counts come back a frame or two late, which fits allow for.
 //!
@@ -10,10 +10,10 @@
 //! #         camera: &shadowfit::PerspectiveCamera, direction: shadowfit::glam::Vec3)
 //! #         -> Result<(), Box<dyn std::error::Error>> {
 //! use shadowfit::{DepthConvention, FitInput, ShadowFitter, Technique};
-//! use shadowfit_wgpu::need::{NeedPass, NeedView};
+//! use shadowfit_wgpu::demand::{DemandPass, DemandView};
 //!
 //! let mut fitter = ShadowFitter::new(&Technique::default());
-//! let mut need = NeedPass::new(device, queue, 1).ok(); // without it fits take boxes
+//! let mut need = DemandPass::new(device, queue, 1).ok(); // without it fits take boxes
 //! loop {
 //!     // The newest counts that are there; those of the frame before until then.
 //!     if let Some(pass) = &mut need
@@ -27,7 +27,7 @@
 //!     let mut encoder = device.create_command_encoder(&Default::default());
 //!     if let Some(pass) = &mut need {
 //!         let settings = &fitter.technique().fit;
-//!         let view = NeedView::from_camera(camera, DepthConvention::Reversed, direction, settings, size)?;
+//!         let view = DemandView::from_camera(camera, DepthConvention::Reversed, direction, settings, size)?;
 //!         pass.record(&mut encoder, depth, &view, None)?;
 //!     }
 //!     queue.submit([encoder.finish()]);
@@ -36,7 +36,7 @@
 //! ```
 //!
 //! After a camera cut, drop the counts ([`ShadowFitter::reset`](shadowfit::ShadowFitter::reset)) and those on their way
-//! ([`NeedPass::reset`]); old counts cost sharpness, never coverage. For several views that share the maps, such as a
+//! ([`DemandPass::reset`]); old counts cost sharpness, never coverage. For several views that share the maps, such as a
 //! split screen, make a pass for each.
 //!
 //! # Precision
@@ -49,14 +49,14 @@
 //! # Where it does not run
 //!
 //! Devices without compute shaders and storage buffers (WebGL2), and OpenGL, whose shaders cannot load depth textures.
-//! [`NeedPass::new`] says so, and fits take boxes: leave [`FitInput::need`](shadowfit::FitInput::need) empty.
+//! [`DemandPass::new`] says so, and fits take boxes: leave [`FitInput::demand`](shadowfit::FitInput::demand) empty.
 
 mod error;
 mod pass;
 mod read_back;
 mod view;
 
-pub use error::{NeedPassError, Unsupported};
+pub use error::{DemandPassError, Unsupported};
 pub(crate) use pass::supported;
-pub use pass::{NeedPass, need_wgsl};
-pub use view::{NeedUniform, NeedView};
+pub use pass::{DemandPass, demand_wgsl};
+pub use view::{DemandUniform, DemandView};

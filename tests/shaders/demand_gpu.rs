@@ -1,15 +1,15 @@
 //! The compute pass over a depth buffer against its reference in Rust, and what it leaves out.
 
-use shadowfit::demand::NeedSpace;
+use shadowfit::demand::DemandSpace;
 use shadowfit::demand::{CLASSES, DEPTHS};
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::need::{NeedPass, NeedPassError, NeedView};
+use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView};
 
-use super::need_picture::{Drawing, cuboid, draw, infinite, quad, read, record, seen};
-use super::need_reference::{self, Counts};
+use super::demand_picture::{Drawing, cuboid, draw, infinite, quad, read, record, seen};
+use super::demand_reference::{self, Counts};
 use crate::support::software_gpu;
 
 /// Width and height of the pictures, in pixels.
@@ -34,8 +34,8 @@ fn camera() -> PerspectiveCamera {
     }
 }
 
-fn view(depth: DepthConvention, size: [u32; 2]) -> NeedView {
-    NeedView::from_camera(&camera(), depth, DIRECTION, &MapSettings::default(), size).expect("a good camera")
+fn view(depth: DepthConvention, size: [u32; 2]) -> DemandView {
+    DemandView::from_camera(&camera(), depth, DIRECTION, &MapSettings::default(), size).expect("a good camera")
 }
 
 /// Ground, slopes, boxes and a wall, relative to the eye; the sky is above.
@@ -82,10 +82,10 @@ fn assert_close(name: &str, counts: &Counts, expected: &Counts, share: f64) {
 }
 
 /// Compares the pass with the reference, and returns what it counted.
-fn compared(gpu: &Gpu, name: &str, view: &NeedView, drawing: &Drawing, step: u32) -> Counts {
+fn compared(gpu: &Gpu, name: &str, view: &DemandView, drawing: &Drawing, step: u32) -> Counts {
     let texture = draw(gpu, view, &scene(), drawing);
     let counts = Counts::from(&seen(gpu, view, &texture));
-    let expected = need_reference::count(view, &read(gpu, &texture), step);
+    let expected = demand_reference::count(view, &read(gpu, &texture), step);
     assert!(expected.cells.iter().sum::<u32>() > 5000, "{name}: nothing to compare");
     assert_eq!(expected.bins.iter().sum::<u32>() > 5000, view.frustum.near > 0.0, "{name}");
     assert_close(name, &counts, &expected, ROUNDING);
@@ -93,7 +93,7 @@ fn compared(gpu: &Gpu, name: &str, view: &NeedView, drawing: &Drawing, step: u32
 }
 
 /// An orthographic view from above, at a slant, that begins at a view depth, in metres.
-fn orthographic(near: f32) -> NeedView {
+fn orthographic(near: f32) -> DemandView {
     let depth = DepthConvention::Reversed;
     let range = 65.0;
     // x and y of ±16 and ±9 m.
@@ -105,7 +105,7 @@ fn orthographic(near: f32) -> NeedView {
     ]);
     let clip_from_world = projection * Mat4::from_rotation_x(0.6);
     let frustum = ViewFrustum::from_eye_from_clip(&clip_from_world.inverse(), DVec3::ZERO, depth, f32::MAX);
-    NeedView { frustum: frustum.expect("a good matrix"), clip_from_world, ..view(depth, SIZE) }
+    DemandView { frustum: frustum.expect("a good matrix"), clip_from_world, ..view(depth, SIZE) }
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
     let reversed = view(DepthConvention::Reversed, SIZE);
     let camera = camera();
     let clip_from_view = infinite(camera.clip_from_view(DepthConvention::Reversed), camera.near);
-    let endless = NeedView { clip_from_world: clip_from_view * camera.view_from_world(), ..reversed };
+    let endless = DemandView { clip_from_world: clip_from_view * camera.view_from_world(), ..reversed };
     // Mirrored and off its axis: the middle of the picture is at its lower left quarter.
     let skewed = Mat4::from_cols_array_2d(&[
         [-1.0, 0.0, 0.0, 0.0],
@@ -124,8 +124,8 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
         [0.2, -0.3, 0.0, 1.0],
     ]) * reversed.clip_from_world;
     let frustum = ViewFrustum::from_eye_from_clip(&skewed.inverse(), camera.eye, DepthConvention::Reversed, f32::MAX);
-    let skewed = NeedView { clip_from_world: skewed, frustum: frustum.expect("a good matrix"), ..reversed };
-    let near = NeedView { max_distance: 20.0, ..reversed };
+    let skewed = DemandView { clip_from_world: skewed, frustum: frustum.expect("a good matrix"), ..reversed };
+    let near = DemandView { max_distance: 20.0, ..reversed };
     let cases = [
         ("plain", plain),
         ("reversed", reversed),
@@ -144,7 +144,7 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
 fn a_part_of_a_texture_is_counted_as_a_picture_of_its_own() {
     let gpu = software_gpu();
     let whole = view(DepthConvention::Reversed, SIZE);
-    let part = NeedView { rectangle: [30, 50, SIZE[0], SIZE[1]], ..whole };
+    let part = DemandView { rectangle: [30, 50, SIZE[0], SIZE[1]], ..whole };
     let alone = compared(&gpu, "whole", &whole, &Drawing::new(SIZE), 1);
     let within = compared(&gpu, "part", &part, &Drawing::new([200, 150]), 1);
     assert_close("part of whole", &within, &alone, ROUNDING);
@@ -168,7 +168,7 @@ fn an_empty_picture_gives_an_empty_grid_and_histogram() {
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
         let view = view(depth, SIZE);
         let counted = seen(&gpu, &view, &draw(&gpu, &view, &[], &Drawing::new(SIZE)));
-        assert!(counted.need().counts.iter().all(|count| *count == 0));
+        assert!(counted.demand().counts.iter().all(|count| *count == 0));
         assert!(counted.histogram().is_empty());
     }
 }
@@ -177,7 +177,7 @@ fn an_empty_picture_gives_an_empty_grid_and_histogram() {
 fn points_turned_from_the_light_are_left_out_and_grazing_ones_ask_for_no_texel() {
     let gpu = software_gpu();
     let count = |direction: Vec3| {
-        let view = NeedView { direction, ..view(DepthConvention::Reversed, SIZE) };
+        let view = DemandView { direction, ..view(DepthConvention::Reversed, SIZE) };
         let counts = Counts::from(&seen(&gpu, &view, &draw(&gpu, &view, &ground(), &Drawing::new(SIZE))));
         [counts.cells, counts.bins].map(|counts| counts.iter().sum::<u32>())
     };
@@ -216,7 +216,7 @@ fn silhouettes_do_not_mix_surfaces() {
     let gpu = software_gpu();
     let camera = PerspectiveCamera { forward: Vec3::NEG_Z, ..camera() };
     let settings = MapSettings::default();
-    let view = NeedView::from_camera(&camera, DepthConvention::Reversed, Vec3::new(0.0, -0.1, -1.0), &settings, SIZE)
+    let view = DemandView::from_camera(&camera, DepthConvention::Reversed, Vec3::new(0.0, -0.1, -1.0), &settings, SIZE)
         .expect("a good camera");
     // A wall that fills the picture, and tiles before it.
     let wall = |x: f32, y: f32, z: f32, side: f32| {
@@ -256,20 +256,20 @@ fn shares_of_points_do_not_depend_on_the_resolution() {
 #[test]
 fn counts_carry_the_stamp_of_their_picture_and_only_the_newest_is_given_once() {
     let gpu = software_gpu();
-    let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
     assert_eq!(pass.wait(), Ok(None), "nothing was recorded");
-    let first = NeedView { max_distance: 20.0, ..view(DepthConvention::Reversed, SIZE) };
-    let second = NeedView { direction: Vec3::new(-0.5, -0.6, 0.2), ..view(DepthConvention::Reversed, SIZE) };
+    let first = DemandView { max_distance: 20.0, ..view(DepthConvention::Reversed, SIZE) };
+    let second = DemandView { direction: Vec3::new(-0.5, -0.6, 0.2), ..view(DepthConvention::Reversed, SIZE) };
     let texture = draw(&gpu, &first, &scene(), &Drawing::new(SIZE));
     for (views, newest, far) in [(vec![first], first, 20.0), (vec![first, second], second, 300.0)] {
         for view in &views {
             record(&gpu, &mut pass, view, &texture);
         }
         let seen = pass.wait().expect("the device answers").expect("pictures were recorded");
-        let space = NeedSpace::new(&newest.frustum, newest.direction, newest.up, newest.max_distance);
-        assert_eq!(Ok(seen.need().space), space);
+        let space = DemandSpace::new(&newest.frustum, newest.direction, newest.up, newest.max_distance);
+        assert_eq!(Ok(seen.demand().space), space);
         assert_eq!((seen.histogram().near, seen.histogram().far), (0.1, far));
-        assert_eq!(Counts::from(&seen), need_counts(&gpu, &newest, &texture));
+        assert_eq!(Counts::from(&seen), demand_counts(&gpu, &newest, &texture));
         assert_eq!(pass.take(), Ok(None), "given already");
     }
     record(&gpu, &mut pass, &first, &texture);
@@ -277,14 +277,14 @@ fn counts_carry_the_stamp_of_their_picture_and_only_the_newest_is_given_once() {
     assert_eq!(pass.wait(), Ok(None), "forgotten");
 }
 
-fn need_counts(gpu: &Gpu, view: &NeedView, texture: &wgpu::Texture) -> Counts {
+fn demand_counts(gpu: &Gpu, view: &DemandView, texture: &wgpu::Texture) -> Counts {
     Counts::from(&seen(gpu, view, texture))
 }
 
 #[test]
 fn recording_ends_where_pictures_pile_up_and_goes_on_when_they_are_dropped_or_taken() {
     let gpu = software_gpu();
-    let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
     let view = view(DepthConvention::Reversed, SIZE);
     let texture = draw(&gpu, &view, &scene(), &Drawing::new(SIZE));
     let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -303,36 +303,36 @@ fn recording_ends_where_pictures_pile_up_and_goes_on_when_they_are_dropped_or_ta
 #[test]
 fn what_cannot_be_counted_is_an_error_that_says_why() {
     let gpu = software_gpu();
-    let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
     let good = view(DepthConvention::Reversed, SIZE);
     let texture = draw(&gpu, &good, &scene(), &Drawing::new(SIZE));
     let multisampled = draw(&gpu, &good, &scene(), &Drawing { samples: 4, ..Drawing::new(SIZE) });
-    let mut refused = |view: NeedView, texture: &wgpu::Texture| {
+    let mut refused = |view: DemandView, texture: &wgpu::Texture| {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
         pass.record(&mut encoder, &depth, &view, None).expect_err("it is refused")
     };
     let rectangle = [1, 0, SIZE[0], SIZE[1]];
-    let error = refused(NeedView { rectangle, ..good }, &texture);
-    assert_eq!(error, NeedPassError::Rectangle { rectangle, texture: SIZE });
+    let error = refused(DemandView { rectangle, ..good }, &texture);
+    assert_eq!(error, DemandPassError::Rectangle { rectangle, texture: SIZE });
     let rectangle = [0, 0, 0, SIZE[1]];
-    assert!(matches!(refused(NeedView { rectangle, ..good }, &texture), NeedPassError::Rectangle { .. }));
-    assert!(matches!(refused(good, &multisampled), NeedPassError::Texture { samples: 4, expected_samples: 1, .. }));
+    assert!(matches!(refused(DemandView { rectangle, ..good }, &texture), DemandPassError::Rectangle { .. }));
+    assert!(matches!(refused(good, &multisampled), DemandPassError::Texture { samples: 4, expected_samples: 1, .. }));
     let depth = DepthConvention::NegativeOneToOne;
-    assert_eq!(refused(NeedView { depth, ..good }, &texture), NeedPassError::Depth(depth));
+    assert_eq!(refused(DemandView { depth, ..good }, &texture), DemandPassError::Depth(depth));
     for clip_from_world in [Mat4::ZERO, Mat4::NAN] {
-        assert_eq!(refused(NeedView { clip_from_world, ..good }, &texture), NeedPassError::SingularMatrix);
+        assert_eq!(refused(DemandView { clip_from_world, ..good }, &texture), DemandPassError::SingularMatrix);
     }
     for direction in [Vec3::ZERO, Vec3::NAN] {
-        assert!(matches!(refused(NeedView { direction, ..good }, &texture), NeedPassError::Fit(_)));
+        assert!(matches!(refused(DemandView { direction, ..good }, &texture), DemandPassError::Fit(_)));
     }
-    assert!(matches!(refused(NeedView { max_distance: f32::NAN, ..good }, &texture), NeedPassError::Fit(_)));
+    assert!(matches!(refused(DemandView { max_distance: f32::NAN, ..good }, &texture), DemandPassError::Fit(_)));
 }
 
 #[test]
 fn counts_of_a_lost_device_are_an_error_each_time() {
     let gpu = software_gpu();
-    let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
     let view = view(DepthConvention::Reversed, SIZE);
     let texture = draw(&gpu, &view, &scene(), &Drawing::new(SIZE));
     record(&gpu, &mut pass, &view, &texture);
@@ -340,7 +340,7 @@ fn counts_of_a_lost_device_are_an_error_each_time() {
     gpu.device.destroy();
     for _ in 0..6 {
         record(&gpu, &mut pass, &view, &texture);
-        assert_eq!(pass.take(), Err(NeedPassError::Lost));
+        assert_eq!(pass.take(), Err(DemandPassError::Lost));
     }
-    assert!(NeedPassError::Lost.to_string().contains("device is lost"));
+    assert!(DemandPassError::Lost.to_string().contains("device is lost"));
 }

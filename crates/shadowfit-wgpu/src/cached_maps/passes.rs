@@ -1,6 +1,6 @@
 //! The passes of a frame, for the engine to draw.
 
-use super::KeptMaps;
+use super::CachedMaps;
 use crate::cache::{FramePlan, PassContent, PassPlan, PiecePlan};
 use crate::layers::Opening;
 
@@ -74,7 +74,7 @@ impl ShadowPiece<'_> {
     }
 }
 
-impl KeptMaps {
+impl CachedMaps {
     /// Leaves the frame without passes.
     pub(crate) fn skip(&mut self) {
         self.plan.clear();

@@ -18,7 +18,7 @@ pub use updates::{MapUpdate, UpdateContent};
 
 /// The shadow maps of one light, and the parts of them that are kept from frame to frame.
 #[derive(Debug)]
-pub(crate) struct KeptMaps {
+pub(crate) struct CachedMaps {
     /// Which maps may wait for another frame.
     pub(crate) schedule: UpdateSchedule,
     /// Whether static casters are kept; without that every map is redrawn in every frame. Pictures are the same either
@@ -40,7 +40,7 @@ pub(crate) struct KeptMaps {
     origin: DVec3,
 }
 
-impl KeptMaps {
+impl CachedMaps {
     /// Makes the maps.
     ///
     /// # Errors
@@ -104,7 +104,9 @@ impl KeptMaps {
         let cached = CacheFrame {
             fitted,
             casters: &frame.casters,
-            coarsest: MapOrder::new(self.map.descriptor().choice, fitted.iter().map(|map| &map.fit)).iter().last(),
+            coarsest: MapOrder::new(self.map.descriptor().selection, fitted.iter().map(|map| &map.projection))
+                .iter()
+                .last(),
             direction: frame.direction,
             origin: frame.origin,
         };
@@ -137,16 +139,16 @@ impl KeptMaps {
         let clamps = descriptor.depth_clamp;
         self.volumes.clear();
         if by_view && self.culling == Culling::Off {
-            self.volumes.extend(self.maps.iter().map(|map| CasterVolume::everywhere(map.fit.origin)));
+            self.volumes.extend(self.maps.iter().map(|map| CasterVolume::everywhere(map.projection.origin)));
             return Ok(());
         }
         let uncut = self.culling == Culling::Off || clamps;
-        self.volumes.extend(self.maps.iter().map(|map| stored_casters(&map.fit, uncut)));
+        self.volumes.extend(self.maps.iter().map(|map| stored_casters(&map.projection, uncut)));
         if by_view && self.culling == Culling::Swept {
             caster_volumes(&self.maps, &descriptor.reading(), &view.reader(), frame.views, &mut self.volumes)?;
             if !clamps {
                 for (volume, map) in self.volumes.iter_mut().zip(&self.maps) {
-                    *volume = volume.cut_at_near_plane(&map.fit);
+                    *volume = volume.cut_at_near_plane(&map.projection);
                 }
             }
         }
@@ -161,7 +163,7 @@ impl KeptMaps {
             can_mend: Layers::can_mend(&self.device),
             culling: self.culling,
             depth_clamp: descriptor.depth_clamp,
-            by_coverage: descriptor.choice.is_by_coverage(),
+            by_coverage: descriptor.selection.is_by_coverage(),
             layer: descriptor.resolution.into(),
         }
     }

@@ -1,7 +1,7 @@
 //! How fine a texel the visible points ask for, and where they lie as the light sees them: what
 //! [windows](crate::Windows) are placed by.
 //!
-//! A [`NeedGrid`] has a square of cells around the eye for each octave of texel sizes, in the plane
+//! A [`DemandGrid`] has a square of cells around the eye for each octave of texel sizes, in the plane
 //! across the light. Cells grow with the octave, as do the distances at which points ask for it:
 //!
 //! ```text
@@ -17,7 +17,7 @@
 //!
 //! It is plain data of a fixed size, which an engine fills from the depth buffer of its last frame
 //! (`shadowfit-wgpu` has a compute pass for that), or from any points that it knows to be visible:
-//! [`NeedSpace::index`] says in which cell a point counts. A late or wrong grid costs sharpness,
+//! [`DemandSpace::index`] says in which cell a point counts. A late or wrong grid costs sharpness,
 //! never coverage.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -32,7 +32,7 @@ pub const LEVELS: usize = 16;
 /// Cells of a level along each axis; the eye is in the middle.
 pub const SIDE: usize = 32;
 
-/// Length of [`NeedGrid::counts`].
+/// Length of [`DemandGrid::counts`].
 pub const CELLS: usize = LEVELS * SIDE * SIDE;
 
 /// Height of the picture in pixels, whatever its resolution: only the ratios of needs matter, so all grids
@@ -53,7 +53,7 @@ pub const MIN_FACING: f32 = 0.05;
 /// their texels' sides, so that windows are squares in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct NeedSpace {
+pub struct DemandSpace {
     /// World position that cells and points are counted from, in metres.
     pub origin: DVec3,
     /// Unit direction of travel of the light, world axes.
@@ -69,16 +69,16 @@ pub struct NeedSpace {
     pub cell: f32,
 }
 
-/// Counts of visible points by [`NeedSpace::index`].
+/// Counts of visible points by [`DemandSpace::index`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NeedGrid<'a> {
+pub struct DemandGrid<'a> {
     /// Where the points were counted: the light and the eye of that frame.
-    pub space: NeedSpace,
+    pub space: DemandSpace,
     /// Number of points in each of [`CELLS`] cells: level by level from the finest, each in rows.
     pub counts: &'a [u32],
 }
 
-impl NeedSpace {
+impl DemandSpace {
     /// The space for what a view sees under a light.
     ///
     /// `direction` is the light's direction of travel in world axes and `up` the world's
@@ -107,11 +107,11 @@ impl NeedSpace {
         let cell = texel * distance / CELLS_IN_DISTANCE;
         let (x, y) = (plane.axes.x, plane.axes.y * (1.0 / plane.shape as f32));
         let least = f32::MIN_POSITIVE;
-        checks::within("the texel of a grid of need", f64::from(texel), f64::from(least), f64::from(f32::MAX))?;
+        checks::within("the texel of a demand grid", f64::from(texel), f64::from(least), f64::from(f32::MAX))?;
         Ok(Self { origin: view.origin, direction: direction.as_vec3(), x, y, texel, cell })
     }
 
-    /// Index into [`NeedGrid::counts`] of a visible point; `None` for one that does not count,
+    /// Index into [`DemandGrid::counts`] of a visible point; `None` for one that does not count,
     /// because it is turned away from the light or too near the edge of it, or not finite.
     ///
     /// `position` is relative to [`Self::origin`], in metres; `normal` is the surface's geometric unit
@@ -161,10 +161,10 @@ impl NeedSpace {
     }
 }
 
-impl NeedGrid<'_> {
+impl DemandGrid<'_> {
     /// Whether it can be used for a light: it was counted for that light, and in cells.
     pub(crate) fn is_for(&self, plane: &Plane) -> bool {
-        let NeedSpace { origin, direction, x, y, texel, cell } = self.space;
+        let DemandSpace { origin, direction, x, y, texel, cell } = self.space;
         let is_finite = origin.is_finite() && x.is_finite() && y.is_finite() && cell > 0.0 && texel > 0.0;
         let far = checks::length(direction.as_dvec3() + plane.axes.z.as_dvec3());
         is_finite && cell.is_finite() && texel.is_finite() && self.counts.len() == CELLS && far <= SAME_LIGHT

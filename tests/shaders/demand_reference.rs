@@ -1,11 +1,11 @@
 //! What the compute pass over a depth buffer counts, in plain Rust and f64: positions by the inverse of the matrix, the
 //! surface's plane by differences, cells and bins by the core.
 
-use shadowfit::demand::{CELLS, NeedSpace, PIXELS};
+use shadowfit::demand::{CELLS, DemandSpace, PIXELS};
 use shadowfit::demand::{CLASSES, DEPTHS};
 use shadowfit::demand::{DepthHistogram, needed_texel};
 use shadowfit::glam::{DMat4, DVec3};
-use shadowfit_wgpu::need::NeedView;
+use shadowfit_wgpu::demand::DemandView;
 
 /// Share of a pixel over which movements are measured.
 const SHARE: f64 = 1e-3;
@@ -25,15 +25,15 @@ pub(super) struct Counts {
 
 /// A picture whose pixels are turned into points.
 struct Picture<'a> {
-    view: &'a NeedView,
+    view: &'a DemandView,
     depths: &'a Depths,
     world_from_clip: DMat4,
 }
 
 /// Counts every `step`-th pixel across and down.
-pub(super) fn count(view: &NeedView, depths: &Depths, step: u32) -> Counts {
+pub(super) fn count(view: &DemandView, depths: &Depths, step: u32) -> Counts {
     let picture = Picture { view, depths, world_from_clip: view.clip_from_world.as_dmat4().inverse() };
-    let space = NeedSpace::new(&view.frustum, view.direction, view.up, view.max_distance).expect("a good view");
+    let space = DemandSpace::new(&view.frustum, view.direction, view.up, view.max_distance).expect("a good view");
     let mut counts = Counts { cells: vec![0; CELLS], bins: vec![0; DEPTHS * CLASSES] };
     let [_, _, width, height] = view.rectangle;
     for y in (step / 2..height).step_by(step as usize) {
@@ -45,7 +45,7 @@ pub(super) fn count(view: &NeedView, depths: &Depths, step: u32) -> Counts {
 }
 
 impl Picture<'_> {
-    fn count(&self, x: i32, y: i32, space: &NeedSpace, counts: &mut Counts) {
+    fn count(&self, x: i32, y: i32, space: &DemandSpace, counts: &mut Counts) {
         let Some([position, right, down]) = self.point(x, y) else { return };
         let (frustum, far) = (&self.view.frustum, self.view.frustum.far.min(self.view.max_distance));
         let forward = frustum.forward.as_dvec3();

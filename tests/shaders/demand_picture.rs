@@ -4,10 +4,10 @@ use shadowfit::DepthConvention;
 use shadowfit::Seen;
 use shadowfit::glam::{Mat4, Vec3};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::need::{NeedPass, NeedView};
+use shadowfit_wgpu::demand::{DemandPass, DemandView};
 use wgpu::util::DeviceExt;
 
-use super::need_reference::{Counts, Depths};
+use super::demand_reference::{Counts, Depths};
 
 /// Positions are in clip space already.
 const SHADER: &str = "
@@ -52,7 +52,7 @@ pub(super) fn cuboid(low: Vec3, high: Vec3) -> Vec<Vec3> {
 }
 
 /// Draws triangles, relative to the eye, into the view's part of a depth texture.
-pub(super) fn draw(gpu: &Gpu, view: &NeedView, triangles: &[Vec3], drawing: &Drawing) -> wgpu::Texture {
+pub(super) fn draw(gpu: &Gpu, view: &DemandView, triangles: &[Vec3], drawing: &Drawing) -> wgpu::Texture {
     let texture = texture(gpu, drawing);
     let pipeline = pipeline(gpu, view.depth, drawing);
     let clip = view.clip_from_world.as_dmat4();
@@ -170,14 +170,14 @@ pub(super) fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Depths {
 }
 
 /// Runs the pass over a texture, and waits for it.
-pub(super) fn seen(gpu: &Gpu, view: &NeedView, texture: &wgpu::Texture) -> Seen {
-    let mut pass = NeedPass::new(&gpu.device, &gpu.queue, texture.sample_count()).expect("a device that computes");
+pub(super) fn seen(gpu: &Gpu, view: &DemandView, texture: &wgpu::Texture) -> Seen {
+    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, texture.sample_count()).expect("a device that computes");
     record(gpu, &mut pass, view, texture);
     pass.wait().expect("the device answers").expect("a picture was recorded")
 }
 
 /// Records a picture and submits it.
-pub(super) fn record(gpu: &Gpu, pass: &mut NeedPass, view: &NeedView, texture: &wgpu::Texture) {
+pub(super) fn record(gpu: &Gpu, pass: &mut DemandPass, view: &DemandView, texture: &wgpu::Texture) {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
     assert_eq!(pass.record(&mut encoder, &depth, view, None), Ok(true));
@@ -186,7 +186,7 @@ pub(super) fn record(gpu: &Gpu, pass: &mut NeedPass, view: &NeedView, texture: &
 
 impl From<&Seen> for Counts {
     fn from(seen: &Seen) -> Self {
-        Self { cells: seen.need().counts.to_vec(), bins: seen.histogram().bins.to_vec() }
+        Self { cells: seen.demand().counts.to_vec(), bins: seen.histogram().bins.to_vec() }
     }
 }
 

@@ -1,8 +1,8 @@
 //! The scene from the light's direction: how fine a texel the picture asks for, cell by cell, and the maps over it.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit::demand::{LEVELS, NeedGrid, SIDE};
-use shadowfit::{Aabb, DepthConvention, LightFit, PerspectiveCamera};
+use shadowfit::demand::{DemandGrid, LEVELS, SIDE};
+use shadowfit::{Aabb, DepthConvention, LightProjection, PerspectiveCamera};
 use shadowfit_params::figures::{linear_color, linear_map_tints, pixels_per_texel_color};
 use shadowfit_render::{Line, Quad, box_lines};
 
@@ -32,7 +32,7 @@ impl FromLight {
     /// was fitted.
     pub(super) fn new(fitted: &Fitted, shown: usize, bounds: Aabb, size: [u32; 2]) -> Option<Self> {
         let map = if shown == 0 { fitted.maps.len().checked_sub(1)? } else { shown };
-        let fit = fitted.maps.get(map)?.fit;
+        let fit = fitted.maps.get(map)?.projection;
         let corners = fit.corners();
         let middle = fit.origin + (corners.iter().sum::<Vec3>() / 8.0).as_dvec3();
         let rows = fit.light_from_world.transpose();
@@ -69,10 +69,10 @@ impl FromLight {
 
 /// The cells of the grid, the coarse ones first: in the colour of the pixels that a texel covers there, with the finest
 /// map that holds the cell.
-pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, need: Option<NeedGrid<'_>>) -> Vec<Quad> {
-    let Some(need) = need else { return Vec::new() };
-    let space = need.space;
-    let total: u32 = need.counts.iter().sum();
+pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, demand: Option<DemandGrid<'_>>) -> Vec<Quad> {
+    let Some(demand) = demand else { return Vec::new() };
+    let space = demand.space;
+    let total: u32 = demand.counts.iter().sum();
     let least = (total as f32 * LEAST_SHARE).max(1.0);
     let up = space.y / space.y.length_squared();
     let [width, height] = from_light.size;
@@ -81,7 +81,7 @@ pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, need: Option<NeedGr
         let side = space.cell * (1_u32 << level) as f32;
         let texel = space.texel * (1_u32 << level) as f32 * core::f32::consts::SQRT_2;
         for cell in 0..SIDE * SIDE {
-            if (need.counts[level * SIDE * SIDE + cell] as f32) < least {
+            if (demand.counts[level * SIDE * SIDE + cell] as f32) < least {
                 continue;
             }
             let corner = |x: usize, y: usize| {
@@ -99,20 +99,21 @@ pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, need: Option<NeedGr
 }
 
 /// The map with the smallest texels that holds a place across the light.
-fn finest(fitted: &Fitted, place: DVec3) -> Option<&LightFit> {
-    let holds = |fit: &&LightFit| {
+fn finest(fitted: &Fitted, place: DVec3) -> Option<&LightProjection> {
+    let holds = |fit: &&LightProjection| {
         let uv = fit.uv_from_world.transform_point3((place - fit.origin).as_vec3());
         (0.0..=1.0).contains(&uv.x) && (0.0..=1.0).contains(&uv.y)
     };
-    let area = |fit: &LightFit| fit.texel_size.x * fit.texel_size.y;
-    fitted.maps.iter().map(|map| &map.fit).filter(holds).min_by(|a, b| area(a).total_cmp(&area(b)))
+    let area = |fit: &LightProjection| fit.texel_size.x * fit.texel_size.y;
+    fitted.maps.iter().map(|map| &map.projection).filter(holds).min_by(|a, b| area(a).total_cmp(&area(b)))
 }
 
 /// The boxes of the maps in their tints, and the camera's frustum in white.
 pub(super) fn lines(fitted: &Fitted) -> Vec<Line> {
     let tinted = fitted.maps.iter().zip(linear_map_tints());
-    let mut lines: Vec<Line> =
-        tinted.flat_map(|(map, tint)| box_lines(map.fit.origin, &map.fit.corners(), tint.extend(1.0))).collect();
+    let mut lines: Vec<Line> = tinted
+        .flat_map(|(map, tint)| box_lines(map.projection.origin, &map.projection.corners(), tint.extend(1.0)))
+        .collect();
     if let Some(frustum) = fitted.frustum() {
         lines.extend(box_lines(frustum.origin, &frustum.corners, Vec4::ONE));
     }

@@ -1,7 +1,7 @@
 //! Maps of which is kept what stands still hold what maps hold that are drawn anew: frame after frame, while the camera
 //! walks and turns, casters move, start, stop and vanish, and the light steps.
 
-#[path = "kept_maps/town.rs"]
+#[path = "cached_maps/town.rs"]
 mod town;
 
 use shadowfit::OneMap;
@@ -193,7 +193,7 @@ fn gpu_maps_that_wait_are_read_as_they_were_drawn_and_have_their_turn() {
 
 #[test]
 fn gpu_a_single_map_is_kept_by_the_same_rules() {
-    let one = OneMap { shape: Shape::new(FitKind::Sphere), stabilise: Stabilise::Snap { waste: 1.8 } };
+    let one = OneMap { shape: Shape::new(FitKind::Sphere), stabilise: Stabilise::Snap { max_waste: 1.8 } };
     let technique = technique("windows-4").with_maps(one);
     run(&technique, 40, |frame, town, walk, _| {
         walk.go_on(frame);

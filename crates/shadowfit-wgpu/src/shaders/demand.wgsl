@@ -1,8 +1,8 @@
 // What a depth buffer shows: which texel each visible point asks for, by its place across the light, and how far away
-// it is. The twin of `NeedSpace::index` and `DepthHistogram::bin`. In front of it stand the constants CELLS, LEVELS,
+// it is. The twin of `DemandSpace::index` and `DepthHistogram::bin`. In front of it stand the constants CELLS, LEVELS,
 // SIDE, DEPTHS, CLASSES, MIN_FACING, and DepthTexture, the depth texture's type.
 
-struct Need {
+struct Demand {
     // Homogeneous position relative to the eye from a pixel's column and row, and its depth minus the far plane's.
     world_from_pixel: mat4x4<f32>,
     // View depth of a position relative to the eye, in metres, is dot(xyz, position) + w.
@@ -31,7 +31,7 @@ struct Need {
     pixel_width: vec2<f32>,
 }
 
-@group(0) @binding(0) var<uniform> need: Need;
+@group(0) @binding(0) var<uniform> demand: Demand;
 @group(0) @binding(1) var depths: DepthTexture;
 // The cells of the grid, then the bins of the histogram.
 @group(0) @binding(2) var<storage, read_write> counts: array<atomic<u32>, CELLS + DEPTHS * CLASSES>;
@@ -63,10 +63,10 @@ fn count(index: u32) {
 
 // Depth of a pixel minus that of the far plane; 0 where nothing is drawn, and outside the picture.
 fn depth_at(pixel: vec2<i32>) -> f32 {
-    if any(pixel < vec2<i32>(0)) || any(pixel >= vec2<i32>(need.size)) {
+    if any(pixel < vec2<i32>(0)) || any(pixel >= vec2<i32>(demand.size)) {
         return 0.0;
     }
-    return textureLoad(depths, vec2<i32>(need.corner) + pixel, 0) - need.far_depth;
+    return textureLoad(depths, vec2<i32>(demand.corner) + pixel, 0) - demand.far_depth;
 }
 
 // Change of depth from a pixel to the next along an axis on the surface that it shows, which is the same everywhere on
@@ -103,11 +103,11 @@ fn needed_texel(a: vec2<f32>, b: vec2<f32>) -> f32 {
 // Index of the cell of a place across the light and of the texel that is asked for there; CELLS if there is none.
 fn cell_of(place: vec2<f32>, texel: f32) -> u32 {
     let half_side = f32(SIDE / 2u);
-    let cells = place / need.cell;
+    let cells = place / demand.cell;
     let reach = max(abs(cells.x), abs(cells.y)) / half_side;
     // Points so far away that their level has no cell for them count as coarser: they lie within the power of two
     // above.
-    let asked = clamp(exponent(texel) - need.exponent, 0, LEVELS - 1);
+    let asked = clamp(exponent(texel) - demand.exponent, 0, LEVELS - 1);
     let level = max(asked, exponent(reach) - 126);
     if level >= LEVELS {
         return CELLS;
@@ -118,9 +118,9 @@ fn cell_of(place: vec2<f32>, texel: f32) -> u32 {
 
 // Index of a view depth's bin, for the texel that is asked for there across the light.
 fn bin_of(depth: f32, texel: f32) -> u32 {
-    let bin = min(u32(log2(depth / need.near) * need.bins_per_octave), DEPTHS - 1u);
+    let bin = min(u32(log2(depth / demand.near) * demand.bins_per_octave), DEPTHS - 1u);
     // The octave is rounded to the nearest.
-    let finer = (need.pixel_width.x + need.pixel_width.y * depth) / texel;
+    let finer = (demand.pixel_width.x + demand.pixel_width.y * depth) / texel;
     let class_index = clamp(exponent(finer * sqrt(2.0)) - 127, 0, i32(CLASSES) - 1);
     return u32(class_index) * DEPTHS + bin;
 }
@@ -135,16 +135,16 @@ fn see(pixel: vec2<i32>) {
     if across == NOTHING || along == NOTHING {
         return;
     }
-    let m = need.world_from_pixel;
+    let m = demand.world_from_pixel;
     let homogeneous = m * vec4<f32>(vec2<f32>(pixel), depth, 1.0);
     let position = homogeneous.xyz / homogeneous.w;
-    let view_depth = dot(need.view.xyz, position) + need.view.w;
+    let view_depth = dot(demand.view.xyz, position) + demand.view.w;
     // Shadows end there.
-    if !(view_depth < need.far) {
+    if !(view_depth < demand.far) {
         return;
     }
     // Derivatives of the position on the surface's plane, for one pixel to the right and one down, and along the ray.
-    let scale = need.pixels / homogeneous.w;
+    let scale = demand.pixels / homogeneous.w;
     let right_change = m[0] + m[2] * across;
     let down_change = m[1] + m[2] * along;
     let right = (right_change.xyz - position * right_change.w) * scale;
@@ -153,20 +153,20 @@ fn see(pixel: vec2<i32>) {
 
     // The normal on the side of the eye.
     let perpendicular = cross(right, down);
-    let is_behind = dot(perpendicular, ray) * dot(ray, need.view.xyz) > 0.0;
-    let facing = select(-1.0, 1.0, is_behind) * dot(perpendicular, need.direction);
+    let is_behind = dot(perpendicular, ray) * dot(ray, demand.view.xyz) > 0.0;
+    let facing = select(-1.0, 1.0, is_behind) * dot(perpendicular, demand.direction);
     let length = length(perpendicular);
     if !(facing > 0.0) || !(length > 0.0) {
         return;
     }
-    let a = vec2<f32>(dot(need.x, right), dot(need.y, right));
-    let b = vec2<f32>(dot(need.x, down), dot(need.y, down));
-    if view_depth >= need.near {
-        let stretch = vec2<f32>(1.0, need.shape);
+    let a = vec2<f32>(dot(demand.x, right), dot(demand.y, right));
+    let b = vec2<f32>(dot(demand.x, down), dot(demand.y, down));
+    if view_depth >= demand.near {
+        let stretch = vec2<f32>(1.0, demand.shape);
         count(CELLS + bin_of(view_depth, needed_texel(a * stretch, b * stretch)));
     }
     if facing >= MIN_FACING * length {
-        let index = cell_of(vec2<f32>(dot(need.x, position), dot(need.y, position)), needed_texel(a, b));
+        let index = cell_of(vec2<f32>(dot(demand.x, position), dot(demand.y, position)), needed_texel(a, b));
         if index < CELLS {
             count(index);
         }
@@ -174,15 +174,15 @@ fn see(pixel: vec2<i32>) {
 }
 
 @compute @workgroup_size(THREADS, THREADS)
-fn count_need(
+fn count_demand(
     @builtin(workgroup_id) square: vec3<u32>,
     @builtin(local_invocation_id) thread: vec3<u32>,
     @builtin(local_invocation_index) slot: u32,
 ) {
     for (var part = 0u; part < PARTS * PARTS; part += 1u) {
         let within = vec2<u32>(part % PARTS, part / PARTS) * THREADS + thread.xy;
-        let pixel = (square.xy * (THREADS * PARTS) + within) * need.step + need.step / 2u;
-        if all(pixel < need.size) {
+        let pixel = (square.xy * (THREADS * PARTS) + within) * demand.step + demand.step / 2u;
+        if all(pixel < demand.size) {
             see(vec2<i32>(pixel));
         }
     }

@@ -3,9 +3,9 @@
 use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, SIDE};
 use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen};
 
-use super::error::{NeedPassError, Unsupported};
+use super::error::{DemandPassError, Unsupported};
 use super::read_back::ReadBack;
-use super::view::{NeedUniform, NeedView};
+use super::view::{DemandUniform, DemandView};
 use crate::bindings;
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
@@ -21,7 +21,7 @@ const WORKGROUP_BYTES: u32 = 2 * 4 * WORKGROUP_THREADS;
 
 /// Counts the visible points of a depth buffer: see the [module](super).
 #[derive(Debug)]
-pub struct NeedPass {
+pub struct DemandPass {
     device: wgpu::Device,
     queue: wgpu::Queue,
     samples: u32,
@@ -41,15 +41,15 @@ struct Frame {
     read_back: ReadBack,
 }
 
-impl NeedPass {
+impl DemandPass {
     /// A pass for depth textures of `samples` per pixel.
     ///
     /// # Errors
     ///
-    /// [`NeedPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose
-    /// shaders cannot load depth: fit from boxes then. [`NeedPassError::Device`] if it is out of memory.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, NeedPassError> {
-        supported(&device.limits(), device.adapter_info().backend).map_err(NeedPassError::Unsupported)?;
+    /// [`DemandPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose
+    /// shaders cannot load depth: fit from boxes then. [`DemandPassError::Device`] if it is out of memory.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, DemandPassError> {
+        supported(&device.limits(), device.adapter_info().backend).map_err(DemandPassError::Unsupported)?;
         caught(device, || {
             let layout = layout(device, samples > 1);
             let pipeline = pipeline(device, &layout, samples);
@@ -57,7 +57,7 @@ impl NeedPass {
             let frame = || Frame {
                 uniform: buffer(
                     device,
-                    size_of::<NeedUniform>(),
+                    size_of::<DemandUniform>(),
                     wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 ),
                 read_back: ReadBack::new(device),
@@ -85,15 +85,15 @@ impl NeedPass {
     ///
     /// # Errors
     ///
-    /// [`NeedPassError`] for the view, the texture, and a device out of memory. Nothing is recorded then. Whether the
+    /// [`DemandPassError`] for the view, the texture, and a device out of memory. Nothing is recorded then. Whether the
     /// device was lost shows in [`Self::take`].
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         depth: &wgpu::TextureView,
-        view: &NeedView,
+        view: &DemandView,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
-    ) -> Result<bool, NeedPassError> {
+    ) -> Result<bool, DemandPassError> {
         self.check_texture(depth.texture(), view.rectangle)?;
         let space = view.space()?;
         let uniform = view.uniform(&space)?;
@@ -102,12 +102,12 @@ impl NeedPass {
             self.queue.write_buffer(&frame.uniform, 0, bytemuck::bytes_of(&uniform));
             let depth = wgpu::BindingResource::TextureView(depth);
             let resources = [frame.uniform.as_entire_binding(), depth, self.counts.as_entire_binding()];
-            bindings::group(&self.device, "shadowfit need", &self.layout, (0, &resources))
+            bindings::group(&self.device, "shadowfit demand", &self.layout, (0, &resources))
         })?;
         encoder.clear_buffer(&self.counts, 0, None);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("shadowfit need"),
+                label: Some("shadowfit demand"),
                 timestamp_writes: timestamps,
             });
             pass.set_pipeline(&self.pipeline);
@@ -124,8 +124,8 @@ impl NeedPass {
     ///
     /// # Errors
     ///
-    /// [`NeedPassError::Lost`] if the device was lost.
-    pub fn take(&mut self) -> Result<Option<Seen>, NeedPassError> {
+    /// [`DemandPassError::Lost`] if the device was lost.
+    pub fn take(&mut self) -> Result<Option<Seen>, DemandPassError> {
         // This only polls; the loop below finds out whether anything is finished.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.newest()
@@ -136,9 +136,9 @@ impl NeedPass {
     ///
     /// # Errors
     ///
-    /// [`NeedPassError::Lost`] if the device was lost or does not answer.
-    pub fn wait(&mut self) -> Result<Option<Seen>, NeedPassError> {
-        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| NeedPassError::Lost)?;
+    /// [`DemandPassError::Lost`] if the device was lost or does not answer.
+    pub fn wait(&mut self) -> Result<Option<Seen>, DemandPassError> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| DemandPassError::Lost)?;
         self.newest()
     }
 
@@ -148,9 +148,9 @@ impl NeedPass {
         self.forgotten = self.recordings;
     }
 
-    fn newest(&mut self) -> Result<Option<Seen>, NeedPassError> {
+    fn newest(&mut self) -> Result<Option<Seen>, DemandPassError> {
         if self.frames.iter().filter(|frame| frame.read_back.has_failed()).count() > 0 {
-            return Err(NeedPassError::Lost);
+            return Err(DemandPassError::Lost);
         }
         let readable = self.frames.iter_mut().map(|frame| &mut frame.read_back).filter(|frame| frame.is_readable());
         let mut newest: Option<&mut ReadBack> = None;
@@ -169,16 +169,16 @@ impl NeedPass {
         }
         let Some(read_back) = newest else { return Ok(None) };
         let is_wanted = read_back.number() > self.forgotten;
-        let seen = read_back.take().ok_or(NeedPassError::Lost)?;
+        let seen = read_back.take().ok_or(DemandPassError::Lost)?;
         Ok(Some(seen).filter(|_| is_wanted))
     }
 
     /// Refuses a texture that cannot be bound.
-    fn check_texture(&self, texture: &wgpu::Texture, rectangle: [u32; 4]) -> Result<(), NeedPassError> {
+    fn check_texture(&self, texture: &wgpu::Texture, rectangle: [u32; 4]) -> Result<(), DemandPassError> {
         let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
         let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) && format.has_depth_aspect();
         if !is_readable || samples != self.samples {
-            return Err(NeedPassError::Texture { format, samples, usage, expected_samples: self.samples });
+            return Err(DemandPassError::Texture { format, samples, usage, expected_samples: self.samples });
         }
         let size = [texture.width(), texture.height()];
         let [left, top, width, height] = rectangle;
@@ -186,13 +186,13 @@ impl NeedPass {
         if is_inside(left, width, size[0]) && is_inside(top, height, size[1]) {
             Ok(())
         } else {
-            Err(NeedPassError::Rectangle { rectangle, texture: size })
+            Err(DemandPassError::Rectangle { rectangle, texture: size })
         }
     }
 }
 
 /// The WGSL of the pass for depth textures of a number of samples per pixel.
-pub fn need_wgsl(samples: u32) -> String {
+pub fn demand_wgsl(samples: u32) -> String {
     let texture = if samples > 1 { "texture_depth_multisampled_2d" } else { "texture_depth_2d" };
     format!(
         "alias DepthTexture = {texture};
@@ -203,7 +203,7 @@ const DEPTHS: u32 = {DEPTHS}u;
 const CLASSES: u32 = {CLASSES}u;
 const MIN_FACING: f32 = {MIN_FACING};
 {}",
-        include_str!("../shaders/need.wgsl")
+        include_str!("../shaders/demand.wgsl")
     )
 }
 
@@ -220,32 +220,32 @@ pub(crate) fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result
 }
 
 /// Does work whose errors would otherwise end the program, such as lack of memory.
-fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, NeedPassError> {
-    crate::caught::caught(device, work).map_err(|error| NeedPassError::Device(error.to_string()))
+fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, DemandPassError> {
+    crate::caught::caught(device, work).map_err(|error| DemandPassError::Device(error.to_string()))
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     let depths = bindings::depths(wgpu::TextureViewDimension::D2, multisampled);
     let counts = bindings::buffer(wgpu::BufferBindingType::Storage { read_only: false });
     let types = [bindings::UNIFORM, depths, counts];
-    bindings::layout(device, "shadowfit need", wgpu::ShaderStages::COMPUTE, (0, &types))
+    bindings::layout(device, "shadowfit demand", wgpu::ShaderStages::COMPUTE, (0, &types))
 }
 
 fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32) -> wgpu::ComputePipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("shadowfit need"),
-        source: wgpu::ShaderSource::Wgsl(need_wgsl(samples).into()),
+        label: Some("shadowfit demand"),
+        source: wgpu::ShaderSource::Wgsl(demand_wgsl(samples).into()),
     });
     let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shadowfit need"),
+        label: Some("shadowfit demand"),
         bind_group_layouts: &[Some(layout)],
         immediate_size: 0,
     });
     device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("shadowfit need"),
+        label: Some("shadowfit demand"),
         layout: Some(&pipeline_layout),
         module: &module,
-        entry_point: Some("count_need"),
+        entry_point: Some("count_demand"),
         compilation_options: Default::default(),
         cache: None,
     })
@@ -253,7 +253,7 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32)
 
 fn buffer(device: &wgpu::Device, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("shadowfit need"),
+        label: Some("shadowfit demand"),
         size: bytes as u64,
         usage,
         mapped_at_creation: false,
@@ -272,7 +272,7 @@ mod tests {
         let without = wgpu::Limits::downlevel_webgl2_defaults();
         assert_eq!(supported(&without, wgpu::Backend::Gl), Err(Unsupported::Compute));
         for lack in [Unsupported::Compute, Unsupported::DepthLoads] {
-            let text = NeedPassError::Unsupported(lack).to_string();
+            let text = DemandPassError::Unsupported(lack).to_string();
             assert!(text.contains("this device cannot") && text.ends_with("fit from boxes"), "{text}");
         }
     }

@@ -5,7 +5,7 @@ use shadowfit::glam::UVec2;
 use shadowfit::scroll::TexelRect;
 use shadowfit::{CasterVolume, FittedMap};
 
-use super::KeptMaps;
+use super::CachedMaps;
 use crate::cache::{Casters, Culling, PassContent, PassPlan};
 use crate::map::stored_casters;
 use crate::{MapView, ShadowMapError};
@@ -34,7 +34,7 @@ pub enum UpdateContent {
     Moving,
 }
 
-impl KeptMaps {
+impl CachedMaps {
     /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
     pub(crate) fn updates(&self) -> Vec<MapUpdate> {
         let mut updates = Vec::new();
@@ -60,19 +60,19 @@ impl KeptMaps {
         let stored = self.plan.rects[pass.mended.clone()].iter();
         let rects = stored.map(|stored| looked_up(*stored, fitted.wrap, pass.size));
         let boxes = self.plan.boxes[pass.mended_boxes.clone()].iter();
-        rects.chain(boxes.map(|aabb| TexelRect::of_box(&fitted.fit, aabb, self.origin)))
+        rects.chain(boxes.map(|aabb| TexelRect::of_box(&fitted.projection, aabb, self.origin)))
     }
 
     /// Rectangles around the moving casters that a map was drawn with.
     fn moving(&self, map: usize, fitted: &FittedMap) -> impl Iterator<Item = TexelRect> {
-        let origin = fitted.fit.origin;
+        let origin = fitted.projection.origin;
         let boxes = self.cache.moving(map).iter();
-        boxes.map(move |moved| TexelRect::of_box(&fitted.fit, &moved.relative_to(origin), origin))
+        boxes.map(move |moved| TexelRect::of_box(&fitted.projection, &moved.relative_to(origin), origin))
     }
 
     /// Whether the static casters of a map, by its number, are kept for later frames.
-    pub(crate) fn is_kept(&self, map: usize) -> bool {
-        self.cache.is_kept(map)
+    pub(crate) fn is_cached(&self, map: usize) -> bool {
+        self.cache.is_cached(map)
     }
 
     /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
@@ -81,8 +81,8 @@ impl KeptMaps {
         let clamps = self.map.descriptor().depth_clamp;
         let in_view = &self.volumes;
         let over = |(index, map): (usize, &FittedMap)| match self.culling {
-            Culling::Off => CasterVolume::everywhere(map.fit.origin),
-            _ if self.is_kept(index) => stored_casters(&map.fit, clamps),
+            Culling::Off => CasterVolume::everywhere(map.projection.origin),
+            _ if self.is_cached(index) => stored_casters(&map.projection, clamps),
             _ => in_view[index],
         };
         let over: Vec<CasterVolume> = self.maps.iter().enumerate().map(over).collect();

@@ -1,7 +1,7 @@
-//! The grid of need: which cell a visible point counts in, by hand and at any scale.
+//! The demand grid: which cell a visible point counts in, by hand and at any scale.
 
 use proptest::prelude::*;
-use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, NeedSpace, SIDE};
+use shadowfit::demand::{CELLS, DemandSpace, LEVELS, MIN_FACING, SIDE};
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{FitError, PerspectiveCamera};
 
@@ -9,8 +9,8 @@ use crate::scenes::any_light;
 use crate::support::{any_camera, any_direction, cases, float};
 
 /// A light straight down; cells of a quarter of a metre for texels of 1/1024 to 2/1024 m.
-fn space() -> NeedSpace {
-    NeedSpace {
+fn space() -> DemandSpace {
+    DemandSpace {
         origin: DVec3::ZERO,
         direction: Vec3::NEG_Y,
         x: Vec3::X,
@@ -21,7 +21,7 @@ fn space() -> NeedSpace {
 }
 
 /// A point of level ground that moves by so many metres for a pixel.
-fn on_ground(space: &NeedSpace, x: f32, z: f32, pixel: f32) -> Option<usize> {
+fn on_ground(space: &DemandSpace, x: f32, z: f32, pixel: f32) -> Option<usize> {
     space.index(Vec3::new(x, -2.0, z), Vec3::Y, Vec3::X * pixel, Vec3::Z * pixel)
 }
 
@@ -79,7 +79,7 @@ fn the_finer_axis_of_the_texel_counts() {
     // What moves along the light does not move in the plane.
     assert_eq!(count(Vec3::new(0.0015, 9.0, 0.0), Vec3::new(0.0, -9.0, 0.0015)), Some(index(0, 16, 16)));
     // A plane whose second axis is twice as long halves the texel there: 2 · 0.8 mm.
-    let space = NeedSpace { y: Vec3::NEG_Z * 2.0, ..space() };
+    let space = DemandSpace { y: Vec3::NEG_Z * 2.0, ..space() };
     assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0008), Some(index(0, 16, 16)));
     assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0012), Some(index(1, 16, 16)));
 }
@@ -122,7 +122,7 @@ fn numbers_that_are_none_count_nowhere() {
 fn a_space_of_bad_input_is_an_error() {
     let camera = crate::support::camera();
     let view = camera.frustum().unwrap();
-    let new = |direction, up, distance| NeedSpace::new(&view, direction, up, distance);
+    let new = |direction, up, distance| DemandSpace::new(&view, direction, up, distance);
     assert!(new(Vec3::NEG_Y, Vec3::Y, f32::MAX).is_ok());
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         assert!(new(Vec3::NEG_Y, Vec3::Y, bad).is_err(), "{bad}");
@@ -132,7 +132,7 @@ fn a_space_of_bad_input_is_an_error() {
             assert!(new(vector, Vec3::Y, f32::MAX).is_err() && new(Vec3::NEG_Y, vector, f32::MAX).is_err());
             let mut view = view;
             view.corners[5][axis] = bad;
-            assert!(NeedSpace::new(&view, Vec3::NEG_Y, Vec3::Y, f32::MAX).is_err());
+            assert!(DemandSpace::new(&view, Vec3::NEG_Y, Vec3::Y, f32::MAX).is_err());
         }
     }
     assert!(new(Vec3::ZERO, Vec3::Y, f32::MAX).is_err());
@@ -158,13 +158,13 @@ proptest! {
             ..camera
         };
         let [one, other] =
-            [camera, scaled].map(|c| NeedSpace::new(&c.frustum().unwrap(), direction, Vec3::Y, f32::MAX).unwrap());
+            [camera, scaled].map(|c| DemandSpace::new(&c.frustum().unwrap(), direction, Vec3::Y, f32::MAX).unwrap());
         prop_assert_eq!(other.texel, one.texel * scale as f32);
         prop_assert_eq!(other.cell, one.cell * scale as f32);
         prop_assert_eq!((one.x, one.y, one.direction), (other.x, other.y, other.direction));
         for (x, y, z, size) in places {
             let (p, pixel) = (Vec3::new(x, y, z) * camera.far, size.exp2() * camera.far);
-            let index = |space: &NeedSpace, k: f32| space.index(p * k, normal, right * (pixel * k), down * (pixel * k));
+            let index = |space: &DemandSpace, k: f32| space.index(p * k, normal, right * (pixel * k), down * (pixel * k));
             prop_assert_eq!(index(&one, 1.0), index(&other, scale as f32));
         }
     }
@@ -177,7 +177,7 @@ proptest! {
         octaves in float(0.0, 8.0),
     ) {
         let view = camera.frustum().unwrap();
-        let space = NeedSpace::new(&view, direction, Vec3::Y, f32::MAX).unwrap();
+        let space = DemandSpace::new(&view, direction, Vec3::Y, f32::MAX).unwrap();
         let depth = (camera.far / octaves.exp2()).max(camera.near);
         let [forward, up] = [camera.forward, camera.up].map(Vec3::normalize);
         let side = forward.cross(up).normalize();

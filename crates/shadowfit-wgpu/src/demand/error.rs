@@ -4,10 +4,10 @@ use core::fmt;
 
 use shadowfit::{DepthConvention, FitError};
 
-/// Why a [`NeedPass`](super::NeedPass) could not be made, or could not count a picture.
+/// Why a [`DemandPass`](super::DemandPass) could not be made, or could not count a picture.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NeedPassError {
-    /// The device cannot run the pass at all: fit with [`FitInput::need`](shadowfit::FitInput::need) left empty, from
+pub enum DemandPassError {
+    /// The device cannot run the pass at all: fit with [`FitInput::demand`](shadowfit::FitInput::demand) left empty, from
     /// boxes.
     Unsupported(Unsupported),
     /// The view, the light or the distance.
@@ -40,7 +40,7 @@ pub enum NeedPassError {
     Lost,
 }
 
-/// What a device lacks for a [`NeedPass`](super::NeedPass).
+/// What a device lacks for a [`DemandPass`](super::DemandPass).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsupported {
     /// Compute shaders with storage buffers.
@@ -49,7 +49,7 @@ pub enum Unsupported {
     DepthLoads,
 }
 
-impl fmt::Display for NeedPassError {
+impl fmt::Display for DemandPassError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unsupported(lack) => {
@@ -83,9 +83,9 @@ impl fmt::Display for NeedPassError {
     }
 }
 
-impl core::error::Error for NeedPassError {}
+impl core::error::Error for DemandPassError {}
 
-impl From<FitError> for NeedPassError {
+impl From<FitError> for DemandPassError {
     fn from(error: FitError) -> Self {
         Self::Fit(error)
     }

@@ -7,7 +7,7 @@ use shadowfit::glam::{DMat4, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
-use super::error::NeedPassError;
+use super::error::DemandPassError;
 
 /// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
 /// as long for any resolution. In the courtyard with 1080 rows, every fourth pixel counts at most 1.1% of the points in
@@ -16,7 +16,7 @@ const MAX_ROWS: u32 = 270;
 
 /// The picture that a depth buffer shows, and the light that its points are counted for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NeedView {
+pub struct DemandView {
     /// The view of the camera.
     pub frustum: ViewFrustum,
     /// The matrix that the depth buffer was drawn with: from world positions relative to [`ViewFrustum::origin`], in
@@ -34,11 +34,11 @@ pub struct NeedView {
     pub rectangle: [u32; 4],
 }
 
-/// The uniform of the pass: `Need` in WGSL, where the fields are explained.
+/// The uniform of the pass: `Demand` in WGSL, where the fields are explained.
 #[allow(missing_docs)]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct NeedUniform {
+pub struct DemandUniform {
     pub world_from_pixel: [[f32; 4]; 4],
     pub view: [f32; 4],
     pub direction: [f32; 3],
@@ -58,20 +58,20 @@ pub struct NeedUniform {
     pub pixel_width: [f32; 2],
 }
 
-impl NeedView {
+impl DemandView {
     /// The picture of a perspective camera, drawn with [`PerspectiveCamera::clip_from_world`], that fills a texture of
     /// `size` pixels. `direction` is the light's direction of travel in world axes.
     ///
     /// # Errors
     ///
-    /// [`NeedPassError::Fit`] as [`PerspectiveCamera::frustum`].
+    /// [`DemandPassError::Fit`] as [`PerspectiveCamera::frustum`].
     pub fn from_camera(
         camera: &PerspectiveCamera,
         depth: DepthConvention,
         direction: Vec3,
         settings: &MapSettings,
         size: [u32; 2],
-    ) -> Result<Self, NeedPassError> {
+    ) -> Result<Self, DemandPassError> {
         Ok(Self {
             frustum: camera.frustum()?,
             clip_from_world: camera.clip_from_world(depth),
@@ -89,21 +89,21 @@ impl NeedView {
     }
 
     /// The cells and bins that the counts belong to.
-    pub(super) fn space(&self) -> Result<SeenSpace, NeedPassError> {
+    pub(super) fn space(&self) -> Result<SeenSpace, DemandPassError> {
         Ok(SeenSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
     }
 
     /// The uniform of the shader.
-    pub(super) fn uniform(&self, space: &SeenSpace) -> Result<NeedUniform, NeedPassError> {
+    pub(super) fn uniform(&self, space: &SeenSpace) -> Result<DemandUniform, DemandPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
-            return Err(NeedPassError::Depth(self.depth));
+            return Err(DemandPassError::Depth(self.depth));
         }
-        let SeenSpace { need: space, near, far } = *space;
+        let SeenSpace { demand: space, near, far } = *space;
         let [left, top, width, height] = self.rectangle;
         // The histogram has no bins for depths that are not positive, as orthographic views may have them.
         let octaves = (f64::from(far) / f64::from(near)).log2();
         let (first, bins_per_octave) = if near > 0.0 { (near, DEPTHS as f64 / octaves) } else { (f32::MAX, 0.0) };
-        Ok(NeedUniform {
+        Ok(DemandUniform {
             world_from_pixel: self.world_from_pixel()?.to_cols_array_2d(),
             view: self.view_depth(),
             direction: space.direction.to_array(),
@@ -127,7 +127,7 @@ impl NeedView {
     /// From a pixel's column and row, and its depth minus the far plane's, to positions relative to the eye. Most of the
     /// view lies near depth 1 where depth is not reversed: differences from it are exact in f32, and so small that the
     /// matrix needs no more.
-    fn world_from_pixel(&self) -> Result<Mat4, NeedPassError> {
+    fn world_from_pixel(&self) -> Result<Mat4, DemandPassError> {
         let [width, height] = [self.rectangle[2], self.rectangle[3]].map(f64::from);
         let clip_from_pixel = DMat4::from_cols(
             DVec4::X * (2.0 / width),
@@ -141,7 +141,7 @@ impl NeedView {
         if has_inverse && world_from_pixel.is_finite() {
             Ok(world_from_pixel)
         } else {
-            Err(NeedPassError::SingularMatrix)
+            Err(DemandPassError::SingularMatrix)
         }
     }
 

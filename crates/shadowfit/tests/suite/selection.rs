@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec2};
 use shadowfit::selection::{DepthRange, MapBlend, MapOrder, MapRead, by_coverage, by_view_depth};
-use shadowfit::settings::{MAX_MAPS, MapChoice};
-use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Technique, Workspace};
+use shadowfit::settings::{MAX_MAPS, MapSelection};
+use shadowfit::{FitInput, FitState, FittedMaps, LightProjection, Scratch, Technique};
 
 use crate::scenes::{any_light, any_technique, any_view};
 use crate::support::{DIRECTION, camera, cases, double, float, read_by};
@@ -82,8 +82,8 @@ fn the_map_that_weighs_more_is_the_first_one_unless_the_second_has_more_than_hal
 
 #[test]
 fn the_order_has_no_more_than_the_greatest_number_of_maps() {
-    let maps = [LightFit::default(); MAX_MAPS + 1];
-    for choice in [MapChoice::default(), MapChoice::ViewDepth { overlap: 0.0 }] {
+    let maps = [LightProjection::default(); MAX_MAPS + 1];
+    for choice in [MapSelection::default(), MapSelection::ViewDepth { overlap: 0.0 }] {
         assert!(MapOrder::new(choice, &maps).iter().eq(0..MAX_MAPS));
     }
 }
@@ -92,17 +92,17 @@ proptest! {
     #[test]
     fn the_order_is_that_of_areas_and_then_of_indices(sides in prop::collection::vec((1_u8..4, 1_u8..4), 0..9)) {
         let texel_size = |(x, y)| Vec2::new(f32::from(x), f32::from(y));
-        let maps: Vec<LightFit> =
-            sides.iter().map(|side| LightFit { texel_size: texel_size(*side), ..LightFit::default() }).collect();
+        let maps: Vec<LightProjection> =
+            sides.iter().map(|side| LightProjection { texel_size: texel_size(*side), ..LightProjection::default() }).collect();
         let mut wanted: Vec<usize> = (0..maps.len()).collect();
         wanted.sort_by_key(|map| u32::from(sides[*map].0) * u32::from(sides[*map].1));
-        prop_assert!(MapOrder::new(MapChoice::default(), &maps).iter().eq(wanted));
+        prop_assert!(MapOrder::new(MapSelection::default(), &maps).iter().eq(wanted));
     }
 }
 
 fn fitted(technique: &Technique, input: &FitInput) -> FittedMaps {
-    let mut storage = vec![DVec2::ZERO; Workspace::required(0, 1)];
-    MapFitter::new().fit(input, technique, &mut Workspace::new(&mut storage)).expect("a fit")
+    let mut storage = vec![DVec2::ZERO; Scratch::required(0, 1)];
+    FitState::new().fit(input, technique, &mut Scratch::new(&mut storage)).expect("a fit")
 }
 
 #[test]
@@ -142,16 +142,16 @@ proptest! {
     ) {
         prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
         let views = [view.frustum()];
-        let technique = read_by(&technique, MapChoice::Coverage { blend });
+        let technique = read_by(&technique, MapSelection::Coverage { blend });
         let maps = fitted(&technique, &FitInput::new(&views, direction));
-        let mut sorted: Vec<usize> = (0..maps.len()).filter(|map| !maps[*map].fit.is_empty).collect();
-        let area = |map: usize| f64::from(maps[map].fit.texel_size.x) * f64::from(maps[map].fit.texel_size.y);
+        let mut sorted: Vec<usize> = (0..maps.len()).filter(|map| !maps[*map].projection.is_empty).collect();
+        let area = |map: usize| f64::from(maps[map].projection.texel_size.x) * f64::from(maps[map].projection.texel_size.y);
         sorted.sort_by(|a, b| area(*a).total_cmp(&area(*b)));
         let corners = views[0].corners.map(|corner| views[0].origin + corner.as_dvec3());
         for (u, v, w) in places {
             let across = |side: usize| corners[side].lerp(corners[side + 1], u).lerp(corners[side + 3].lerp(corners[side + 2], u), v);
             let point = across(0).lerp(across(4), w);
-            let free = |map: usize| maps[map].fit.free_texels(point);
+            let free = |map: usize| maps[map].projection.free_texels(point);
             let needed = f64::from(technique.reach());
             let roomy: Vec<usize> =
                 sorted.iter().copied().filter(|map| free(*map).is_some_and(|free| free >= needed)).collect();
@@ -162,9 +162,9 @@ proptest! {
             let weight = (free(*first).unwrap_or(0.0) - needed) / f64::from(blend);
             let second = others.first().filter(|_| weight < 1.0);
             prop_assert_eq!(read.and_then(|read| read.blend).map(|blend| blend.map), second.copied());
-            let by_depth = read_by(&technique, MapChoice::ViewDepth { overlap: 0.0 });
+            let by_depth = read_by(&technique, MapSelection::ViewDepth { overlap: 0.0 });
             let by_depth = maps.read(&by_depth, point, f64::from(views[0].near));
-            prop_assert!(by_depth.is_none_or(|read| maps[read.map].fit.covers(point)));
+            prop_assert!(by_depth.is_none_or(|read| maps[read.map].projection.covers(point)));
         }
     }
 }

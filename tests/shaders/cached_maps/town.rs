@@ -196,8 +196,8 @@ impl Engine {
         let boxes = town.boxes(walk.eye);
         let boxes = Boxes { origin: walk.eye, boxes: &boxes };
         let frame = SunFrame::new(&views, walk.direction, boxes, Casters { boxes, moves: &town.moves });
-        let certificate = self.kept.verify(&frame).expect("a good frame");
-        assert!(certificate.is_proven(), "{certificate:?}");
+        let proof = self.kept.prove(&frame).expect("a good frame");
+        assert!(proof.is_proven(), "{proof:?}");
     }
 }
 
@@ -229,7 +229,7 @@ fn unwrapped(gpu: &Gpu, maps: &SunShadows) -> Vec<Vec<f32>> {
     let mapped = buffer.slice(..).get_mapped_range().expect("the maps are mapped");
     let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&mapped);
     let layer = |(index, map): (usize, &FittedMap)| {
-        let used = map.fit.resolution;
+        let used = map.projection.resolution;
         let texels = (0..used.y).flat_map(move |y| (0..used.x).map(move |x| (x, y)));
         let stored = |(x, y): (u32, u32)| {
             let [x, y] = [(x + map.wrap.x) % used.x, (y + map.wrap.y) % used.y];

@@ -1,15 +1,15 @@
-//! The certificate: what it proves of fits, and what it finds in broken ones.
+//! The proof: what it proves of fits, and what it finds in broken ones.
 
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::proof::{Certificate, CoverageQuery, MapPlane, verify};
+use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, prove};
 use shadowfit::settings::{
-    CasterPolicy, FitKind, FitSettings, HoldSettings, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
+    CasterPolicy, FitKind, FitSettings, Hysteresis, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Slices, Technique,
-    ViewFrustum, Workspace,
+    Aabb, Boxes, DepthConvention, FitError, FitInput, FitState, LightProjection, PerspectiveCamera, Scratch, Slices,
+    Technique, ViewFrustum,
 };
 
 use crate::scenes::any_choice;
@@ -18,7 +18,7 @@ use crate::support::{DIRECTION, SNAP, any_camera, any_direction, apply, camera, 
 const COVERING: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
 fn storage(boxes: usize) -> Vec<DVec2> {
-    vec![DVec2::ZERO; Workspace::required(boxes, 10)]
+    vec![DVec2::ZERO; Scratch::required(boxes, 10)]
 }
 
 /// A box by its position and size, in shares of the view's extent.
@@ -94,7 +94,8 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
         RectangleKind::MinimumArea,
         RectangleKind::MinimumSquare,
     ]);
-    let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp]);
+    let casters =
+        prop::sample::select(vec![CasterPolicy::PerObject, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp]);
     let resolution = prop::sample::select(vec![UVec2::new(2048, 2048), UVec2::new(512, 1024), UVec2::new(64, 40)]);
     let distance = prop_oneof![Just(f32::MAX), float(5.0, 500.0)];
     (kind, rectangle, casters, resolution, any_depth(), distance, prop_oneof![Just(0.0), float(0.0, 6.0)]).prop_map(
@@ -120,10 +121,10 @@ fn any_technique() -> impl Strategy<Value = Technique> {
         Just(SplitScheme::FromBoxes),
     ];
     let held = prop_oneof![Just(0.0), Just(0.02), float(0.0, 0.5)]
-        .prop_map(|margin| Stabilise::Hysteresis(HoldSettings::default().with_margin(margin)));
+        .prop_map(|margin| Stabilise::Hysteresis(Hysteresis::default().with_margin(margin)));
     let stabilise = prop_oneof![Just(Stabilise::Off), Just(SNAP), held];
     (any_fit(), 1..=8_u32, splits, any_choice(), stabilise).prop_map(|(fit, count, splits, choice, stabilise)| {
-        sliced(&fit, Slices { count, splits, choice, stabilise, ..Slices::default() })
+        sliced(&fit, Slices { count, splits, selection: choice, stabilise, ..Slices::default() })
     })
 }
 
@@ -171,11 +172,11 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
-        let mut workspace = Workspace::new(&mut storage);
+        let mut workspace = Scratch::new(&mut storage);
         let map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
         let query = CoverageQuery::of_fit(&fit, reach_of(&fit.map));
-        let certificate = verify(&input, &map, &query, &mut workspace).unwrap();
-        prop_assert!(certificate.is_proven(), "{certificate:?}");
+        let proof = prove(&input, &map, &query, &mut workspace).unwrap();
+        prop_assert!(proof.is_proven(), "{proof:?}");
     }
 
     /// What is proven holds for points that no clipping has found: f32 matrix times f32 position.
@@ -189,13 +190,13 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
-        let mut workspace = Workspace::new(&mut storage);
+        let mut workspace = Scratch::new(&mut storage);
         let mut map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
         // Shift the map by up to a tenth: most of these have holes, and the others must have none.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();
         let query = CoverageQuery { near: f32::MIN, far: f32::MAX, ..CoverageQuery::of_fit(&fit, reach_of(&fit.map)) };
-        let Certificate::Proven(_) = verify(&input, &map, &query, &mut workspace).unwrap() else { return Ok(()) };
+        let CoverageProof::Proven(_) = prove(&input, &map, &query, &mut workspace).unwrap() else { return Ok(()) };
         let corner = |i: usize| views[0].corners[i].as_dvec3();
         for (x, y, z) in places {
             let at = |t: f64, a: DVec3, b: DVec3| a * (1.0 - t) + b * t;
@@ -218,16 +219,16 @@ proptest! {
         prop_assume!(camera.near < settings.fit.max_distance);
         let scene = scene(&plans, &camera);
         let mut storage = storage(scene.len());
-        let mut workspace = Workspace::new(&mut storage);
-        let (mut fitter, mut camera) = (MapFitter::new(), camera);
+        let mut workspace = Scratch::new(&mut storage);
+        let (mut fitter, mut camera) = (FitState::new(), camera);
         for frame in 0..frames {
             let views = [camera.frustum().unwrap()];
             let input = scene.input(&views, direction);
             let maps = fitter.fit(&input, &settings, &mut workspace).unwrap();
             for (i, map) in maps.iter().enumerate() {
                 let query = CoverageQuery::of_map(map, &settings, reach_of(&settings.fit));
-                let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
-                prop_assert!(certificate.is_proven(), "frame {frame}, map {i}: {certificate:?} of {map:?}");
+                let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+                prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
             camera = walk.moved(&camera);
         }
@@ -254,24 +255,24 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
     let scene = scene(&(Some(vec![plan]), Vec::new(), true), &camera);
     let fit = FitSettings::default()
         .with_kind(FitKind::Sphere)
-        .with_casters(CasterPolicy::List)
+        .with_casters(CasterPolicy::PerObject)
         .with_border(3.195_267_7)
         .with_resolution(UVec2::new(64, 40));
     let settings = sliced(&fit, Slices { count: 7, splits: SplitScheme::Logarithmic, ..Slices::default() });
     let views = [camera.frustum().unwrap()];
     let input = scene.input(&views, Vec3::new(-0.172_338_68, -0.965_532_3, -0.195_055_77));
     let mut storage = storage(scene.len());
-    let mut workspace = Workspace::new(&mut storage);
-    let maps = MapFitter::new().fit(&input, &settings, &mut workspace).unwrap();
+    let mut workspace = Scratch::new(&mut storage);
+    let maps = FitState::new().fit(&input, &settings, &mut workspace).unwrap();
     for (i, map) in maps.iter().enumerate() {
         let query = CoverageQuery::of_map(map, &settings, reach_of(&fit.map));
-        let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
-        assert!(certificate.is_proven(), "map {i}: {certificate:?}");
+        let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+        assert!(proof.is_proven(), "map {i}: {proof:?}");
     }
 }
 
 /// What a shader computes for a world position, in f32.
-fn looked_up(fit: &LightFit, point: DVec3) -> Vec3 {
+fn looked_up(fit: &LightProjection, point: DVec3) -> Vec3 {
     apply(&fit.uv_from_world, (point - fit.origin).as_vec3())
 }
 
@@ -299,9 +300,9 @@ fn plain() -> FitSettings {
         .with_resolution(UVec2::new(800, 400))
 }
 
-fn certificate(input: &FitInput, fit: &LightFit, query: &CoverageQuery) -> Certificate {
+fn proof(input: &FitInput, fit: &LightProjection, query: &CoverageQuery) -> CoverageProof {
     let mut storage = storage(1);
-    verify(input, fit, query, &mut Workspace::new(&mut storage)).unwrap()
+    prove(input, fit, query, &mut Scratch::new(&mut storage)).unwrap()
 }
 
 /// A box with its middle over the view's, relative to the eye.
@@ -321,7 +322,7 @@ fn the_margins_left_are_those_of_the_settings() {
         ..FitInput::new(&views, Vec3::NEG_Y)
     };
     let query = CoverageQuery::of_fit(&settings, Reach::POINT);
-    let Certificate::Proven(margins) = certificate(&input, &fit, &query) else { panic!("{fit:?}") };
+    let CoverageProof::Proven(margins) = proof(&input, &fit, &query) else { panic!("{fit:?}") };
     let expected = [800.0 / 9.0 * 0.5, 800.0 / 9.0 * 0.5, 400.0 / 5.0 * 0.5, 400.0 / 5.0 * 0.5, 0.5, 0.5];
     for (margin, expected) in margins.planes.into_iter().zip(expected) {
         assert!((margin / expected - 1.0).abs() < 1e-4, "{margin} {expected}");
@@ -330,7 +331,7 @@ fn the_margins_left_are_those_of_the_settings() {
     assert!((margins.casters - 0.125).abs() < 1e-4, "{}", margins.casters);
     // The filter takes its reach, from half a texel on, and the normal offset what it is long.
     let query = CoverageQuery::of_fit(&settings, Reach::POINT.over_disc(3.0)).with_normal_offset(0.1);
-    let Certificate::Proven(wide) = certificate(&input, &fit, &query) else { panic!("{fit:?}") };
+    let CoverageProof::Proven(wide) = proof(&input, &fit, &query) else { panic!("{fit:?}") };
     for (i, per_metre) in [800.0 / 9.0, 800.0 / 9.0, 80.0, 80.0].into_iter().enumerate() {
         assert!((margins.planes[i] - wide.planes[i] - 3.0 - 0.1 * per_metre).abs() < 1e-3);
     }
@@ -343,7 +344,7 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
     let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
-    assert!(certificate(&input, &fit, &query).is_proven());
+    assert!(proof(&input, &fit, &query).is_proven());
     for (i, plane) in MapPlane::ALL.into_iter().enumerate() {
         let mut small = fit;
         // One side of the box moves in by 1% of its extent, in all that the fit says.
@@ -367,7 +368,7 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
             squeeze(&mut small.clip_from_world, axis, (0.0, 1.0), !is_high);
             squeeze(&mut small.uv_from_world, axis, (0.0, 1.0), !is_high);
         }
-        let Certificate::Uncovered { plane: found, point, by } = certificate(&input, &small, &query) else {
+        let CoverageProof::Uncovered { plane: found, point, by } = proof(&input, &small, &query) else {
             panic!("{plane:?} of {small:?}");
         };
         assert_eq!(found, plane);
@@ -394,8 +395,8 @@ fn each_of_the_matrices_counts_by_itself() {
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
     let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
-    let refused = |fit: &LightFit| {
-        matches!(certificate(&input, fit, &query), Certificate::Uncovered { plane: MapPlane::Right, .. })
+    let refused = |fit: &LightProjection| {
+        matches!(proof(&input, fit, &query), CoverageProof::Uncovered { plane: MapPlane::Right, .. })
     };
     let mut small = fit;
     squeeze(&mut small.clip_from_world, 0, (-1.0, 1.0), true);
@@ -419,10 +420,10 @@ fn a_near_plane_behind_a_caster_loses_it() {
         let casters = [over(0.0, -2.0, 0.5), caster];
         let casters = Boxes { origin, boxes: &casters };
         let query = CoverageQuery { reach: Reach::POINT, ..*query };
-        certificate(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &query)
+        proof(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &query)
     };
     // 5 m above the eye; the near plane is 1 m below it.
-    let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &query) else { panic!("not lost") };
+    let CoverageProof::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &query) else { panic!("not lost") };
     assert!((by - 6.0).abs() < 1e-3 && (point.y - origin.y - 5.0).abs() < 1e-9, "{point} by {by}");
     assert!(looked_up(&fit, point).z < 0.0);
     // Beside the view nothing casts a shadow into it, nor from below.
@@ -438,8 +439,8 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let input = FitInput { casters: Some(Boxes { origin, boxes: &casters }), ..FitInput::new(&views, Vec3::NEG_Y) };
     let settings = settings.with_border(1.5);
     let wide = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
-    let certificate = certificate(&input, &wide, &CoverageQuery::of_fit(&settings, Reach::taps(2.0)));
-    assert!(matches!(certificate, Certificate::CasterLost { .. }), "{certificate:?}");
+    let proof = proof(&input, &wide, &CoverageQuery::of_fit(&settings, Reach::taps(2.0)));
+    assert!(matches!(proof, CoverageProof::CasterLost { .. }), "{proof:?}");
 }
 
 #[test]
@@ -449,15 +450,15 @@ fn the_xna_fit_covers_the_view_but_loses_casters_before_it() {
     let fit = shadowfit::fit(&views[0], DIRECTION, &settings).unwrap();
     let query = CoverageQuery::of_fit(&settings, Reach::POINT);
     let input = FitInput::new(&views, DIRECTION);
-    assert!(certificate(&input, &fit, &query).is_proven());
+    assert!(proof(&input, &fit, &query).is_proven());
     let middle = (fit.corners()[0] + fit.corners()[2]) * 0.5 - fit.direction * 10.0;
     let casters = [Aabb::new(middle - 1.0, middle + 1.0)];
     let input = FitInput { casters: Some(Boxes { origin: fit.origin, boxes: &casters }), ..input };
-    let Certificate::CasterLost { point, by } = certificate(&input, &fit, &query) else { panic!("not lost") };
+    let CoverageProof::CasterLost { point, by } = proof(&input, &fit, &query) else { panic!("not lost") };
     assert!(by > 10.0 && by < 12.0 && !fit.covers(point), "{point} by {by}");
     // Its corners stand in its planes: without a margin, rounding may put them beyond.
     let exact = shadowfit::fit(&views[0], DIRECTION, &settings.with_margin(0.0)).unwrap();
-    let Certificate::Uncovered { by, .. } = certificate(&FitInput::new(&views, DIRECTION), &exact, &query) else {
+    let CoverageProof::Uncovered { by, .. } = proof(&FitInput::new(&views, DIRECTION), &exact, &query) else {
         panic!("proven")
     };
     assert!(by < 0.01, "{by}");
@@ -469,14 +470,14 @@ fn receivers_of_a_map_that_nobody_draws_are_found() {
     let receivers = [over(1.0, -2.0, 0.25)];
     let boxes = Boxes { origin: views[0].origin, boxes: &receivers };
     let input = FitInput { receivers: Some(boxes), ..FitInput::new(&views, Vec3::NEG_Y) };
-    let fit = LightFit { is_empty: true, ..shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap() };
+    let fit = LightProjection { is_empty: true, ..shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap() };
     let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
-    assert!(matches!(certificate(&input, &fit, &query), Certificate::MarkedEmpty { .. }));
+    assert!(matches!(proof(&input, &fit, &query), CoverageProof::MarkedEmpty { .. }));
     // Nothing is required where nothing receives, in the range or at all.
     for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
         let boxes = Boxes { origin: views[0].origin, boxes };
         let input = FitInput { receivers: Some(boxes), ..input };
-        let Certificate::Proven(margins) = certificate(&input, &fit, &CoverageQuery { far, ..query }) else {
+        let CoverageProof::Proven(margins) = proof(&input, &fit, &CoverageQuery { far, ..query }) else {
             panic!("{far}")
         };
         assert_eq!(margins.planes, [f32::INFINITY; 6]);
@@ -489,12 +490,12 @@ fn another_origin_far_away_is_refused_for_its_rounding() {
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain().with_margin(0.001)).unwrap();
     let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
-    assert!(certificate(&input, &fit, &query).is_proven());
+    assert!(proof(&input, &fit, &query).is_proven());
     let near = fit.relative_to(fit.origin + DVec3::new(10.0, 0.0, 10.0));
-    assert!(certificate(&input, &near, &query).is_proven());
+    assert!(proof(&input, &near, &query).is_proven());
     // At 10 km f32 has steps of a millimetre.
     let far = fit.relative_to(fit.origin + DVec3::new(1e4, 0.0, 1e4));
-    assert!(!certificate(&input, &far, &query).is_proven());
+    assert!(!proof(&input, &far, &query).is_proven());
 }
 
 #[test]
@@ -504,8 +505,8 @@ fn bad_numbers_are_errors() {
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
     let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
     let mut storage = storage(1);
-    let mut error = |input: &FitInput, fit: &LightFit, query: &CoverageQuery| {
-        verify(input, fit, query, &mut Workspace::new(&mut storage)).unwrap_err()
+    let mut error = |input: &FitInput, fit: &LightProjection, query: &CoverageQuery| {
+        prove(input, fit, query, &mut Scratch::new(&mut storage)).unwrap_err()
     };
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let is_bad = |e: FitError| matches!(e, FitError::NotFinite { .. });
@@ -525,18 +526,18 @@ fn bad_numbers_are_errors() {
                 Mat4::from_cols_array(&elements)
             };
             for fit in [
-                LightFit { light_from_world: with(fit.light_from_world), ..fit },
-                LightFit { clip_from_world: with(fit.clip_from_world), ..fit },
-                LightFit { uv_from_world: with(fit.uv_from_world), ..fit },
+                LightProjection { light_from_world: with(fit.light_from_world), ..fit },
+                LightProjection { clip_from_world: with(fit.clip_from_world), ..fit },
+                LightProjection { uv_from_world: with(fit.uv_from_world), ..fit },
             ] {
                 assert!(is_bad(error(&input, &fit, &query)), "element {i}");
             }
         }
         for fit in [
-            LightFit { box_min: Vec3::splat(bad), ..fit },
-            LightFit { box_max: Vec3::splat(bad), ..fit },
-            LightFit { depth_range: bad, ..fit },
-            LightFit { origin: DVec3::splat(f64::from(bad)), ..fit },
+            LightProjection { box_min: Vec3::splat(bad), ..fit },
+            LightProjection { box_max: Vec3::splat(bad), ..fit },
+            LightProjection { depth_range: bad, ..fit },
+            LightProjection { origin: DVec3::splat(f64::from(bad)), ..fit },
         ] {
             assert!(is_bad(error(&input, &fit, &query)));
         }
@@ -546,10 +547,10 @@ fn bad_numbers_are_errors() {
     assert_eq!(error(&input, &fit, &range), FitError::NearNotBelowFar { near: 2.0, far: 1.0 });
     assert_eq!(error(&FitInput { views: &[], ..input }, &fit, &query), FitError::NoView);
     let resolution = UVec2::new(0, 4);
-    assert_eq!(error(&input, &LightFit { resolution, ..fit }, &query), FitError::ZeroResolution { resolution });
-    assert!(matches!(error(&input, &LightFit::default(), &query), FitError::ZeroResolution { .. }));
-    let flat = LightFit { clip_from_world: Mat4::ZERO, ..fit };
+    assert_eq!(error(&input, &LightProjection { resolution, ..fit }, &query), FitError::ZeroResolution { resolution });
+    assert!(matches!(error(&input, &LightProjection::default(), &query), FitError::ZeroResolution { .. }));
+    let flat = LightProjection { clip_from_world: Mat4::ZERO, ..fit };
     assert!(matches!(error(&input, &flat, &query), FitError::OutOfRange { .. }));
-    let small = verify(&input, &fit, &query, &mut Workspace::new(&mut []));
-    assert!(matches!(small, Err(FitError::WorkspaceTooSmall { .. })));
+    let small = prove(&input, &fit, &query, &mut Scratch::new(&mut []));
+    assert!(matches!(small, Err(FitError::ScratchTooSmall { .. })));
 }
