@@ -120,6 +120,20 @@ fn every_block_of_code_in_the_integration_guide_stands_in_an_example() {
 }
 
 #[test]
+fn what_engines_take_chooses_no_graphics_api_for_them() {
+    let manifest = |path: &str| read(path).parse::<toml::Table>().unwrap_or_else(|error| panic!("{path}: {error}"));
+    let features = |wgpu: &toml::Value| -> Vec<String> {
+        let listed = wgpu.get("features").and_then(toml::Value::as_array);
+        listed.into_iter().flatten().filter_map(toml::Value::as_str).map(str::to_owned).collect()
+    };
+    let shared = &manifest("Cargo.toml")["workspace"]["dependencies"]["wgpu"];
+    assert_eq!(shared.get("default-features"), Some(&toml::Value::Boolean(false)), "wgpu's defaults are its APIs");
+    assert_eq!(features(shared), ["std", "wgsl"]);
+    let own = &manifest("crates/shadowfit-wgpu/Cargo.toml")["dependencies"]["wgpu"];
+    assert!(features(own).is_empty(), "{own}");
+}
+
+#[test]
 fn the_readme_of_shadowfit_wgpu_shows_code_that_its_docs_test() {
     let docs = read("crates/shadowfit-wgpu/src/lib.rs");
     let docs: String = docs

@@ -2,6 +2,10 @@
 
 #[path = "door/engine.rs"]
 mod engine;
+#[path = "door/groups_gpu.rs"]
+mod groups_gpu;
+#[path = "door/off_gpu.rs"]
+mod off_gpu;
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind};

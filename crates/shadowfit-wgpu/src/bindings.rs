@@ -13,34 +13,47 @@ pub(crate) const fn depths(view_dimension: wgpu::TextureViewDimension, multisamp
     wgpu::BindingType::Texture { sample_type: wgpu::TextureSampleType::Depth, view_dimension, multisampled }
 }
 
-/// A layout whose bindings are seen by these stages, and counted from `first`.
-pub(crate) fn layout(
-    device: &wgpu::Device,
-    label: &str,
+/// Entries of a layout whose bindings are seen by these stages, and counted from `first`.
+pub(crate) fn layout_entries(
     visibility: wgpu::ShaderStages,
     (first, types): (u32, &[wgpu::BindingType]),
-) -> wgpu::BindGroupLayout {
+) -> Vec<wgpu::BindGroupLayoutEntry> {
     let entry = |(binding, ty): (u32, &wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
         binding: first.saturating_add(binding),
         visibility,
         ty: *ty,
         count: None,
     };
-    let entries: Vec<_> = (0..).zip(types).map(entry).collect();
+    (0..).zip(types).map(entry).collect()
+}
+
+/// A layout of such entries.
+pub(crate) fn layout(
+    device: &wgpu::Device,
+    label: &str,
+    visibility: wgpu::ShaderStages,
+    types: (u32, &[wgpu::BindingType]),
+) -> wgpu::BindGroupLayout {
+    let entries = layout_entries(visibility, types);
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-/// A bind group of such a layout.
-pub(crate) fn group<'a>(
-    device: &wgpu::Device,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    (first, resources): (u32, &[wgpu::BindingResource<'a>]),
-) -> wgpu::BindGroup {
+/// Entries of a bind group of such a layout.
+pub(crate) fn entries<'a>((first, resources): (u32, &[wgpu::BindingResource<'a>])) -> Vec<wgpu::BindGroupEntry<'a>> {
     let entry = |(binding, resource): (u32, &wgpu::BindingResource<'a>)| wgpu::BindGroupEntry {
         binding: first.saturating_add(binding),
         resource: resource.clone(),
     };
-    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+    (0..).zip(resources).map(entry).collect()
+}
+
+/// A bind group of such a layout.
+pub(crate) fn group(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: (u32, &[wgpu::BindingResource<'_>]),
+) -> wgpu::BindGroup {
+    let entries = entries(resources);
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }

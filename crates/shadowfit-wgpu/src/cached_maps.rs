@@ -38,6 +38,8 @@ pub(crate) struct CachedMaps {
     volumes: Vec<CasterVolume>,
     /// Origin of the boxes in the plan, in world space, in metres.
     origin: DVec3,
+    /// Whether the light gives nothing.
+    is_off: bool,
 }
 
 impl CachedMaps {
@@ -61,6 +63,7 @@ impl CachedMaps {
             maps: Vec::new(),
             volumes: Vec::new(),
             origin: DVec3::ZERO,
+            is_off: false,
         })
     }
 
@@ -83,6 +86,20 @@ impl CachedMaps {
     /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
     pub(crate) fn invalidate_all(&mut self) {
         self.cache.reset();
+    }
+
+    /// Whether the light gives nothing.
+    pub(crate) fn is_off(&self) -> bool {
+        self.is_off
+    }
+
+    /// Makes all factors 0 until the next [`Self::update`]. What the layers hold stays.
+    pub(crate) fn turn_off(&mut self, queue: &wgpu::Queue) {
+        self.skip();
+        self.maps.clear();
+        self.volumes.clear();
+        self.map.turn_off(queue);
+        self.is_off = true;
     }
 
     /// Finds which parts of a frame's maps must be drawn, and writes the uniforms. [`Self::passes`] then has the passes
@@ -128,6 +145,7 @@ impl CachedMaps {
             map.wrap = self.cache.wrap(index);
         }
         self.map.prepare(queue, &view, &self.maps)?;
+        self.is_off = false;
         self.layers.prepare(&self.device, queue, &self.plan);
         Ok(())
     }

@@ -32,7 +32,9 @@ pub struct ShadowMapDescriptor {
     /// [`CasterPolicy::DepthClamp`] need it. On devices without [`wgpu::Features::DEPTH_CLIP_CONTROL`] the
     /// engine's fragment shaders do it: [`ShadowMap::clamps_in_fragment`](crate::ShadowMap::clamps_in_fragment).
     pub depth_clamp: bool,
-    /// First binding of the bind groups of casters and receivers; the others follow it. Default: 0.
+    /// First binding of the bind groups of casters and receivers; the others follow it. With another one for each sun
+    /// several suns fit into one bind group: [`ShadowMap::receiver_entries`](crate::ShadowMap::receiver_entries).
+    /// Default: 0.
     pub first_binding: u32,
 }
 

@@ -18,6 +18,7 @@ pub struct ShadowMap {
     clamps_in_fragment: bool,
     layers: Vec<Layer>,
     view: wgpu::TextureView,
+    sampler: wgpu::Sampler,
     caster_layout: wgpu::BindGroupLayout,
     receiver_layout: wgpu::BindGroupLayout,
     receiver_group: wgpu::BindGroup,
@@ -54,7 +55,8 @@ impl ShadowMap {
 
     fn with_textures(device: &wgpu::Device, descriptor: &ShadowMapDescriptor, textures: &Textures) -> Self {
         let caster_layout = caster_layout(device, descriptor);
-        let receiver_layout = receiver_layout(device, descriptor);
+        let types = (descriptor.first_binding, receiver_types(descriptor));
+        let receiver_layout = bindings::layout(device, "shadowfit receiver", RECEIVER_STAGES, types);
         let layers =
             (0..descriptor.maps).map(|index| Layer::new(device, descriptor, &caster_layout, textures, index)).collect();
         let view = textures.read().create_view(&wgpu::TextureViewDescriptor {
@@ -64,13 +66,16 @@ impl ShadowMap {
         });
         let receiver_uniform = uniform_buffer(device, size_of::<ReceiverUniform>());
         let sampler = comparison_sampler(device, descriptor);
-        let receiver_group = receiver_group(device, descriptor, &receiver_layout, &receiver_uniform, &view, &sampler);
+        let resources = receiver_resources(&receiver_uniform, &view, &sampler);
+        let resources = (descriptor.first_binding, &resources[..types.1.len()]);
+        let receiver_group = bindings::group(device, "shadowfit receiver", &receiver_layout, resources);
         let has_clamp = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         Self {
             descriptor: *descriptor,
             clamps_in_fragment: descriptor.depth_clamp && !has_clamp,
             layers,
             view,
+            sampler,
             caster_layout,
             receiver_layout,
             receiver_group,
@@ -94,7 +99,7 @@ impl ShadowMap {
         &self.caster_layout
     }
 
-    /// Layout of the bind group that [`crate::receiver_wgsl`] reads.
+    /// Layout of the bind group that [`crate::receiver_wgsl`] reads: in vertex, fragment and compute shaders.
     pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
         &self.receiver_layout
     }
@@ -102,6 +107,25 @@ impl ShadowMap {
     /// The bind group that [`crate::receiver_wgsl`] reads.
     pub fn receiver_group(&self) -> &wgpu::BindGroup {
         &self.receiver_group
+    }
+
+    /// The entries of [`Self::receiver_layout`], for a layout of the engine's own that has more than these: another
+    /// sun's, the camera, materials. They begin at [`ShadowMapDescriptor::first_binding`].
+    ///
+    /// | binding | holds | as |
+    /// |---|---|---|
+    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes | uniform buffer |
+    /// | first + 1 | the maps, one layer each | array of depth textures, or of unfilterable float textures for colour formats |
+    /// | first + 2 | how depths are compared; only for depth formats | comparison sampler |
+    pub fn receiver_layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
+        bindings::layout_entries(RECEIVER_STAGES, (self.descriptor.first_binding, receiver_types(&self.descriptor)))
+    }
+
+    /// The resources for [`Self::receiver_layout_entries`], for a bind group of the engine's own. They are the same in
+    /// every frame, until the maps are recreated.
+    pub fn receiver_entries(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
+        let resources = receiver_resources(&self.receiver_uniform, &self.view, &self.sampler);
+        bindings::entries((self.descriptor.first_binding, &resources[..receiver_types(&self.descriptor).len()]))
     }
 
     /// Depth state of the engine's caster pipelines. No hardware bias: biases are applied in texels
@@ -191,6 +215,13 @@ impl ShadowMap {
         self.volumes
             .extend(maps.iter().map(|map| stored_casters(&map.projection, depth_clamp).relative_to(view.origin)));
         Ok(())
+    }
+
+    /// Makes all factors 0, until maps are [prepared](Self::prepare) again: for a light that gives nothing. There is
+    /// nothing to draw.
+    pub fn turn_off(&mut self, queue: &wgpu::Queue) {
+        queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&ReceiverUniform::off()));
+        self.volumes.clear();
     }
 
     /// Records one pass a prepared map: cleared to the far value, the map's [`Self::caster_group`]
@@ -407,32 +438,26 @@ fn caster_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgp
     bindings::layout(device, "shadowfit caster", wgpu::ShaderStages::VERTEX, (descriptor.first_binding, &types))
 }
 
-fn receiver_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
-    let view_dimension = wgpu::TextureViewDimension::D2Array;
-    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
-    let colors = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
-    let types: &[wgpu::BindingType] = if descriptor.format.is_depth() {
-        &[bindings::UNIFORM, bindings::depths(view_dimension, false), sampler]
-    } else {
-        &[bindings::UNIFORM, colors]
-    };
-    bindings::layout(device, "shadowfit receiver", wgpu::ShaderStages::FRAGMENT, (descriptor.first_binding, types))
+/// Stages of the engine's pipelines that may look points up.
+const RECEIVER_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
+
+/// What the look-up's bindings are.
+fn receiver_types(descriptor: &ShadowMapDescriptor) -> &'static [wgpu::BindingType] {
+    const VIEW: wgpu::TextureViewDimension = wgpu::TextureViewDimension::D2Array;
+    const FLOATS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+    const COLORS: wgpu::BindingType =
+        wgpu::BindingType::Texture { sample_type: FLOATS, view_dimension: VIEW, multisampled: false };
+    const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
+    const OF_DEPTH: [wgpu::BindingType; 3] = [bindings::UNIFORM, bindings::depths(VIEW, false), SAMPLER];
+    const OF_COLOR: [wgpu::BindingType; 2] = [bindings::UNIFORM, COLORS];
+    if descriptor.format.is_depth() { &OF_DEPTH } else { &OF_COLOR }
 }
 
-fn receiver_group(
-    device: &wgpu::Device,
-    descriptor: &ShadowMapDescriptor,
-    layout: &wgpu::BindGroupLayout,
-    uniform: &wgpu::Buffer,
-    view: &wgpu::TextureView,
-    sampler: &wgpu::Sampler,
-) -> wgpu::BindGroup {
-    let resources = [
-        uniform.as_entire_binding(),
-        wgpu::BindingResource::TextureView(view),
-        wgpu::BindingResource::Sampler(sampler),
-    ];
-    let used = if descriptor.format.is_depth() { 3 } else { 2 };
-    bindings::group(device, "shadowfit receiver", layout, (descriptor.first_binding, &resources[..used]))
+/// What the look-up's bindings hold; colour formats have no sampler.
+fn receiver_resources<'a>(
+    uniform: &'a wgpu::Buffer,
+    view: &'a wgpu::TextureView,
+    sampler: &'a wgpu::Sampler,
+) -> [wgpu::BindingResource<'a>; 3] {
+    [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(sampler)]
 }

@@ -92,11 +92,11 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
     options.fill(include_str!("shaders/culling.wgsl"), 0)
 }
 
-/// WGSL for fragment shaders that receive shadows:
+/// WGSL for the shaders that light what receives shadows, in any stage:
 ///
 /// | function | gives |
 /// |---|---|
-/// | `shadowfit_factor_at(position, normal, pixel) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map. `pixel` is xy of the fragment's `@builtin(position)`: filters that spread look-ups over a disc turn it from pixel to pixel, others ignore it. Half of it turns them for each 2 × 2 pixels, which costs less, and is grainier |
+/// | `shadowfit_factor_at(position, normal, pixel) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map, and 0 everywhere while the light is [off](crate::SunShadows::turn_off). `pixel` is xy of the fragment's `@builtin(position)`: filters that spread look-ups over a disc turn it from pixel to pixel, others ignore it. Half of it turns them for each 2 × 2 pixels, which costs less, and is grainier |
 /// | `shadowfit_factor(position, normal) -> f32` | the same without turning the discs: their look-ups then show as bands instead of noise |
 /// | `shadowfit_map_index(position) -> i32` | the index of the map that weighs more in the factor there, for tints that show it; -1 outside every map |
 /// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth and that shadows fade by: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |

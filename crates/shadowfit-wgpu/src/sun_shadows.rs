@@ -62,14 +62,30 @@ impl SunShadows {
     /// [`SunShadowsError::Map`] if the maps cannot be made on this device: their size, number, format or filter, or too
     /// little memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, technique: &Technique) -> Result<Self, SunShadowsError> {
-        let mut sun = Self::from_descriptor(device, queue, &ShadowMapDescriptor::from(technique))?;
+        Self::with_first_binding(device, queue, technique, 0)
+    }
+
+    /// As [`Self::new`], with bind groups that begin at another binding than 0: for a bind group that the look-up
+    /// shares with another sun's or with the engine's own resources ([`ShadowMap::receiver_entries`]). Other techniques
+    /// keep the binding.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn with_first_binding(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        technique: &Technique,
+        first_binding: u32,
+    ) -> Result<Self, SunShadowsError> {
+        let descriptor = ShadowMapDescriptor { first_binding, ..ShadowMapDescriptor::from(technique) };
+        let mut sun = Self::from_descriptor(device, queue, &descriptor)?;
         sun.fitter.set_technique(technique);
         Ok(sun)
     }
 
-    /// The shadows of a sun with maps of any size and format: for maps that are fitted by other code
-    /// ([`Self::prepare`]), or for a bind group that begins at another binding. [`Self::fitter`] has
-    /// [`Technique::default`] until it gets another.
+    /// The shadows of a sun with maps of any size and format, for maps that are fitted by other code
+    /// ([`Self::prepare`]). [`Self::fitter`] has [`Technique::default`] until it gets another.
     ///
     /// # Errors
     ///
@@ -141,13 +157,15 @@ impl SunShadows {
     }
 
     /// Goes on with another technique, and returns whether the maps were recreated: the engine must then recreate its
-    /// pipelines and its WGSL too. On an error everything stays as it is.
+    /// pipelines and its WGSL too, and bind groups of its own. On an error everything stays as it is.
     ///
     /// # Errors
     ///
     /// As [`Self::new`].
     pub fn set_technique(&mut self, technique: &Technique) -> Result<bool, SunShadowsError> {
-        let is_new = self.set_descriptor(&ShadowMapDescriptor::from(technique))?;
+        let first_binding = self.map().descriptor().first_binding;
+        let descriptor = ShadowMapDescriptor { first_binding, ..ShadowMapDescriptor::from(technique) };
+        let is_new = self.set_descriptor(&descriptor)?;
         self.fitter.set_technique(technique);
         Ok(is_new)
     }
@@ -208,6 +226,25 @@ impl SunShadows {
         self.fit(&frame.input())?;
         let fitted = *self.fitter.fitted();
         Ok(self.prepare(queue, frame, &fitted)?)
+    }
+
+    /// Says that the sun gives nothing, instead of [`Self::update`]: at night, behind clouds, in a cellar. All factors
+    /// are 0 then, there are no maps, no passes and nothing to fit, and [`Self::record_demand`] records nothing, until the
+    /// next [`Self::update`]. That one begins as after a [cut](Self::cut), and its maps are right. The passes of the
+    /// frame before count as drawn.
+    ///
+    /// It is never guessed from the sun's direction: worlds without a ground are lit from below.
+    pub fn turn_off(&mut self, queue: &wgpu::Queue) {
+        self.last = None;
+        if !self.is_off() {
+            self.cut();
+            self.maps.turn_off(queue);
+        }
+    }
+
+    /// Whether the sun gives nothing: from [`Self::turn_off`] to the next [`Self::update`].
+    pub fn is_off(&self) -> bool {
+        self.maps.is_off()
     }
 
     /// Fits the maps to an input and to the counts that have arrived of earlier pictures: the first half of
@@ -317,7 +354,8 @@ impl SunShadows {
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] as [`prove`]; [`SunShadowsError::NoFrame`] before the first frame.
+    /// [`SunShadowsError::Fit`] as [`prove`]; [`SunShadowsError::NoFrame`] before the first frame, and while the sun
+    /// is [off](Self::turn_off).
     pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
         let input = frame.input();
         let mut storage = vec![DVec2::ZERO; Scratch::required(frame.boxes(), frame.views.len())];

@@ -97,12 +97,12 @@ pub struct ReceiverUniform {
     pub greatest_disc: f32,
     /// Pixels by which the pattern that turns discs is moved in this frame.
     pub frame_shift: f32,
+    /// 1 for a light that gives nothing: all factors are 0.
+    pub is_off: u32,
     /// Keeps the maps at a multiple of 16 bytes.
     pub padding_0: u32,
     /// As above.
     pub padding_1: u32,
-    /// As above.
-    pub padding_2: u32,
     /// The maps, in the order in which points try them: that of [`shadowfit::selection::MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
 }
@@ -181,6 +181,11 @@ fn depth_per_texel(fit: &LightProjection) -> [Vec3; 2] {
 }
 
 impl ReceiverUniform {
+    /// The uniform for a light that gives nothing.
+    pub fn off() -> Self {
+        Self { is_off: 1, ..Self::default() }
+    }
+
     /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by
     /// the descriptor's choice ([`MapOrder`]), and maps past [`MAX_MAPS`], are left out; without any, everything is lit.
     pub fn new(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {

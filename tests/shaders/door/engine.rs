@@ -23,7 +23,7 @@ pub(super) const BOXES: [Aabb; 3] = [
 ];
 
 /// Pixels along a side of a picture, and metres of the ground.
-const SIDE: u32 = 64;
+pub(super) const SIDE: u32 = 64;
 const GROUND: f32 = 16.0;
 
 const CASTER: &str = "
@@ -34,15 +34,22 @@ const CASTER: &str = "
 }
 ";
 
+/// Factors at a pixel of the ground.
+const FACTORS_WGSL: &str = "
+fn factors(pixel: vec2<f32>) -> vec4<f32> {
+    let place = (pixel / SIDE - 0.5) * GROUND;
+    let position = vec3<f32>(place.x, 0.0, place.y);
+    let normal = vec3<f32>(0.0, 1.0, 0.0);
+    return vec4<f32>(FACTORS);
+}
+";
+
 const GROUND_WGSL: &str = "
 @vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
-    let place = (pixel.xy / SIDE - 0.5) * GROUND;
-    let position = vec3<f32>(place.x, 0.0, place.y);
-    let normal = vec3<f32>(0.0, 1.0, 0.0);
-    return vec4<f32>(FACTORS);
+    return factors(pixel.xy);
 }
 ";
 
@@ -95,7 +102,7 @@ impl Device {
         self.texture(wgpu::TextureFormat::Depth32Float, usage).create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    fn texture(&self, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
+    pub(super) fn texture(&self, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
@@ -108,7 +115,7 @@ impl Device {
         })
     }
 
-    fn module(&self, wgsl: String) -> wgpu::ShaderModule {
+    pub(super) fn module(&self, wgsl: String) -> wgpu::ShaderModule {
         let source = wgpu::ShaderSource::Wgsl(wgsl.into());
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
@@ -121,7 +128,7 @@ impl Device {
         })
     }
 
-    fn layout(&self, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+    pub(super) fn layout(&self, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
         self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: groups,
@@ -159,7 +166,22 @@ fn options(group: u32, prefix: &str) -> WgslOptions<'_> {
     WgslOptions::group(group).with_prefix(prefix).expect("a prefix")
 }
 
-/// Draws the casters of up to three suns, and the ground by their factors.
+/// WGSL of the function `factors`, which looks up to four suns up: each with its bind group and its prefix.
+pub(super) fn factors_wgsl(suns: &[(&SunShadows, u32, &'static str)]) -> String {
+    let look_up = |(sun, group, prefix): &(&SunShadows, u32, &str)| {
+        receiver_wgsl(sun.map().descriptor(), &options(*group, prefix))
+    };
+    let mut factors: Vec<String> =
+        suns.iter().map(|(_, _, prefix)| format!("{prefix}_factor(position, normal)")).collect();
+    factors.resize(4, "1.0".to_owned());
+    let wgsl = FACTORS_WGSL
+        .replace("FACTORS", &factors.join(", "))
+        .replace("SIDE", &format!("{SIDE}.0"))
+        .replace("GROUND", &format!("{GROUND:?}"));
+    suns.iter().map(look_up).collect::<String>() + &wgsl
+}
+
+/// Draws the casters of up to four suns, and the ground by their factors.
 pub(super) struct Painter {
     casters: Vec<wgpu::RenderPipeline>,
     ground: wgpu::RenderPipeline,
@@ -167,6 +189,7 @@ pub(super) struct Painter {
 }
 
 /// Factors of each sun over the ground.
+#[derive(Debug, PartialEq)]
 pub(super) struct Picture(Vec<[u8; 4]>);
 
 impl Picture {
@@ -175,47 +198,54 @@ impl Picture {
         let [x, y] = place.map(|metres| ((metres / GROUND + 0.5) * SIDE as f32) as usize);
         self.0[y * SIDE as usize + x]
     }
+
+    /// The greatest difference from another picture.
+    pub(super) fn difference(&self, other: &Self) -> u8 {
+        let pixels = self.0.iter().flatten().zip(other.0.iter().flatten());
+        pixels.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or_default()
+    }
 }
 
 impl Painter {
-    /// Pipelines for suns with the prefixes of their names, whose texts stand in one module.
+    /// Pipelines for suns with the prefixes of their names, whose texts stand in one module, each at a bind group of
+    /// its own.
     pub(super) fn new(device: &Device, suns: &[(&SunShadows, &'static str)]) -> Self {
-        let caster = |(sun, prefix): &(&SunShadows, &str)| {
+        let at_groups: Vec<_> = (0..).zip(suns).map(|(group, (sun, prefix))| (*sun, group, *prefix)).collect();
+        let groups: Vec<_> = suns.iter().map(|(sun, _)| Some(sun.map().receiver_layout())).collect();
+        Self::with_layout(device, &at_groups, &device.layout(&groups))
+    }
+
+    /// The same for suns at any bind groups.
+    pub(super) fn with_layout(
+        device: &Device,
+        suns: &[(&SunShadows, u32, &'static str)],
+        layout: &wgpu::PipelineLayout,
+    ) -> Self {
+        let caster = |(sun, _, prefix): &(&SunShadows, u32, &str)| {
             caster_wgsl(sun.map().descriptor(), &options(0, prefix)) + &CASTER.replace("PREFIX", prefix)
         };
         let module = device.module(suns.iter().map(caster).collect());
-        let casters = suns.iter().map(|(sun, prefix)| caster_pipeline(device, &module, sun, prefix)).collect();
-        let receivers = (0..).zip(suns);
-        let receivers =
-            receivers.map(|(group, (sun, prefix))| receiver_wgsl(sun.map().descriptor(), &options(group, prefix)));
-        let mut factors: Vec<String> =
-            suns.iter().map(|(_, prefix)| format!("{prefix}_factor(position, normal)")).collect();
-        factors.resize(4, "1.0".to_owned());
-        let ground = GROUND_WGSL
-            .replace("FACTORS", &factors.join(", "))
-            .replace("SIDE", &format!("{SIDE}.0"))
-            .replace("GROUND", &format!("{GROUND:?}"));
-        let module = device.module(receivers.collect::<String>() + &ground);
-        let groups: Vec<_> = suns.iter().map(|(sun, _)| Some(sun.map().receiver_layout())).collect();
-        let ground = ground_pipeline(device, &module, &device.layout(&groups));
+        let casters = suns.iter().map(|(sun, _, prefix)| caster_pipeline(device, &module, sun, prefix)).collect();
+        let module = device.module(factors_wgsl(suns) + GROUND_WGSL);
+        let ground = ground_pipeline(device, &module, layout);
         Self { casters, ground, cube: device.vertices(&cube()) }
     }
 
     /// Draws a frame of suns, each with the boxes that were given to it.
     pub(super) fn draw(&self, device: &Device, suns: &[(&SunShadows, &[Aabb])]) -> Picture {
+        let groups: Vec<_> = suns.iter().map(|(sun, _)| sun.receiver_group()).collect();
+        self.draw_with(device, suns, &groups)
+    }
+
+    /// The same with these bind groups for the ground.
+    pub(super) fn draw_with(
+        &self,
+        device: &Device,
+        suns: &[(&SunShadows, &[Aabb])],
+        groups: &[&wgpu::BindGroup],
+    ) -> Picture {
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        for ((sun, boxes), pipeline) in suns.iter().zip(&self.casters) {
-            let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
-            let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
-            sun.render(&mut encoder, 0, |pass, piece| {
-                pass.set_pipeline(pipeline);
-                pass.set_vertex_buffer(0, self.cube.slice(..));
-                pass.set_vertex_buffer(1, instances.slice(..));
-                for number in piece.casters {
-                    pass.draw(0..36, *number..number + 1);
-                }
-            });
-        }
+        self.draw_casters(device, &mut encoder, suns);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let picture = device.texture(wgpu::TextureFormat::Rgba8Unorm, usage);
         let view = picture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -229,17 +259,38 @@ impl Painter {
             ..Default::default()
         });
         pass.set_pipeline(&self.ground);
-        for (group, (sun, _)) in (0..).zip(suns) {
-            pass.set_bind_group(group, sun.receiver_group(), &[]);
+        for (group, bound) in (0..).zip(groups) {
+            pass.set_bind_group(group, *bound, &[]);
         }
         pass.draw(0..3, 0..1);
         drop(pass);
         read(device, encoder, &picture)
     }
+
+    /// Draws the casters of suns into their maps.
+    pub(super) fn draw_casters(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        suns: &[(&SunShadows, &[Aabb])],
+    ) {
+        for ((sun, boxes), pipeline) in suns.iter().zip(&self.casters) {
+            let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
+            let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
+            sun.render(encoder, 0, |pass, piece| {
+                pass.set_pipeline(pipeline);
+                pass.set_vertex_buffer(0, self.cube.slice(..));
+                pass.set_vertex_buffer(1, instances.slice(..));
+                for number in piece.casters {
+                    pass.draw(0..36, *number..number + 1);
+                }
+            });
+        }
+    }
 }
 
 /// Submits what was recorded, and waits for the picture.
-fn read(device: &Device, mut encoder: wgpu::CommandEncoder, picture: &wgpu::Texture) -> Picture {
+pub(super) fn read(device: &Device, mut encoder: wgpu::CommandEncoder, picture: &wgpu::Texture) -> Picture {
     let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(SIDE * SIDE * 4),

@@ -96,13 +96,13 @@ impl CachedMaps {
 
     /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
     /// whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be drawn
-    /// after this.
+    /// after this. A light that is off gives nothing from anywhere.
     ///
     /// # Errors
     ///
     /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
     pub(crate) fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
-        self.map.prepare(queue, view, &self.maps)
+        if self.is_off { Ok(()) } else { self.map.prepare(queue, view, &self.maps) }
     }
 }
 

@@ -17,6 +17,9 @@ fn shadowfit_faded(position: vec3<f32>) -> f32 {
 
 // Share of the light that reaches a point through the maps, with the look-ups over discs turned by an angle in radians.
 fn shadowfit_turned(position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
+    if shadowfit_receiver.is_off == 1u {
+        return 0.0;
+    }
     let faded = shadowfit_faded(position);
     let choice = shadowfit_choose(position);
     if choice.first < 0 || faded >= 1.0 {
@@ -29,7 +32,7 @@ fn shadowfit_turned(position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
     return mix(factor, 1.0, faded);
 }
 
-// Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
+// Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map; 0 everywhere if the light is off.
 fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     return shadowfit_turned(position, normal, 0.0);
 }

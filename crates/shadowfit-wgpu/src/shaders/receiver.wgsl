@@ -1,4 +1,4 @@
-// The engine's fragment shader calls shadowfit_factor_at for every visible point.
+// The engine's shader calls shadowfit_factor_at for every visible point.
 
 struct shadowfit_Map {
     uv_from_world: mat4x4<f32>,
@@ -41,9 +41,10 @@ struct shadowfit_Receiver {
     greatest_disc: f32,
     // Pixels by which the pattern that turns discs is moved in this frame.
     frame_shift: f32,
+    // 1 for a light that gives nothing.
+    is_off: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
     // In the order in which points try them.
     maps: array<shadowfit_Map, MAX_MAPS>,
 }
