@@ -162,9 +162,9 @@ fn what_the_look_up_reads_has_the_size_and_offsets_of_its_wgsl_structs() {
                 least_disc,
                 greatest_disc,
                 frame_shift,
+                is_off,
                 padding_0,
                 padding_1,
-                padding_2,
                 maps,
             }
         ),
