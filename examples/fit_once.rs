@@ -12,7 +12,7 @@ fn main() -> Result<(), FitError> {
     let ground = Aabb::new(Vec3::new(-80.0, -0.1, -80.0), Vec3::new(80.0, 0.0, 80.0));
     let house = Aabb::new(Vec3::new(-4.0, 0.0, -12.0), Vec3::new(4.0, 6.0, -6.0));
     let objects = [ground, house];
-    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let boxes = Boxes::world(&objects);
     let sun = Vec3::new(0.3, -0.8, 0.2); // the way its light travels
     let technique = Technique::default(); // 4 maps of 2048 × 2048 texels
     let mut fitter = ShadowFitter::new(&technique); // remembers the last frame's maps, to keep them still
@@ -25,9 +25,8 @@ fn main() -> Result<(), FitError> {
         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
         let maps = fitter.fit(&input)?;
         for (map, casters) in maps.iter().zip(maps.caster_volumes(&views, &technique)?) {
-            let casters = casters.relative_to(boxes.origin);
-            let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
-            println!("draw {drawn} of {} objects with {}", objects.len(), map.projection.clip_from_world);
+            let drawn: Vec<usize> = casters.casters_in(&boxes).collect();
+            println!("draw objects {drawn:?} with {}", map.projection.clip_from_world);
             println!("look the map up with {}, biased by {}", map.projection.uv_from_world, map.bias.constant_depth);
         }
     }

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, MapSelection};
-use shadowfit::{Bias, FittedMap, LightProjection, Technique};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, Technique};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
@@ -195,7 +195,7 @@ fn descriptor(
     let first = maps.iter().zip(&scenarios.frames).find_map(|(maps, frame)| Some((maps.first()?, frame)));
     let depth = match first {
         Some((map, frame)) => light_fit(map, &view(frame, true))?.depth,
-        None => shadowfit::DepthConvention::ZeroToOne,
+        None => DepthConvention::ZeroToOne,
     };
     Ok(ShadowMapDescriptor {
         resolution,
@@ -239,7 +239,11 @@ fn light_fit(map: &FitMap, view: &View) -> Result<LightProjection> {
     let size = map.size();
     let resolution = UVec2::new(size.x as u32, size.y as u32);
     ensure!(size.max_element() <= 8192.0, "a map of {} by {} texels is too large to be drawn", size.x, size.y);
-    Ok(LightProjection::from_clip_from_world(&map.clip_from_world(), view.direction, resolution, view.camera.eye)?)
+    let matrix = map.clip_from_world();
+    // Files say nothing of the depth convention: where depth falls along the light it is reversed.
+    let is_reversed = matrix.row(2).truncate().dot(view.direction.as_dvec3()) < 0.0;
+    let depth = if is_reversed { DepthConvention::Reversed } else { DepthConvention::ZeroToOne };
+    Ok(LightProjection::from_clip_from_world(&matrix, depth, view.direction, resolution, view.camera.eye)?)
 }
 
 fn write(file: &Path, text: &str) -> Result<()> {

@@ -320,6 +320,12 @@ fn what_cannot_be_counted_is_an_error_that_says_why() {
     assert!(matches!(refused(good, &multisampled), DemandPassError::Texture { samples: 4, expected_samples: 1, .. }));
     let depth = DepthConvention::NegativeOneToOne;
     assert_eq!(refused(DemandView { depth, ..good }, &texture), DemandPassError::Depth(depth));
+    for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+        let other = DemandView { clip_from_world: camera().clip_from_world(depth), ..good };
+        let told =
+            if depth == DepthConvention::Reversed { DepthConvention::ZeroToOne } else { DepthConvention::Reversed };
+        assert_eq!(refused(DemandView { depth: told, ..other }, &texture), DemandPassError::OtherDepth(told));
+    }
     for clip_from_world in [Mat4::ZERO, Mat4::NAN] {
         assert_eq!(refused(DemandView { clip_from_world, ..good }, &texture), DemandPassError::SingularMatrix);
     }

@@ -37,7 +37,7 @@ const READ: &str = "
     return vec4<f32>(at * 2.0 - 1.0, 0.5, 1.0);
 }
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
-    let bits = bitcast<u32>(shadowfit_stored(0u, vec2<i32>(pixel.xy)));
+    let bits = bitcast<u32>(shadowfit_stored(0, vec2<i32>(pixel.xy)));
     return vec4<f32>(f32(bits & 0xffffu), f32(bits >> 16u), 0.0, 0.0);
 }
 ";

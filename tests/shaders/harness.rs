@@ -98,7 +98,7 @@ const LOOK_UP: &str = "
     let found = shadowfit_project(shadowfit_receiver.maps[MAP], in.position, in.normal);
     let projected = vec3<f32>(found.texel / shadowfit_receiver.maps[MAP].size, found.depth);
     let gradient = found.gradient;
-    let stored = shadowfit_stored(MAP, vec2<i32>(in.clip.xy));
+    let stored = shadowfit_stored(i32(MAP), vec2<i32>(in.clip.xy));
     return Answer(vec4<f32>(projected, shadowfit_factor(in.position, in.normal)), vec4<f32>(stored, gradient, 0.0));
 }
 ";

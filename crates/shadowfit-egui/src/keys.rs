@@ -71,7 +71,7 @@ pub const KEYS: &[KeyGroup] = &[
             key("4", "pixels per texel", Command::View(ViewMode::PixelsPerTexel)),
             key("5", "maps", Command::View(ViewMode::Maps)),
             key("6", "texel grid", Command::View(ViewMode::TexelGrid)),
-            key("7", "need", Command::View(ViewMode::Demand)),
+            key("7", "demand", Command::View(ViewMode::Demand)),
             key("8", "map updates", Command::View(ViewMode::Updates)),
             key("9", "outside", Command::View(ViewMode::Outside)),
         ],

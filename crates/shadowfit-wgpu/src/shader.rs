@@ -132,7 +132,7 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
 }
 
 /// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
-/// map, by its index, holds at a texel (`vec2<i32>`). Depth formats need a device whose shaders can read depth textures as
+/// map, by its index (`i32`, as `shadowfit_map_index` gives it), holds at a texel (`vec2<i32>`). Depth formats need a device whose shaders can read depth textures as
 /// numbers, which OpenGL's cannot.
 pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);

@@ -184,7 +184,7 @@ impl Engine {
                 texels: target
                     .passes()
                     .filter(|pass| pass.content() != PassContent::Moving)
-                    .map(|pass| pass.texels())
+                    .flat_map(|pass| pass.pieces().map(|piece| u64::from(piece.scissor[2] * piece.scissor[3])))
                     .sum(),
             }
         })

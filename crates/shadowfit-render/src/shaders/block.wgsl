@@ -16,5 +16,5 @@ struct Block {
 @fragment
 fn fs_block(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
     let texel = clamp(block.first + vec2<i32>(at.xy), vec2<i32>(0), block.last);
-    return shadowfit_stored(block.map, texel);
+    return shadowfit_stored(i32(block.map), texel);
 }

@@ -31,7 +31,7 @@ fn fs_inset(in: InsetOut) -> @location(0) vec4<f32> {
     let at = in.pixel.xy - in.rectangle.xy;
     let border = min(min(at.x, at.y), min(in.rectangle.z - at.x, in.rectangle.w - at.y));
     let size = vec2<f32>(textureDimensions(shadowfit_texture));
-    let depth = shadowfit_stored(in.map, vec2<i32>(at / in.rectangle.zw * size));
+    let depth = shadowfit_stored(i32(in.map), vec2<i32>(at / in.rectangle.zw * size));
     let gray = (depth - in.depth_range.x) / (in.depth_range.y - in.depth_range.x);
     // Squared, since the target encodes: equal depth steps are then nearly equal steps to the eye.
     let shade = saturate(gray) * saturate(gray);

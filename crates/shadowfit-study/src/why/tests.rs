@@ -52,7 +52,13 @@ fn map(centre: DVec3, direction: Vec3, width: f64, before: f64, texels: u32) -> 
     let (travel, half) = (direction.as_dvec3(), width * 0.5);
     let light_from_world = look_to_mat4(centre - travel * before, travel, DVec3::NEG_Z);
     let clip_from_world = orthographic(-half, half, -half, half, 0.0, RANGE) * light_from_world;
-    let fit = LightProjection::from_clip_from_world(&clip_from_world, direction, glam::UVec2::splat(texels), centre);
+    let fit = LightProjection::from_clip_from_world(
+        &clip_from_world,
+        DepthConvention::ZeroToOne,
+        direction,
+        glam::UVec2::splat(texels),
+        centre,
+    );
     FittedMap::new(fit.expect("an orthographic map"), constant(1e-4))
 }
 
@@ -457,6 +463,7 @@ fn numbers_are_those_of_the_look_up_in_plain_and_in_reversed_depth() {
         let clip = flip * map.projection.clip_from_world.as_dmat4();
         map.projection = LightProjection::from_clip_from_world(
             &clip,
+            DepthConvention::Reversed,
             map.projection.direction,
             map.projection.resolution,
             DVec3::ZERO,

@@ -46,12 +46,6 @@ impl<'a> ShadowPass<'a> {
         let (plan, pass) = (self.plan, self.pass);
         plan.pieces[pass.pieces.clone()].iter().map(move |piece| shadow_piece(plan, pass, piece))
     }
-
-    /// Number of texels within the scissor rectangles.
-    pub fn texels(&self) -> u64 {
-        let pieces = self.pieces();
-        pieces.map(|piece| u64::from(piece.scissor[2]) * u64::from(piece.scissor[3])).sum()
-    }
 }
 
 fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, piece: &PiecePlan) -> ShadowPiece<'a> {

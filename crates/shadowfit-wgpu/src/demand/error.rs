@@ -14,6 +14,8 @@ pub enum DemandPassError {
     Fit(FitError),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
+    /// The matrix has another depth convention than this one, which it was said to have.
+    OtherDepth(DepthConvention),
     /// The matrix has no inverse, or one that is not finite.
     SingularMatrix,
     /// The depth texture is of another format, sample count or usage than the pass reads.
@@ -63,6 +65,11 @@ impl fmt::Display for DemandPassError {
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }
+            Self::OtherDepth(depth) => write!(
+                f,
+                "clip_from_world has another depth convention than {depth:?}: give the one that the depth buffer was \
+                 drawn with"
+            ),
             Self::SingularMatrix => {
                 write!(f, "clip_from_world has no finite inverse: give the matrix that the depth buffer was drawn with")
             }

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use shadowfit::demand::PIXELS;
 use shadowfit::demand::{DEPTHS, SeenSpace};
-use shadowfit::glam::{DMat4, DVec4, Mat4, Vec3};
+use shadowfit::glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
@@ -98,6 +98,7 @@ impl DemandView {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(DemandPassError::Depth(self.depth));
         }
+        self.check_depth()?;
         let SeenSpace { demand: space, near, far } = *space;
         let [left, top, width, height] = self.rectangle;
         // The histogram has no bins for depths that are not positive, as orthographic views may have them.
@@ -122,6 +123,20 @@ impl DemandView {
             bins_per_octave: bins_per_octave as f32,
             pixel_width: self.pixel_width(),
         })
+    }
+
+    /// Refuses a matrix in which depth runs the other way than the convention says.
+    fn check_depth(&self) -> Result<(), DemandPassError> {
+        let clip_from_world = self.clip_from_world.as_dmat4();
+        let depth_of = |corners: &[Vec3]| {
+            let middle = corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() * 0.25;
+            let clip = clip_from_world * middle.extend(1.0);
+            clip.z / clip.w
+        };
+        let (near, far) = (depth_of(&self.frustum.corners[..4]), depth_of(&self.frustum.corners[4..]));
+        // What is not a number is refused as a singular matrix.
+        let is_other = if self.depth == DepthConvention::Reversed { near < far } else { near > far };
+        if is_other { Err(DemandPassError::OtherDepth(self.depth)) } else { Ok(()) }
     }
 
     /// From a pixel's column and row, and its depth minus the far plane's, to positions relative to the eye. Most of the

@@ -55,6 +55,8 @@ pub enum FitError {
         /// The w that the matrix gives there.
         w: f64,
     },
+    /// The far plane is infinite and the maximum shadow distance is `f32::MAX`: shadows would have no end.
+    Endless,
     /// A perspective matrix has its near and far planes at the opposite ends of the depth range from
     /// those of the stated convention.
     OtherDepth {
@@ -139,6 +141,9 @@ impl fmt::Display for FitError {
                 "world_from_clip gives w = {} at clip corner {corner}; pass the inverse of \
                  clip_from_world, with the depth convention that it was made for",
                 Number(w)
+            ),
+            Self::Endless => f.write_str(
+                "the far plane is infinite, so shadows have no end: name a maximum shadow distance, in metres",
             ),
             Self::OtherDepth { named, is_reversed } => write_depth(f, named, is_reversed),
             Self::EmptyFrustum { size } => write!(

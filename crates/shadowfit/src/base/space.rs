@@ -72,6 +72,13 @@ pub struct Boxes<'a> {
     pub boxes: &'a [Aabb],
 }
 
+impl<'a> Boxes<'a> {
+    /// Boxes in plain world space, in metres.
+    pub const fn world(boxes: &'a [Aabb]) -> Self {
+        Self { origin: DVec3::ZERO, boxes }
+    }
+}
+
 /// Corners of a box: the four with the least z around, then the four with the greatest.
 pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     let (a, b) = (min, max);

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
-use crate::base::Aabb;
+use crate::base::{Aabb, Boxes};
 use crate::fits::LightProjection;
 use crate::keep::texels::TexelRect;
 use crate::technique::settings::CasterPolicy;
@@ -134,6 +134,13 @@ impl CasterVolume {
             }
         }
         volume
+    }
+
+    /// The boxes that may touch the volume, by their indices.
+    pub fn casters_in<'a>(&self, boxes: &Boxes<'a>) -> impl Iterator<Item = usize> + use<'a> {
+        let volume = self.relative_to(boxes.origin);
+        let touches = move |(index, aabb): (usize, &Aabb)| volume.intersects(aabb).then_some(index);
+        boxes.boxes.iter().enumerate().filter_map(touches)
     }
 
     /// Whether an axis-aligned box may touch the volume. `min` and `max` are its corners in world

@@ -274,20 +274,21 @@ fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
 const SKEW: f64 = 1e-4;
 
 impl LightProjection {
-    /// The fit that equals a light's orthographic view-projection: clip space (x right, y up, depth 0..1, plain or
-    /// reversed) from world space in metres. `direction` is the light's direction of travel in world axes, of any
+    /// The fit that equals a light's orthographic view-projection: clip space (x right, y up, with this depth
+    /// convention) from world space in metres. `direction` is the light's direction of travel in world axes, of any
     /// length; `origin` is the world position, in metres, that the fit's own matrices are relative to; choose one near
     /// what is seen.
     ///
-    /// Whether depth is reversed is read from the matrix. A mirrored matrix gives a mirrored light
-    /// space.
+    /// A mirrored matrix gives a mirrored light space.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotOrthographic`] for a perspective, a sheared box, or one along another direction, and what a fit
+    /// [`FitError::NotOrthographic`] for a perspective, a sheared box, or one along another direction, such as a matrix
+    /// of reversed depth that is not said to be, and what a fit
     /// returns for inputs that are not finite or out of range.
     pub fn from_clip_from_world(
         clip_from_world: &DMat4,
+        depth: DepthConvention,
         direction: Vec3,
         resolution: UVec2,
         origin: DVec3,
@@ -299,11 +300,13 @@ impl LightProjection {
         for value in clip_from_world.to_cols_array().into_iter().chain(origin.to_array()) {
             checks::finite("an element of the matrix or the origin", value)?;
         }
-        let rows = Rows::of(clip_from_world, origin)?;
+        let rows = Rows::of(clip_from_world, depth, origin)?;
         let axes = rows.axes.map(|row| row / checks::length(row));
         let along = axes[2].dot(direction);
         check_axes(axes, along)?;
-        let depth = if along > 0.0 { DepthConvention::ZeroToOne } else { DepthConvention::Reversed };
+        if (along > 0.0) == (depth == DepthConvention::Reversed) {
+            return Err(FitError::NotOrthographic { why: "its depth runs against the light in this convention" });
+        }
         // Light space looks along -z, whichever way the depth runs.
         Self::from_volume(origin, &rows.volume(axes, along.signum()), resolution, depth)
     }
@@ -316,7 +319,8 @@ struct Rows {
 }
 
 impl Rows {
-    fn of(matrix: &DMat4, origin: DVec3) -> Result<Self, FitError> {
+    /// The rows of a matrix, with depth 0..1.
+    fn of(matrix: &DMat4, depth: DepthConvention, origin: DVec3) -> Result<Self, FitError> {
         let row = |index: usize| {
             let column = |column: usize| matrix.to_cols_array()[column * 4 + index];
             (DVec3::new(column(0), column(1), column(2)), column(3))
@@ -326,8 +330,9 @@ impl Rows {
             return Err(FitError::NotOrthographic { why: "it is a perspective" });
         }
         let offset = |row: DVec3, at_zero: f64| (row.dot(origin) + at_zero) / w0;
-        let rows =
-            Self { axes: [x / w0, y / w0, z / w0], offsets: DVec3::new(offset(x, x0), offset(y, y0), offset(z, z0)) };
+        let (scale, shift) = if depth == DepthConvention::NegativeOneToOne { (0.5, 0.5) } else { (1.0, 0.0) };
+        let offsets = DVec3::new(offset(x, x0), offset(y, y0), offset(z, z0) * scale + shift);
+        let rows = Self { axes: [x / w0, y / w0, z / w0 * scale], offsets };
         if rows.axes.iter().any(|row| checks::length(*row) == 0.0) {
             return Err(FitError::NotOrthographic { why: "it is flat" });
         }

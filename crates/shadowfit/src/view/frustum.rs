@@ -243,6 +243,7 @@ impl Unprojection {
             }
             let far = match edge.far {
                 Some(far) if far.dot(forward) <= limit => far,
+                None if max_distance == f32::MAX => return Err(FitError::Endless),
                 _ => edge.near + edge.toward * ((limit - near) / edge.toward.dot(forward)),
             };
             corners[i] = edge.near.as_vec3();

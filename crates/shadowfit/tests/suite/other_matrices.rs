@@ -4,6 +4,8 @@ use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings};
 use shadowfit::{DepthConvention, FitError, LightProjection, PerspectiveCamera, fit};
 
+const REVERSED: DepthConvention = DepthConvention::Reversed;
+const DEPTHS: [DepthConvention; 3] = [DepthConvention::ZeroToOne, REVERSED, DepthConvention::NegativeOneToOne];
 const DIRECTION: Vec3 = Vec3::new(0.4, -0.8, 0.3);
 
 fn known(kind: FitKind, depth: DepthConvention) -> LightProjection {
@@ -28,11 +30,21 @@ fn world_matrix(fit: &LightProjection) -> DMat4 {
 #[test]
 fn the_matrix_of_a_fit_gives_the_fit_back() {
     for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere] {
-        for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+        for depth in DEPTHS {
             let known = known(kind, depth);
-            let again =
-                LightProjection::from_clip_from_world(&world_matrix(&known), DIRECTION, known.resolution, known.origin)
-                    .unwrap();
+            let again = LightProjection::from_clip_from_world(
+                &world_matrix(&known),
+                depth,
+                DIRECTION,
+                known.resolution,
+                known.origin,
+            )
+            .unwrap();
+            for other in DEPTHS.into_iter().filter(|other| (*other == REVERSED) != (depth == REVERSED)) {
+                let matrix = world_matrix(&known);
+                LightProjection::from_clip_from_world(&matrix, other, DIRECTION, UVec2::ONE, known.origin)
+                    .expect_err("its depth runs the other way");
+            }
             assert_eq!((again.depth, again.resolution, again.origin), (depth, known.resolution, known.origin));
             // Rows are normalised once more: a few roundings of the extent, of some 100 m.
             assert!(again.clip_from_world.abs_diff_eq(known.clip_from_world, 4e-6), "{again:?}\n{known:?}");
@@ -51,6 +63,7 @@ fn what_is_no_orthographic_view_projection_of_the_light_is_refused() {
     let good = world_matrix(&known);
     let why = |matrix: DMat4, direction: Vec3| match LightProjection::from_clip_from_world(
         &matrix,
+        DepthConvention::ZeroToOne,
         direction,
         UVec2::splat(64),
         known.origin,
@@ -68,6 +81,8 @@ fn what_is_no_orthographic_view_projection_of_the_light_is_refused() {
     let mut broken = good;
     broken.w_axis.x = f64::NAN;
     assert!(why(broken, DIRECTION).contains("NotFinite"));
-    assert!(LightProjection::from_clip_from_world(&good, Vec3::ZERO, UVec2::ONE, DVec3::ZERO).is_err());
-    assert!(LightProjection::from_clip_from_world(&good, DIRECTION, UVec2::ZERO, DVec3::ZERO).is_err());
+    let made = |direction, resolution| {
+        LightProjection::from_clip_from_world(&good, DepthConvention::ZeroToOne, direction, resolution, DVec3::ZERO)
+    };
+    assert!(made(Vec3::ZERO, UVec2::ONE).is_err() && made(DIRECTION, UVec2::ZERO).is_err());
 }

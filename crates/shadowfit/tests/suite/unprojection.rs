@@ -140,6 +140,9 @@ fn an_infinite_far_plane_is_brought_to_the_maximum_distance() {
         for (a, e) in frustum.corners.into_iter().zip(expected.corners) {
             assert!((a - e).length() <= 1e-6 * e.length(), "{depth:?}: {a} for {e}");
         }
+        let endless = ViewFrustum::from_eye_from_clip(&matrix, camera().eye, depth, f32::MAX);
+        assert_eq!(endless, Err(FitError::Endless));
+        assert!(FitError::Endless.to_string().contains("name a maximum shadow distance"));
     }
 }
 
