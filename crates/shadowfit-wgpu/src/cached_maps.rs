@@ -22,7 +22,7 @@ pub(crate) struct CachedMaps {
     /// Which maps may wait for another frame.
     pub(crate) schedule: UpdateSchedule,
     /// Whether static casters are kept; without that every map is redrawn in every frame. Pictures are the same either
-    /// way.
+    /// way, up to rounding.
     pub(crate) keeps: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,

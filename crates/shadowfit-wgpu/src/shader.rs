@@ -102,8 +102,8 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 /// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth and that shadows fade by: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
-/// `normal` is the unit geometric normal on the side that is seen. Which map a point reads is
-/// [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
+/// `normal` is the unit geometric normal on the side that is seen, for which 10 bits an axis are enough. Which map a
+/// point reads is [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
 /// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
