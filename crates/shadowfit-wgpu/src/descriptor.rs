@@ -20,8 +20,9 @@ pub struct ShadowMapDescriptor {
     pub filter: FilterKind,
     /// Width of the filters that are soft.
     pub softness: Softness,
-    /// View depth from which on shadows fade, and the one where they have vanished, in metres; both `f32::MAX` for
-    /// shadows that end with their maps. Points beyond are lit.
+    /// View depth from which on shadows fade, and the one where they have vanished, in metres: of a technique the last
+    /// share [`Technique::fade`] of its shadow distance. Between them shadows are mixed with light by s² (3 - 2 s), s
+    /// being the share of the way; points beyond are lit. Both are `f32::MAX` for shadows that end with their maps.
     pub fade: [f32; 2],
     /// Which of the maps a point reads. By view depth
     /// [`FittedMap::covered_near`](shadowfit::FittedMap::covered_near) says where maps are blended.
@@ -66,7 +67,7 @@ impl From<&Technique> for ShadowMapDescriptor {
 /// View depths between which the shadows of a technique fade.
 fn fade(technique: &Technique) -> [f32; 2] {
     let (end, share) = (technique.fit.max_distance, technique.fade);
-    if share > 0.0 && end < f32::MAX { [end * (1.0 - share.min(1.0)), end] } else { [f32::MAX; 2] }
+    if end < f32::MAX { [end * (1.0 - share.clamp(0.0, 1.0)), end] } else { [f32::MAX; 2] }
 }
 
 impl ShadowMapDescriptor {
@@ -158,7 +159,7 @@ mod tests {
         let mut technique = Technique::default().with_fade(0.25);
         technique.fit.max_distance = 80.0;
         assert_eq!(ShadowMapDescriptor::from(&technique).fade, [60.0, 80.0]);
-        assert_eq!(ShadowMapDescriptor::from(&technique.with_fade(0.0)).fade, [f32::MAX; 2]);
+        assert_eq!(ShadowMapDescriptor::from(&technique.with_fade(0.0)).fade, [80.0; 2], "an end, if without a fade");
         technique.fit.max_distance = f32::MAX;
         assert_eq!(ShadowMapDescriptor::from(&technique).fade, [f32::MAX; 2]);
     }

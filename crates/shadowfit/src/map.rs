@@ -81,7 +81,7 @@ impl FittedMaps {
 impl FittedMaps {
     /// Which maps a point reads, as the shaders of `shadowfit-wgpu` do; `None` where it is lit because
     /// no map holds it. `point` is a world position, `view_depth` its distance from the eye along the
-    /// view's forward direction, both in metres; the latter counts only by view depth. A point that is
+    /// view's forward direction, both in metres: beyond the shadow distance nothing is read, nearer it counts only by view depth. A point that is
     /// not finite is held by no map.
     ///
     /// ```
@@ -102,10 +102,14 @@ impl FittedMaps {
     /// let maps = FitState::new().fit(&FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)), &technique, workspace)?;
     /// let read = maps.read(&technique, DVec3::new(0.0, 1.0, -20.0), 25.0).expect("it is in view");
     /// println!("map {}, blended into {:?}", read.map, read.blend);
-    /// # assert!(maps[read.main()].fit.covers(DVec3::new(0.0, 1.0, -20.0)));
+    /// # assert!(maps[read.main()].projection.covers(DVec3::new(0.0, 1.0, -20.0)));
     /// # Ok::<(), FitError>(())
     /// ```
     pub fn read(&self, technique: &Technique, point: DVec3, view_depth: f64) -> Option<MapRead> {
+        // Shadows end there, however far maps reach.
+        if view_depth > f64::from(technique.fit.max_distance) {
+            return None;
+        }
         match technique.maps.selection() {
             choice @ MapSelection::Coverage { blend } => {
                 let order = MapOrder::new(choice, self.iter().map(|map| &map.projection));

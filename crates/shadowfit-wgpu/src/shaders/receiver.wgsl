@@ -33,7 +33,7 @@ struct shadowfit_Receiver {
     map_count: u32,
     // View depth is dot(xyz, position) + w.
     view: vec4<f32>,
-    // View depth from which on shadows fade, in metres, and over how many they do.
+    // View depth from which on shadows fade, in metres, and over how many they do; they end there where that is 0.
     fade_near: f32,
     fade_width: f32,
     // Radii that discs have at least and at most, in texels.
