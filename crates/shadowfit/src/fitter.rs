@@ -12,7 +12,7 @@ use crate::fits::{
 };
 use crate::light::Light;
 use crate::light::grid::GridAnchor;
-use crate::map::{FittedMap, FittedMaps};
+use crate::map::{FittedMap, FittedMaps, PlacedBy};
 use crate::slices::{self, HeldSlices};
 use crate::technique::settings::{BiasSettings, CasterPolicy, FilterKind, FitSettings};
 use crate::technique::{Maps, Slices, Technique, Windows};
@@ -106,6 +106,7 @@ impl FitState {
         for (map, placed) in maps.take(technique.maps.count() as usize).iter_mut().zip(placed.iter().flatten()) {
             write(map, placed, &frame)?;
         }
+        maps.placed_by = placed_by(&held, input, technique);
         // 5. What the next frame begins with.
         let (direction, view) = (light.direction(), input.views[0]);
         self.last = Some(LastFrame { technique: *technique, direction, view, held });
@@ -128,6 +129,15 @@ fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(
         }
         Maps::One(one) => SLICES(frame, &one.slice(), slices, points).map(|(maps, held)| (maps, Held::Slices(held))),
     }
+}
+
+/// What the maps of a frame were placed by.
+fn placed_by(held: &Held, input: &FitInput, technique: &Technique) -> PlacedBy {
+    let is_told = match held {
+        Held::Windows(windows) => !windows.is_guess(),
+        Held::Slices(_) => technique.maps.uses_seen() && input.histogram.is_some_and(|counted| !counted.is_empty()),
+    };
+    if is_told { PlacedBy::LastFrame } else { PlacedBy::Boxes }
 }
 
 /// Writes a map in place, since it is large.

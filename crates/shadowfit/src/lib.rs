@@ -195,10 +195,14 @@ pub mod demand {
     pub(crate) mod grid;
     pub(crate) mod histogram;
     #[cfg(feature = "alloc")]
+    mod rows;
+    #[cfg(feature = "alloc")]
     mod seen;
 
     pub use grid::{CELLS, DemandGrid, DemandSpace, LEVELS, MIN_FACING, PIXELS, SIDE};
     pub use histogram::{DepthBounds, DepthHistogram, needed_texel};
+    #[cfg(feature = "alloc")]
+    pub use rows::DepthRows;
     #[cfg(feature = "alloc")]
     pub use seen::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
 }
@@ -246,7 +250,7 @@ pub use fits::{Constraint, FitInput, LightProjection, Scratch, fit, fit_scene};
 pub use fitter::{FitState, fewest_maps};
 pub use glam;
 pub use keep::{light_steps, scroll};
-pub use map::{FittedMap, FittedMaps};
+pub use map::{FittedMap, FittedMaps, PlacedBy};
 #[cfg(feature = "alloc")]
 pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};

@@ -68,6 +68,21 @@ impl FittedMap {
 pub struct FittedMaps {
     maps: [FittedMap; MAX_MAPS],
     count: usize,
+    /// What the maps were placed by.
+    pub placed_by: PlacedBy,
+}
+
+/// What told a fit where surfaces are seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum PlacedBy {
+    /// The boxes of the receivers, or the views alone where there are none: nothing else was told, nothing else is
+    /// used by the technique, or what was told belongs to another light or has another size.
+    #[default]
+    Boxes,
+    /// What an earlier frame showed: a [demand grid](crate::FitInput::demand), or a
+    /// [histogram](crate::FitInput::histogram).
+    LastFrame,
 }
 
 impl FittedMaps {

@@ -91,7 +91,7 @@ mod tests {
 
     use super::*;
     use crate::demand::SeenSpace;
-    use crate::{Aabb, Boxes, PerspectiveCamera};
+    use crate::{Aabb, Boxes, PerspectiveCamera, PlacedBy};
 
     #[test]
     fn what_was_seen_places_the_maps_until_the_fitter_forgets_it() {
@@ -121,12 +121,18 @@ mod tests {
             seen.count_cell(space.demand.index(place, Vec3::Y, step, Vec3::Z * 0.01).expect("a cell"));
         }
         fitter.reset();
-        fitter.see(seen);
+        fitter.see(seen.clone());
         let by_grid = *fitter.fit(&input).expect("maps");
         assert_ne!(by_grid, by_boxes);
+        assert_eq!((by_boxes.placed_by, by_grid.placed_by), (PlacedBy::Boxes, PlacedBy::LastFrame));
         assert!(by_grid[0].projection.covers(DVec3::new(0.0, 0.0, -120.0)), "the finest map is where points were seen");
         fitter.reset();
         assert_eq!(*fitter.fit(&input).expect("maps"), by_boxes);
+
+        // What is told of another light is of no use, and said not to be used.
+        fitter.see(seen);
+        let other = FitInput { direction: Vec3::new(-0.8, -0.3, 0.2), ..input };
+        assert_eq!(fitter.fit(&other).expect("maps").placed_by, PlacedBy::Boxes);
 
         fitter.fit(&FitInput { direction: Vec3::ZERO, ..input }).expect_err("no direction");
         assert!(fitter.fitted().is_empty());

@@ -118,6 +118,8 @@ pub enum FitError {
 
 impl core::error::Error for FitError {}
 
+const ENDLESS: &str = "the far plane is infinite, so shadows have no end: name a maximum shadow distance, in metres";
+
 impl fmt::Display for FitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -142,9 +144,7 @@ impl fmt::Display for FitError {
                  clip_from_world, with the depth convention that it was made for",
                 Number(w)
             ),
-            Self::Endless => f.write_str(
-                "the far plane is infinite, so shadows have no end: name a maximum shadow distance, in metres",
-            ),
+            Self::Endless => f.write_str(ENDLESS),
             Self::OtherDepth { named, is_reversed } => write_depth(f, named, is_reversed),
             Self::EmptyFrustum { size } => write!(
                 f,

@@ -55,7 +55,8 @@ pub static PRESETS: [Preset; 9] = [
     Preset {
         name: "stable-4",
         summary: "4 maps around spheres on a fixed grid of texels, splits from the boxes and held",
-        advice: "Where no edge may ever crawl, and coarser shadows are a fair price.",
+        advice: "Where edges must stand still, and coarser shadows are a fair price: they move only in the frame in which \
+                 the splits are chosen again, once in a while on a way through very different views.",
         make: || several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap { max_waste: 4.0 }),
     },
     Preset {

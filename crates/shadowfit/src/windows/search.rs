@@ -192,6 +192,11 @@ impl<'a> Search<'a> {
 }
 
 impl Held {
+    /// Whether what is visible was only estimated from the boxes.
+    pub(crate) fn is_guess(&self) -> bool {
+        self.progress.is_guess
+    }
+
     /// These windows for the light of another frame.
     pub(super) fn in_plane(&self, lattice: &Lattice, origin: DVec3) -> Self {
         if self.plane == lattice.plane {
