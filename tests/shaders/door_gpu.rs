@@ -205,6 +205,12 @@ fn gpu_maps_of_another_size_or_number_are_refused_by_the_drawing_half() {
     assert_eq!(refused, ShadowMapError::TooManyFits { fits: 5, layers: 4 });
     kept.prepare(&device.queue, &frame, &own).expect("its own maps");
     assert_eq!(kept.passes().len(), 4);
+    // Another end of shadows needs no other maps, and one that makes no sense is refused.
+    let nearer = technique().with_max_distance(30.0).with_fade(0.5);
+    assert_eq!(kept.set_technique(&nearer), Ok(false));
+    assert_eq!(kept.map().descriptor().fade, [15.0, 30.0]);
+    let backward = shadowfit_wgpu::ShadowMapDescriptor { fade: [2.0, 1.0], ..*kept.map().descriptor() };
+    assert!(matches!(kept.set_descriptor(&backward), Err(ShadowMapError::Fade(_))));
     quiet.assert("maps of another size");
 }
 

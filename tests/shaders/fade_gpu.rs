@@ -17,8 +17,8 @@ fn lid(fit: &LightProjection) -> Vec<Vec3> {
     vec![start, start + right * 5.0, start + below * 5.0]
 }
 
-/// Factors of points in shadow at view depths of 0.1 to 9.9 m, by the fade.
-fn factors(fade: [f32; 2]) -> Vec<(f32, f32)> {
+/// Factors of points in shadow at view depths of 0.1 to 9.9 m, and the maps that they read, by the fade.
+fn read(fade: [f32; 2]) -> Vec<(f32, f32, i32)> {
     let gpu = software_gpu();
     let fit = box_fit(DepthConvention::ZeroToOne);
     let filter = FilterKind::Hardware2x2;
@@ -27,8 +27,21 @@ fn factors(fade: [f32; 2]) -> Vec<(f32, f32)> {
     let harness = Harness::with_maps(&gpu, &map, &view, &[FittedMap::new(fit, Bias::default())], &[lid(&fit)]);
     let depths: Vec<f32> = (0..99_u16).map(|step| (f32::from(step) + 1.0) * 0.1).collect();
     let point = |depth: &f32| Point { position: [0.0, 0.0, -depth], normal: [0.0, 1.0, 0.0] };
-    let answers = harness.ask(0, &depths.iter().map(point).collect::<Vec<Point>>());
-    depths.into_iter().zip(answers.iter().map(|answer| answer.factor)).collect()
+    let points: Vec<Point> = depths.iter().map(point).collect();
+    let (answers, choices) = (harness.ask(0, &points), harness.choices(&points));
+    let read = answers.iter().zip(&choices).map(|(answer, choice)| (answer.factor, choice.map));
+    depths.into_iter().zip(read).map(|(depth, (factor, map))| (depth, factor, map)).collect()
+}
+
+fn factors(fade: [f32; 2]) -> Vec<(f32, f32)> {
+    read(fade).into_iter().map(|(depth, factor, _)| (depth, factor)).collect()
+}
+
+#[test]
+fn beyond_the_end_of_shadows_no_map_is_read() {
+    for (depth, _, map) in read([3.0, 7.05]) {
+        assert_eq!(map, if depth < 7.05 { 0 } else { -1 }, "at {depth} m");
+    }
 }
 
 #[test]

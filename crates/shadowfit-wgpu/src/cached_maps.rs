@@ -67,6 +67,11 @@ impl CachedMaps {
         })
     }
 
+    /// Moves the view depths between which shadows fade, in metres.
+    pub(crate) fn set_fade(&mut self, fade: [f32; 2]) {
+        self.map.set_fade(fade);
+    }
+
     /// The maps on the GPU: layouts and states for the engine's pipelines.
     pub(crate) fn map(&self) -> &ShadowMap {
         &self.map

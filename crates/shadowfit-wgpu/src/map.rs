@@ -217,6 +217,11 @@ impl ShadowMap {
         Ok(())
     }
 
+    /// Moves the view depths between which shadows fade, in metres, from the next frame on.
+    pub(crate) fn set_fade(&mut self, fade: [f32; 2]) {
+        self.descriptor.fade = fade;
+    }
+
     /// Makes all factors 0, until maps are [prepared](Self::prepare) again: for a light that gives nothing. There is
     /// nothing to draw.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {

@@ -244,11 +244,14 @@ const SHADOWFIT_REACH: f32 = {reach:?};
 const SHADOWFIT_BLEND: f32 = {blend:?};
 
 {rule}
-// The maps that a point reads.
+// The maps that a point reads: none beyond the end of shadows.
 fn shadowfit_choose(position: vec3<f32>) -> shadowfit_Choice {{
     let view_depth = shadowfit_view_depth(position);
     var choice = shadowfit_Choice(-1, -1, 1.0, -1, 0.0);
 {}    choice.first = select(choice.first, choice.clamped, choice.first < 0);
+    if shadowfit_faded(position) >= 1.0 {{
+        return shadowfit_Choice(-1, -1, 1.0, -1, 0.0);
+    }}
     return choice;
 }}
 

@@ -178,7 +178,14 @@ impl SunShadows {
     ///
     /// As [`Self::from_descriptor`].
     pub fn set_descriptor(&mut self, descriptor: &ShadowMapDescriptor) -> Result<bool, ShadowMapError> {
-        if descriptor == self.map().descriptor() {
+        let now = *self.map().descriptor();
+        if *descriptor == now {
+            return Ok(false);
+        }
+        descriptor.check(&self.device)?;
+        // Where shadows end is told to the shaders in each frame.
+        if (ShadowMapDescriptor { fade: now.fade, ..*descriptor }) == now {
+            self.maps.set_fade(descriptor.fade);
             return Ok(false);
         }
         let mut maps = CachedMaps::new(&self.device, descriptor)?;

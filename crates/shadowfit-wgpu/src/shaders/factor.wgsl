@@ -22,7 +22,7 @@ fn shadowfit_turned(position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
     }
     let faded = shadowfit_faded(position);
     let choice = shadowfit_choose(position);
-    if choice.first < 0 || faded >= 1.0 {
+    if choice.first < 0 {
         return 1.0;
     }
     var factor = shadowfit_read(choice.first, position, normal, turn);

@@ -52,7 +52,7 @@ pub use crate::light::grid::GridAnchor;
 /// /// Draws the static casters, and returns the wrap that the look-up adds to its texels.
 /// fn draw_static_casters(before: &FittedMap, now: &FittedMap, wrap_before: UVec2) -> UVec2 {
 ///     let scroll = Scroll::between(before, now);
-///     let size = now.fit.resolution;
+///     let size = now.projection.resolution;
 ///     let wrap = scroll.wrap(wrap_before, size);
 ///     if scroll.is_redraw() {
 ///         clear_and_draw_all();

@@ -164,7 +164,7 @@ pub struct Margins {
 ///         for map in maps.iter() {
 ///             let query = CoverageQuery::of_map(map, &technique, technique.filter.into())
 ///                 .with_normal_offset(map.bias.normal_offset);
-///             let proof = prove(&input, &map.fit, &query, &mut workspace)?;
+///             let proof = prove(&input, &map.projection, &query, &mut workspace)?;
 ///             assert!(proof.is_proven(), "{proof:?}");
 ///         }
 ///     }
