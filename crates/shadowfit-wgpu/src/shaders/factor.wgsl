@@ -17,19 +17,18 @@ fn shadowfit_faded(position: vec3<f32>) -> f32 {
 
 // Share of the light that reaches a point through the maps, with the look-ups over discs turned by an angle in radians.
 fn shadowfit_turned(position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
-    if shadowfit_receiver.is_off == 1u {
-        return 0.0;
-    }
+    // A product and not a branch: software rasterisers build a shader for each draw where uniforms alone decide one.
+    let lit = f32(1u - shadowfit_receiver.is_off);
     let faded = shadowfit_faded(position);
     let choice = shadowfit_choose(position);
     if choice.first < 0 {
-        return 1.0;
+        return lit;
     }
     var factor = shadowfit_read(choice.first, position, normal, turn);
     if choice.second >= 0 {
         factor = mix(shadowfit_read(choice.second, position, normal, turn), factor, choice.weight);
     }
-    return mix(factor, 1.0, faded);
+    return lit * mix(factor, 1.0, faded);
 }
 
 // Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map; 0 everywhere if the light is off.
