@@ -35,14 +35,14 @@ pub fn help_overlay(ctx: &Context, open: &mut bool) {
             ScrollArea::vertical()
                 .max_height(room.y - TITLE_HEIGHT)
                 .min_scrolled_height(room.y - TITLE_HEIGHT)
-                .show(ui, |ui| if is_wide { columns(ui) } else { column(ui, KEYS) });
+                .show(ui, |ui| if is_wide { columns(ui) } else { column(ui, &KEYS) });
         });
 }
 
 fn columns(ui: &mut Ui) {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        let mut rest = KEYS;
+        let mut rest = KEYS.as_slice();
         for count in COLUMNS {
             let (groups, after) = rest.split_at(count);
             rest = after;
@@ -60,9 +60,9 @@ fn column(ui: &mut Ui, groups: &[KeyGroup]) {
     for group in groups {
         caption(ui, group.heading);
         Grid::new(group.heading).num_columns(2).min_col_width(KEY_WIDTH).spacing([12.0, 5.0]).show(ui, |ui| {
-            for line in group.keys {
+            for line in &group.keys {
                 ui.label(RichText::new(line.keys).strong());
-                ui.label(line.does);
+                ui.label(&*line.does);
                 ui.end_row();
             }
         });

@@ -1,10 +1,13 @@
 //! The keys: one table of what each of them does, which menus, the help, the docs and the host's own keyboard follow.
 
+use std::borrow::Cow;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 use egui::Key;
 use shadowfit_params::tool::ViewMode;
 
+use crate::views::option;
 use crate::{Artefact, Command, Toggle};
 
 /// A key with the modifiers that it is pressed with.
@@ -24,7 +27,7 @@ pub struct KeyGroup {
     /// What they are about.
     pub heading: &'static str,
     /// The keys, in the order that they are shown.
-    pub keys: &'static [KeyHelp],
+    pub keys: Vec<KeyHelp>,
 }
 
 /// A line of the table of keys.
@@ -33,115 +36,115 @@ pub struct KeyHelp {
     /// The keys as they are printed on a keyboard, with `or` between two that do the same.
     pub keys: &'static str,
     /// What they do.
-    pub does: &'static str,
+    pub does: Cow<'static, str>,
     /// The command that they stand for; `None` for what is held, dragged or turned, and for gamepads.
     pub command: Option<Command>,
 }
 
 /// A line for a key that stands for a command.
-const fn key(keys: &'static str, does: &'static str, command: Command) -> KeyHelp {
-    KeyHelp { keys, does, command: Some(command) }
+fn key(keys: &'static str, does: impl Into<Cow<'static, str>>, command: Command) -> KeyHelp {
+    KeyHelp { keys, does: does.into(), command: Some(command) }
 }
 
 /// A line for what is held, dragged or turned.
 const fn held(keys: &'static str, does: &'static str) -> KeyHelp {
-    KeyHelp { keys, does, command: None }
+    KeyHelp { keys, does: Cow::Borrowed(does), command: None }
+}
+
+const fn group(heading: &'static str, keys: Vec<KeyHelp>) -> KeyGroup {
+    KeyGroup { heading, keys }
+}
+
+/// A digit for each view, in their order.
+fn views() -> Vec<KeyHelp> {
+    const NUMBERS: [&str; 9] = ["1", "2", "3", "4", "5", "6", "7", "8", "9"];
+    let line = |(keys, mode)| key(keys, option(mode).label.to_lowercase(), Command::View(mode));
+    NUMBERS.into_iter().zip(ViewMode::ALL).map(line).collect()
 }
 
 /// The keys that a host of the panel answers, in the order that they are shown.
-pub const KEYS: &[KeyGroup] = &[
-    KeyGroup {
-        heading: "Fly",
-        keys: &[
-            held("W A S D", "move"),
-            held("Q, E", "down, up"),
-            held("Arrow keys", "look around"),
-            held("Left mouse drag", "look around"),
-            held("Double click", "focus on what is there"),
-            held("Shift", "move fast"),
-            held("Wheel", "flying speed"),
-        ],
-    },
-    KeyGroup {
-        heading: "Views",
-        keys: &[
-            key("1", "final picture", Command::View(ViewMode::Final)),
-            key("2", "truth, by rays", Command::View(ViewMode::Truth)),
-            key("3", "errors", Command::View(ViewMode::Error)),
-            key("4", "pixels per texel", Command::View(ViewMode::PixelsPerTexel)),
-            key("5", "maps", Command::View(ViewMode::Maps)),
-            key("6", "texel grid", Command::View(ViewMode::TexelGrid)),
-            key("7", "demand", Command::View(ViewMode::Demand)),
-            key("8", "map updates", Command::View(ViewMode::Updates)),
-            key("9", "outside", Command::View(ViewMode::Outside)),
-        ],
-    },
-    KeyGroup {
-        heading: "Artefacts",
-        keys: &[
-            key("Z", "show acne", Command::ShowArtefact(Artefact::Acne)),
-            key("X", "show aliasing", Command::ShowArtefact(Artefact::Aliasing)),
-            key("C", "show a clipping hole", Command::ShowArtefact(Artefact::ClippingHole)),
-            key("F", "fix what is shown", Command::FixArtefact),
-            key("T", "auto-tune", Command::StartTune),
-        ],
-    },
-    KeyGroup {
-        heading: "Picture",
-        keys: &[
-            key("B", "compare A | B", Command::Compare(Toggle::Switch)),
-            key("M", "mark wrong pixels", Command::NextMarks),
-            key("I", "shadow map inset", Command::NextInset),
-            key("O", "outside view", Command::ToggleOutside),
-            key("G", "freeze the fit", Command::ToggleFreeze),
-            key("L", "animate the sun", Command::ToggleSun),
-            key("Space", "play or pause", Command::TogglePlay),
-        ],
-    },
-    KeyGroup {
-        heading: "Bookmarks",
-        keys: &[
-            key("Ctrl+1 … 9", "go to a bookmark", Command::GoToBookmark(1)),
-            key("Ctrl+Shift+1 … 9", "set a bookmark", Command::SetBookmark(1)),
-        ],
-    },
-    KeyGroup {
-        heading: "Settings and files",
-        keys: &[
-            key("Ctrl+Z", "undo", Command::Undo),
-            key("Ctrl+Shift+Z or Ctrl+Y", "redo", Command::Redo),
-            key("R", "reset", Command::Reset),
-            key("K", "copy as Rust code", Command::CopyRust),
-            key("P", "screenshot", Command::Screenshot(None)),
-            key("Ctrl+O", "open a scene", Command::ChooseFile),
-        ],
-    },
-    KeyGroup {
-        heading: "Window",
-        keys: &[
-            key("Tab", "hide or show the panel", Command::TogglePanel),
-            key("H or F1", "this help", Command::ToggleHelp),
-            key("Esc", "close a menu or this help; else quit", Command::Escape),
-            key("Ctrl+Q", "quit", Command::Quit),
-        ],
-    },
-    KeyGroup {
-        heading: "Gamepad",
-        keys: &[
-            held("Left stick", "move"),
-            held("Right stick", "look around, click: first view"),
-            held("Triggers", "down, up"),
-            held("Back", "quit"),
-        ],
-    },
-];
+pub static KEYS: LazyLock<Vec<KeyGroup>> = LazyLock::new(|| {
+    vec![
+        group(
+            "Fly",
+            vec![
+                held("W A S D", "move"),
+                held("Q, E", "down, up"),
+                held("Arrow keys", "look around"),
+                held("Left mouse drag", "look around"),
+                held("Double click", "focus on what is there"),
+                held("Shift", "move fast"),
+                held("Wheel", "flying speed"),
+            ],
+        ),
+        group("Views", views()),
+        group(
+            "Artefacts",
+            vec![
+                key("Z", "show acne", Command::ShowArtefact(Artefact::Acne)),
+                key("X", "show aliasing", Command::ShowArtefact(Artefact::Aliasing)),
+                key("C", "show a clipping hole", Command::ShowArtefact(Artefact::ClippingHole)),
+                key("F", "fix what is shown", Command::FixArtefact),
+                key("T", "auto-tune", Command::StartTune),
+            ],
+        ),
+        group(
+            "Picture",
+            vec![
+                key("B", "compare A | B", Command::Compare(Toggle::Switch)),
+                key("M", "mark wrong pixels", Command::NextMarks),
+                key("I", "shadow map inset", Command::NextInset),
+                key("O", "outside view", Command::ToggleOutside),
+                key("G", "freeze the fit", Command::ToggleFreeze),
+                key("L", "animate the sun", Command::ToggleSun),
+                key("Space", "play or pause", Command::TogglePlay),
+            ],
+        ),
+        group(
+            "Bookmarks",
+            vec![
+                key("Ctrl+1 … 9", "go to a bookmark", Command::GoToBookmark(1)),
+                key("Ctrl+Shift+1 … 9", "set a bookmark", Command::SetBookmark(1)),
+            ],
+        ),
+        group(
+            "Settings and files",
+            vec![
+                key("Ctrl+Z", "undo", Command::Undo),
+                key("Ctrl+Shift+Z or Ctrl+Y", "redo", Command::Redo),
+                key("R", "reset", Command::Reset),
+                key("K", "copy as Rust code", Command::CopyRust),
+                key("P", "screenshot", Command::Screenshot(None)),
+                key("Ctrl+O", "open a scene", Command::ChooseFile),
+            ],
+        ),
+        group(
+            "Window",
+            vec![
+                key("Tab", "hide or show the panel", Command::TogglePanel),
+                key("H or F1", "this help", Command::ToggleHelp),
+                key("Esc", "close a menu or this help; else quit", Command::Escape),
+                key("Ctrl+Q", "quit", Command::Quit),
+            ],
+        ),
+        group(
+            "Gamepad",
+            vec![
+                held("Left stick", "move"),
+                held("Right stick", "look around, click: first view"),
+                held("Triggers", "down, up"),
+                held("Back", "quit"),
+            ],
+        ),
+    ]
+});
 
 /// What ends the keys of a line that stands for all digits from 1.
 const DIGITS: &str = "1 … 9";
 
 /// The lines of [`KEYS`] that stand for a command, with that command.
 fn commands() -> impl Iterator<Item = (&'static KeyHelp, &'static Command)> {
-    KEYS.iter().flat_map(|group| group.keys).filter_map(|line| Some((line, line.command.as_ref()?)))
+    KEYS.iter().flat_map(|group| &group.keys).filter_map(|line| Some((line, line.command.as_ref()?)))
 }
 
 /// The keys of a command as they are printed on a keyboard; empty for a command without any.

@@ -5,7 +5,7 @@ use egui::{
     WidgetInfo,
 };
 use shadowfit_params::figures::{Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
-use shadowfit_params::tool::{ErrorMarks, ViewMode, ViewSettings};
+use shadowfit_params::tool::{ErrorMarks, ViewColors, ViewSettings};
 
 use crate::classes::shares;
 use crate::units::percent;
@@ -26,8 +26,7 @@ const RAMP_WIDTH: f32 = 216.0;
 
 /// Whether the view has colours to explain, with its marks: [`legend`] shows nothing otherwise.
 pub fn has_legend(view: &ViewSettings) -> bool {
-    let is_coloured = !matches!(view.mode, ViewMode::Final | ViewMode::Truth | ViewMode::TexelGrid | ViewMode::Outside);
-    is_coloured || has_marks(view)
+    !view.mode.colors().is_empty() || has_marks(view)
 }
 
 /// Whether wrong pixels are marked: where the camera's picture is shown.
@@ -38,17 +37,17 @@ fn has_marks(view: &ViewSettings) -> bool {
 /// What the colours of the view mean: the classes of wrong pixels with their shares, the scale of pixels per texel,
 /// the tints of the maps, or what was drawn of them.
 pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
-    match view.mode {
-        ViewMode::PixelsPerTexel => ramp(ui, "pixels per texel"),
-        ViewMode::Demand => {
-            ramp(ui, "pixels per texel where the picture looks");
-            maps(ui, figures);
+    let colors = view.mode.colors();
+    for color in colors {
+        match color {
+            ViewColors::Classes => classes(ui, figures),
+            ViewColors::PixelsPerTexel => ramp(ui, "pixels per texel"),
+            ViewColors::Maps => maps(ui, figures),
+            ViewColors::Demand => ramp(ui, "pixels per texel where the picture looks"),
+            ViewColors::Updates => updates(ui),
         }
-        ViewMode::Maps => maps(ui, figures),
-        ViewMode::Updates => updates(ui),
-        _ => {}
     }
-    if view.mode == ViewMode::Error || has_marks(view) {
+    if has_marks(view) && !colors.contains(&ViewColors::Classes) {
         classes(ui, figures);
     }
 }
@@ -142,6 +141,8 @@ fn ramp(ui: &mut Ui, title: &str) {
 
 #[cfg(test)]
 mod tests {
+    use shadowfit_params::tool::ViewMode;
+
     use super::*;
 
     #[test]

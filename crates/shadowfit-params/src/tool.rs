@@ -109,10 +109,37 @@ impl ViewMode {
         !matches!(self, Self::Demand | Self::Updates | Self::Outside)
     }
 
+    /// What its colours stand for, in the order that a legend explains them; empty for natural colours.
+    pub const fn colors(self) -> &'static [ViewColors] {
+        match self {
+            Self::Error => &[ViewColors::Classes],
+            Self::PixelsPerTexel => &[ViewColors::PixelsPerTexel],
+            Self::Maps => &[ViewColors::Maps],
+            Self::Demand => &[ViewColors::Demand, ViewColors::Maps],
+            Self::Updates => &[ViewColors::Updates],
+            _ => &[],
+        }
+    }
+
     /// Whether rays are needed to show it.
     pub const fn is_judged(self) -> bool {
         matches!(self, Self::Truth | Self::Error)
     }
+}
+
+/// What the colours of a view stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewColors {
+    /// The [classes](crate::figures::ERROR_COLORS) of wrong pixels.
+    Classes,
+    /// [Pixels per texel](crate::figures::pixels_per_texel_color) of what is seen.
+    PixelsPerTexel,
+    /// The [maps](crate::figures::MAP_TINTS).
+    Maps,
+    /// [Pixels per texel](crate::figures::pixels_per_texel_color) of what the picture asks the maps for.
+    Demand,
+    /// Texels of the maps that were kept, those drawn anew, and what moves.
+    Updates,
 }
 
 /// Which shadow maps are shown in a corner of the picture.

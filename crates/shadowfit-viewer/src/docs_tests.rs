@@ -21,7 +21,7 @@ fn assert_docs_hold(table: &str) {
 fn the_docs_list_every_key() {
     let lines = KEYS.iter().map(|group| {
         let keys: Vec<String> =
-            group.keys.iter().map(|line| format!("**{}** {}", line.keys, cell(line.does))).collect();
+            group.keys.iter().map(|line| format!("**{}** {}", line.keys, cell(&line.does))).collect();
         format!("| {} | {} |\n", group.heading, keys.join(" · "))
     });
     assert_docs_hold(&format!("| | keys |\n|---|---|\n{}", lines.collect::<String>()));

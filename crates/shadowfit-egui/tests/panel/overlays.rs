@@ -148,9 +148,9 @@ fn help(size: [f32; 2]) -> Harness<'static, bool> {
 #[test]
 fn the_help_lists_every_key_and_closes() {
     let mut harness = help([600.0, 700.0]);
-    for line in KEYS.iter().flat_map(|group| group.keys) {
+    for line in KEYS.iter().flat_map(|group| &group.keys) {
         harness.get_all_by_label(line.keys).next().expect(line.keys);
-        harness.get_all_by_label(line.does).next().expect(line.does);
+        harness.get_all_by_label(&line.does).next().expect(&line.does);
     }
     harness.get_by_role_and_label(Role::Button, "Close window").click();
     harness.run();
@@ -162,8 +162,8 @@ fn the_help_lists_every_key_and_closes() {
 fn the_help_fits_a_common_window_without_scrolling() {
     let mut harness = help([1280.0, 720.0]);
     harness.run();
-    for line in KEYS.iter().flat_map(|group| group.keys) {
-        for node in harness.get_all_by_label(line.does) {
+    for line in KEYS.iter().flat_map(|group| &group.keys) {
+        for node in harness.get_all_by_label(&line.does) {
             let rect = node.rect();
             assert!(rect.bottom() <= 720.0 && rect.right() <= 1280.0, "{}: {rect:?}", line.does);
         }
@@ -177,13 +177,13 @@ fn the_help_fits_a_low_screen_and_scrolls() {
     let title = harness.get_by_role_and_label(Role::Button, "Close window").rect();
     assert!(title.top() >= 0.0, "the title bar is cut off: {title:?}");
     let last = KEYS.last().and_then(|group| group.keys.last()).expect("there are keys");
-    let last = harness.get_all_by_label(last.does).next_back().expect("it is there").rect();
+    let last = harness.get_all_by_label(&last.does).next_back().expect("it is there").rect();
     assert!(last.top() > 300.0, "the last line should wait to be scrolled to: {last:?}");
 }
 
 #[test]
 fn the_keys_of_artefacts_and_views_are_in_the_table() {
-    let find = |key: &str| KEYS.iter().flat_map(|group| group.keys).find(|line| line.keys == key).expect("the key");
+    let find = |key: &str| KEYS.iter().flat_map(|group| &group.keys).find(|line| line.keys == key).expect("the key");
     for artefact in Artefact::ALL {
         assert!(find(keys_of(&Command::ShowArtefact(artefact))).does.contains(&artefact.label().to_lowercase()));
     }
@@ -191,7 +191,7 @@ fn the_keys_of_artefacts_and_views_are_in_the_table() {
     let buttons: Vec<_> = harness.query_all_by_role(Role::Button).collect();
     for (index, button) in buttons.iter().enumerate() {
         let name = button.accesskit_node().label().expect("a name").replace("View: ", "").to_lowercase();
-        let does = find(&(index + 1).to_string()).does;
+        let does = &find(&(index + 1).to_string()).does;
         assert!(does.contains(name.trim_end_matches('s')), "{name}: {does}");
     }
 }

@@ -1,7 +1,9 @@
 //! The changes that a search tries, one at a time, in rounds: those that matter most come first.
 
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, Hysteresis, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{BiasSettings, FilterKind, Hysteresis, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{Maps, Technique};
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Kind, Value, parameter};
 
 use super::TuneScope;
 
@@ -42,16 +44,26 @@ fn everything(count: u32) -> Vec<Vec<Change>> {
     rounds
 }
 
+/// The options of a choice in the table of parameters, each with the technique that it makes of another one.
+fn options(id: &str) -> impl DoubleEndedIterator<Item = (String, impl Fn(Technique) -> Technique + Copy + 'static)> {
+    let row = parameter(id).expect("a row of the table");
+    let Kind::Choice(options) = row.kind else { unreachable!("{id} is a choice") };
+    options.iter().enumerate().map(move |(index, option)| {
+        let with_option = move |technique| {
+            let mut settings = Settings::default().with_technique(technique);
+            row.set(&mut settings, Value::Option(index));
+            settings.technique
+        };
+        (format!("{}: {}", row.label, option.label), with_option)
+    })
+}
+
+/// All fits, the best ones last, but the one that must be as its source has it.
 fn fits() -> Vec<Change> {
-    let kinds = [
-        ("boxes of the frustum's slices", FitKind::FrustumAabb),
-        ("least rectangles of the frustum", FitKind::Oriented),
-        ("spheres around the frustum's slices", FitKind::Sphere),
-        ("least rectangles around the boxes in view", FitKind::Focused),
-    ];
-    let shapes = kinds.map(|(what, kind)| Change::to_maps(what, move |maps| maps.with_kind(kind)));
-    let windows = Change::to_maps("windows where the picture needs them", |maps| maps.as_windows().into());
-    shapes.into_iter().chain([windows]).collect()
+    let all = options("fit.kind").rev();
+    all.filter(|(_, with_fit)| !with_fit(Technique::default()).maps.are_exact())
+        .map(|(what, with_fit)| Change::to_maps(what, move |maps| with_fit(Technique::default().with_maps(maps)).maps))
+        .collect()
 }
 
 fn biases() -> Vec<Change> {
@@ -70,14 +82,8 @@ fn biases() -> Vec<Change> {
 /// Filters whose widths are numbers of texels, each with the bias of the present kind that it needs. The truth has a
 /// hard sun, so soft filters only add noise.
 fn filters() -> Vec<Change> {
-    let filters = [
-        ("one comparison", FilterKind::Point),
-        ("2×2 comparison", FilterKind::Hardware2x2),
-        ("a tent of 3×3", FilterKind::Pcf3x3),
-        ("a tent of 5×5", FilterKind::Pcf5x5),
-        ("a tent of 7×7", FilterKind::Pcf7x7),
-    ];
-    let change = |(what, filter): (&str, FilterKind)| {
+    let all = options("map.filter").map(|(what, with_filter)| (what, with_filter(Technique::default()).filter));
+    let change = |(what, filter): (String, FilterKind)| {
         Change::new(what, move |technique: &mut Technique| {
             let softness = technique.softness;
             let offset = |filter| BiasSettings::automatic_normal_offset(filter, &softness);
@@ -89,7 +95,7 @@ fn filters() -> Vec<Change> {
             technique.filter = filter;
         })
     };
-    filters.into_iter().map(change).collect()
+    all.filter(|(_, filter)| !filter.is_soft()).map(change).collect()
 }
 
 fn splits() -> Vec<Change> {
@@ -176,9 +182,9 @@ mod tests {
 
     /// What slices have already.
     const OF_SLICES: [&str; 5] = [
-        "least rectangles around the boxes in view",
+        "Fit: Focused on the scene",
         "the automatic bias",
-        "a tent of 5×5",
+        "Filter: PCF 5×5",
         "splits from what the frame before showed",
         "maps held from frame to frame",
     ];

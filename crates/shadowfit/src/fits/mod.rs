@@ -2,7 +2,8 @@
 //!
 //! Every fit decides which box along the light's axes the shadow map stores: a hull in the light's
 //! space says what must be inside, a rectangle lies around it, and the caster policy places the near
-//! plane. [`fit`] and [`fit_scene`] take the rule from the settings.
+//! plane. [`fit`] and [`fit_scene`] take the rule from the settings. A further fit is a file beside this one with a
+//! [`Form`], and a line in [`Form::of`].
 
 pub(crate) mod light_fit;
 mod sphere;
@@ -33,8 +34,21 @@ use crate::base::{FitError, checks};
 use crate::content::Content;
 use crate::fits::covered::Covered;
 use crate::light::Light;
-use crate::technique::settings::FitSettings;
+use crate::technique::settings::{FitKind, FitSettings};
 use crate::view::{Range, ViewFrustum};
+
+impl Form {
+    /// The form of a kind of fit. The kind is looked at here and nowhere else.
+    const fn of(kind: FitKind) -> Self {
+        match kind {
+            FitKind::XnaSample => xna::FORM,
+            FitKind::FrustumAabb => aabb::FORM,
+            FitKind::Oriented => oriented::FORM,
+            FitKind::Sphere => sphere::FORM,
+            FitKind::Focused => focused::FORM,
+        }
+    }
+}
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
 /// [`Shape::kind`](crate::settings::Shape::kind) names.

@@ -1,28 +1,13 @@
 //! A fit as data: what each kind covers, by which rectangle, along which axes and how deep.
 //!
-//! The settings' kind is looked at here and nowhere else. A further fit is a file beside this one with a [`Form`],
-//! and a line in [`Form::of`].
+//! Settings with everything resolved that depends on the kind, by its [`Form`].
 
 use glam::{DVec2, UVec2};
 
 use super::form::Form;
-use super::{aabb, focused, oriented, sphere, xna};
 use crate::base::checks::MAX_LENGTH;
 use crate::base::{DepthConvention, FitError, checks};
-use crate::technique::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, MapSettings, RectangleKind};
-
-impl Form {
-    /// The form of a kind of fit.
-    const fn of(kind: FitKind) -> Self {
-        match kind {
-            FitKind::XnaSample => xna::FORM,
-            FitKind::FrustumAabb => aabb::FORM,
-            FitKind::Oriented => oriented::FORM,
-            FitKind::Sphere => sphere::FORM,
-            FitKind::Focused => focused::FORM,
-        }
-    }
-}
+use crate::technique::settings::{CasterPolicy, FilterKind, FitSettings, MapSettings, RectangleKind};
 
 /// What places the near plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

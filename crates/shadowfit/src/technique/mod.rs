@@ -5,10 +5,10 @@
 use crate::technique::settings::{BiasSettings, FilterKind, MapFormat, MapSettings, Softness, setters};
 use glam::UVec2;
 
+mod filter;
 mod maps;
 mod presets;
 pub mod settings;
-mod softness;
 
 pub use maps::{Maps, OneMap, Slices, Windows};
 pub use presets::{PRESETS, Preset};

@@ -12,6 +12,8 @@ use glam::{UVec2, Vec3};
 
 use crate::base::DepthConvention;
 
+pub use super::filter::{FilterKind, SoftRadius, Softness};
+
 /// Writes one `with_*` method per field of a settings struct, or of a part of it.
 macro_rules! setters {
     ($settings:ident.$part:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
@@ -387,98 +389,6 @@ impl Default for BiasSettings {
     }
 }
 
-/// How the stored depths are turned into a shadow factor.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum FilterKind {
-    /// One comparison with the nearest texel.
-    Point,
-    /// Four comparisons, weighted bilinearly (the hardware's 2×2 percentage-closer filter).
-    Hardware2x2,
-    /// Tent of 3×3 hardware look-ups (16 texels), by four of them.
-    Pcf3x3,
-    /// Tent of 5×5 hardware look-ups (36 texels), by nine of them. The default.
-    #[default]
-    Pcf5x5,
-    /// Tent of 7×7 hardware look-ups (64 texels), by sixteen of them.
-    Pcf7x7,
-    /// 8 hardware look-ups spread evenly over a disc of the technique's [softness](Softness), turned from
-    /// pixel to pixel (H. Vogel, "A better way to construct the sunflower head", 1979).
-    Vogel8,
-    /// The same with 16 look-ups.
-    Vogel16,
-    /// The same with 32 look-ups.
-    Vogel32,
-    /// A disc as wide as the penumbra of the casters above the point, by the angle of the sun
-    /// (percentage-closer soft shadows: R. Fernando, 2005). It needs the distance to the caster, so
-    /// maps cannot be depth-clamped.
-    Pcss,
-}
-
-impl FilterKind {
-    /// All filters, the narrowest first.
-    pub const ALL: [Self; 9] = [
-        Self::Point,
-        Self::Hardware2x2,
-        Self::Pcf3x3,
-        Self::Pcf5x5,
-        Self::Pcf7x7,
-        Self::Vogel8,
-        Self::Vogel16,
-        Self::Vogel32,
-        Self::Pcss,
-    ];
-
-    /// Whether its width is the technique's [softness](Softness), and not a number of texels.
-    pub const fn is_soft(self) -> bool {
-        matches!(self, Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss)
-    }
-}
-
-/// How wide the filters are whose width is no number of texels ([`FilterKind::is_soft`]).
-///
-/// It is the same across the light for all maps, so that penumbrae agree where one map meets the
-/// next, and stay when a fit changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct Softness {
-    /// What the width follows from. Default: the angle of the sun as seen from the earth.
-    pub radius: SoftRadius,
-    /// Least radius of a filter, in texels, 0..=64: a finer penumbra than a map can show is made this wide.
-    /// Default: 1.
-    pub floor: f32,
-    /// Greatest radius of a filter, in texels, 1..=64. Maps have no finer texels than this allows
-    /// ([`Technique::least_texel`](crate::Technique::least_texel)), so that no map needs a huge filter.
-    /// Default: 16.
-    pub ceiling: f32,
-}
-
-/// What the width of a [soft filter](Softness) follows from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum SoftRadius {
-    /// Radius of the penumbra across the light, in metres, of a shadow
-    /// [5 m](crate::settings::Softness::USUAL_DISTANCE) from its caster; [`FilterKind::Pcss`] scales it with the distance.
-    Metres(f32),
-    /// Angular radius of the sun, in radians.
-    SunAngle(f32),
-}
-
-/// Angular radius of the sun as seen from the earth, in radians: half of 0.533°.
-const SUN_RADIUS: f32 = 0.004_65;
-
-impl Default for SoftRadius {
-    fn default() -> Self {
-        Self::SunAngle(SUN_RADIUS)
-    }
-}
-
-impl Default for Softness {
-    fn default() -> Self {
-        Self { radius: SoftRadius::default(), floor: 1.0, ceiling: 16.0 }
-    }
-}
-
 /// Texture format that stores the depths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -564,12 +474,6 @@ setters!(BiasSettings {
     with_normal_offset normal_offset: f32,
     with_receiver_plane receiver_plane: f32,
     with_depth_steps depth_steps: f32,
-});
-
-setters!(Softness {
-    with_radius radius: SoftRadius,
-    with_floor floor: f32,
-    with_ceiling ceiling: f32,
 });
 
 pub(crate) use setters;
