@@ -25,7 +25,12 @@ impl Default for Maps {
 
 /// World-locked clipmaps that are placed by demand: squares of the plane across the light (or rectangles, where the
 /// light is low) on a grid that is fixed to the world, each where it helps most of what is visible. They are
-/// [read by coverage](MapSelection::Coverage). The module [`windows`](crate::Windows) describes them.
+/// [read by coverage](MapSelection::Coverage).
+///
+/// They are still: a window never turns, its texels have widths from a fixed ladder and lie on lines that are counted
+/// from the world's origin, so that it moves by whole texels. They are sharp: each is put where it helps most of what an
+/// [earlier frame showed](crate::FitInput::demand), or else of what rays through the boxes find. They are whole: the
+/// last one holds all receivers in view, so that a late or wrong count costs sharpness and never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Windows {
@@ -92,8 +97,8 @@ impl OneMap {
     /// The map as the only slice of the view.
     pub(crate) fn slice(&self) -> Slices {
         let Self { shape, stabilise } = *self;
-        let choice = MapSelection::Coverage { blend: 0.0 };
-        Slices { count: 1, shape, splits: SplitScheme::Logarithmic, selection: choice, stabilise }
+        let selection = MapSelection::Coverage { blend: 0.0 };
+        Slices { count: 1, shape, splits: SplitScheme::Logarithmic, selection, stabilise }
     }
 }
 
@@ -185,10 +190,10 @@ impl Maps {
     /// These slices, or the nearest to maps of another kind: as many (of one map: 2), with what both kinds have.
     pub fn as_slices(&self) -> Slices {
         match *self {
-            Self::Windows(Windows { count, blend, max_depth_waste: waste }) => Slices {
+            Self::Windows(Windows { count, blend, max_depth_waste: max_waste }) => Slices {
                 count: count.max(2),
                 selection: MapSelection::Coverage { blend },
-                stabilise: Stabilise::Hysteresis(Hysteresis { max_waste: waste, ..Hysteresis::default() }),
+                stabilise: Stabilise::Hysteresis(Hysteresis { max_waste, ..Hysteresis::default() }),
                 ..Slices::default()
             },
             Self::Slices(slices) => slices,
@@ -198,11 +203,11 @@ impl Maps {
 
     /// These windows, or the nearest to maps of another kind: as many, with what both kinds have.
     pub fn as_windows(&self) -> Windows {
-        let windows = |count, blend, waste| Windows { count, blend, max_depth_waste: waste };
+        let windows = |count, blend, max_depth_waste| Windows { count, blend, max_depth_waste };
         match *self {
             Self::Windows(windows) => windows,
-            Self::Slices(Slices { count, selection: choice, stabilise, .. }) => {
-                let blend = if choice.is_by_coverage() { choice.blend() } else { MapSelection::DEFAULT_BLEND };
+            Self::Slices(Slices { count, selection, stabilise, .. }) => {
+                let blend = if selection.is_by_coverage() { selection.blend() } else { MapSelection::DEFAULT_BLEND };
                 windows(count, blend, stabilise.max_waste())
             }
             Self::One(OneMap { stabilise, .. }) => windows(1, MapSelection::DEFAULT_BLEND, stabilise.max_waste()),
@@ -284,10 +289,10 @@ impl Maps {
 
 /// Refuses numbers of what keeps maps stable that are out of range.
 fn check_kept(stabilise: Stabilise) -> Result<(), FitError> {
-    if let Stabilise::Hysteresis(hold) = stabilise {
-        checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
-        checks::within("the hold's growth", f64::from(hold.max_growth), 1.0, 100.0)?;
+    if let Stabilise::Hysteresis(hysteresis) = stabilise {
+        checks::within("the hysteresis's margin", f64::from(hysteresis.margin), 0.0, 10.0)?;
+        checks::within("the hysteresis's greatest growth", f64::from(hysteresis.max_growth), 1.0, 100.0)?;
     }
-    checks::within("the hold's waste", f64::from(stabilise.max_waste()), 1.0, 100.0)?;
+    checks::within("the maps' greatest waste", f64::from(stabilise.max_waste()), 1.0, 100.0)?;
     Ok(())
 }

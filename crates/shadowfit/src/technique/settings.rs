@@ -319,7 +319,7 @@ impl Stabilise {
             // Nothing but the depth range of a sphere, which lies on the world's grid.
             Self::Off => DEFAULT_WASTE,
             Self::Snap { max_waste } => max_waste,
-            Self::Hysteresis(hold) => hold.max_waste,
+            Self::Hysteresis(hysteresis) => hysteresis.max_waste,
         }
     }
 }
