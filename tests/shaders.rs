@@ -24,6 +24,7 @@ mod penumbra_gpu;
 mod pictures;
 mod pixel_gpu;
 mod prefixes;
+mod read_back;
 mod refusals_gpu;
 mod several_maps_gpu;
 mod sweep_gpu;

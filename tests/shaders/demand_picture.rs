@@ -8,6 +8,7 @@ use shadowfit_wgpu::demand::{DemandPass, DemandView};
 use wgpu::util::DeviceExt;
 
 use super::demand_reference::{Counts, Depths};
+use super::read_back::texels;
 
 /// Positions are in clip space already.
 const SHADER: &str = "
@@ -15,9 +16,6 @@ const SHADER: &str = "
     return position;
 }
 ";
-
-/// Bytes that rows begin at multiples of when a texture is copied.
-const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
 /// How a depth buffer is made.
 #[derive(Clone, Copy)]
@@ -143,30 +141,7 @@ fn pipeline(gpu: &Gpu, depth: DepthConvention, drawing: &Drawing) -> wgpu::Rende
 
 /// Reads a texture of one sample a pixel back.
 pub(super) fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Depths {
-    let (width, height) = (texture.width(), texture.height());
-    let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(row * height),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
-        },
-        texture.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the depths can be read"));
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-    let mapped = buffer.slice(..).get_mapped_range().expect("the depths are mapped");
-    let values: Vec<f32> = bytemuck::pod_collect_to_vec(&mapped);
-    let rows = values.chunks_exact(row as usize / 4);
-    Depths { width, values: rows.flat_map(|row| &row[..width as usize]).copied().collect() }
+    Depths { width: texture.width(), values: texels(&gpu.device, &gpu.queue, texture) }
 }
 
 /// Runs the pass over a texture, and waits for it.

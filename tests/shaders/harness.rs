@@ -7,6 +7,8 @@ use shadowfit::{Bias, FittedMap, LightProjection};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
+use super::read_back::texels;
+
 /// A point that is asked about: position relative to the origin, in metres, and unit normal.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -368,27 +370,7 @@ fn target(gpu: &Gpu, rows: u32) -> wgpu::Texture {
     })
 }
 
-/// Waits for a picture of answers. Rows of a multiple of 16 pixels of 16 bytes need no padding.
+/// Waits for a picture of answers.
 pub(super) fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<[f32; 4]> {
-    let (row, rows) = (texture.width() * 16, texture.height());
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(row * rows),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
-        },
-        texture.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the answers can be read"));
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-    let mapped = buffer.slice(..).get_mapped_range().expect("the answers are mapped");
-    bytemuck::pod_collect_to_vec(&mapped)
+    texels(&gpu.device, &gpu.queue, texture)
 }

@@ -10,6 +10,7 @@ use shadowfit_scene::builtin::default_scene;
 use shadowfit_wgpu::ShadowMap;
 
 use super::pictures::{Pictures, SIZE, Seen, random};
+use super::read_back::bytes;
 
 /// Texels of the maps, each way.
 const SIDE: u32 = 256;
@@ -21,29 +22,8 @@ fn technique(format: MapFormat) -> Technique {
 /// What each layer of a map stores, as its texture has it, in bytes.
 fn layers(gpu: &Gpu, map: &ShadowMap) -> Vec<Vec<u8>> {
     let texture = map.view().texture();
-    let texel = texture.format().block_copy_size(None).expect("one aspect");
-    let (width, height, count) = (texture.width(), texture.height(), texture.depth_or_array_layers());
-    let row = (width * texel).next_multiple_of(256);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("maps"),
-        size: u64::from(row * height * count),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(height) };
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-        texture.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("maps"));
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("maps");
-    let mapped = buffer.slice(..).get_mapped_range().expect("maps");
-    let layer =
-        |layer: &[u8]| layer.chunks(row as usize).flat_map(|r| &r[..(width * texel) as usize]).copied().collect();
-    mapped.chunks((row * height) as usize).map(layer).collect()
+    let bytes = bytes(&gpu.device, &gpu.queue, texture);
+    bytes.chunks(bytes.len() / texture.depth_or_array_layers() as usize).map(<[u8]>::to_vec).collect()
 }
 
 /// The depth that bytes of a format stand for.

@@ -3,7 +3,7 @@
 //! Static instances are divided once into clusters that fit their surface closely, since the box of a level that is one
 //! mesh says little. Instances that an animation moves have one box each, recomputed with every pose.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use shadowfit::Clusters;
 use shadowfit::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
@@ -61,9 +61,9 @@ impl SceneBoxes {
     /// The boxes that a fit gets, for a light that travels in `direction` (world axes).
     pub(crate) fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
         FitInput {
-            receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
+            receivers: Some(Boxes::world(&self.receivers)),
             receiver_cones: &self.cones,
-            casters: Some(Boxes { origin: DVec3::ZERO, boxes: &self.casters }),
+            casters: Some(Boxes::world(&self.casters)),
             ..FitInput::new(views, direction)
         }
     }

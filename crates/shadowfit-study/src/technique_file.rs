@@ -166,6 +166,16 @@ mod tests {
     }
 
     #[test]
+    fn a_summary_says_that_a_file_of_before_techniques_had_kinds_was_translated() {
+        let read = |text: &str| NamedTechnique::from_toml(text).expect("a technique");
+        let former = read("summary = \"calm\"\n[fit]\nkind = \"oriented\"\nreceivers = \"objects\"");
+        assert_eq!(former.summary, format!("calm ({TRANSLATED})"));
+        let again = read(&former.to_toml().expect("text"));
+        assert_eq!(again, former, "translated once");
+        assert_eq!(read("[fit]\nneed = \"boxes\"").summary, format!("({TRANSLATED})"));
+    }
+
+    #[test]
     fn what_no_file_can_hold_is_an_error() {
         let mut named = NamedTechnique::default();
         named.technique.bias.slope = f32::NAN;

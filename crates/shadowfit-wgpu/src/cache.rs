@@ -59,7 +59,7 @@ pub enum Culling {
 #[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 pub(crate) struct CacheSettings {
     /// Whether anything is kept.
-    pub(crate) keeps: bool,
+    pub(crate) caching: bool,
     /// Whether static casters can have separate layers.
     pub(crate) can_mend: bool,
     /// Which casters are drawn.
@@ -161,7 +161,7 @@ impl MapCache {
     pub(crate) fn choose(&mut self, frame: &CacheFrame<'_>) -> Choice {
         let mut changed = Vec::new();
         self.known.update(frame.casters, frame.direction, &mut changed);
-        let splits = self.settings.can_mend && self.settings.keeps && !self.known.moving.is_empty();
+        let splits = self.settings.can_mend && self.settings.caching && !self.known.moving.is_empty();
         if splits && !self.is_split {
             self.is_split = true;
             // The layers of the static casters are empty.
@@ -262,7 +262,7 @@ impl KeptMap {
         let fits_layer = now.projection.resolution == settings.layer;
         let is_same_grid = self.fitted.is_some_and(|before| !Scroll::between(&before, now).is_new);
         self.renewals = if is_same_grid { 0 } else { self.renewals.saturating_add(1) };
-        if !settings.keeps
+        if !settings.caching
             || now.anchor.is_none()
             || now.projection.is_empty
             || has_moving

@@ -23,7 +23,7 @@ pub(crate) struct CachedMaps {
     pub(crate) schedule: UpdateSchedule,
     /// Whether static casters are kept; without that every map is redrawn in every frame. Pictures are the same either
     /// way, up to rounding.
-    pub(crate) keeps: bool,
+    pub(crate) caching: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
     device: wgpu::Device,
@@ -53,7 +53,7 @@ impl CachedMaps {
         let layers = Layers::new(device, &map);
         Ok(Self {
             schedule: UpdateSchedule::default(),
-            keeps: true,
+            caching: true,
             culling: Culling::default(),
             device: device.clone(),
             map,
@@ -135,7 +135,7 @@ impl CachedMaps {
         let choice = self.cache.choose(&cached);
         if self.cache.is_split() && self.layers.split(&self.device, &self.map).is_err() {
             // Without memory for separate layers, static casters are drawn together with moving ones.
-            (self.keeps, self.cache) = (false, MapCache::default());
+            (self.caching, self.cache) = (false, MapCache::default());
             return self.update(queue, frame, fitted);
         }
         // 2. The casters of each, and the passes.
@@ -182,7 +182,7 @@ impl CachedMaps {
         let descriptor = self.map.descriptor();
         CacheSettings {
             // Colours are drawn with a depth buffer that is not stored.
-            keeps: self.keeps && descriptor.format.is_depth(),
+            caching: self.caching && descriptor.format.is_depth(),
             can_mend: Layers::can_mend(&self.device),
             culling: self.culling,
             depth_clamp: descriptor.depth_clamp,

@@ -15,7 +15,7 @@
 //! #     fn draw_picture(&self, _: &mut wgpu::CommandEncoder, _: &wgpu::BindGroup) {}
 //! # }
 //! # fn demo(engine: &Engine, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), Box<dyn std::error::Error>> {
-//! use shadowfit::glam::{DVec3, Vec3};
+//! use shadowfit::glam::Vec3;
 //! use shadowfit::{Boxes, DepthConvention, Technique};
 //! use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
 //!
@@ -28,7 +28,7 @@
 //! for camera in engine.frames() {
 //!     let views = [camera.frustum()?];
 //!     let objects = engine.boxes();
-//!     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+//!     let boxes = Boxes::world(&objects);
 //!     let casters = Casters { boxes, moves: &engine.moves };
 //!     // Positions in the shaders are relative to the eye; `with_origin` takes another place.
 //!     let frame = SunFrame::new(&views, Vec3::new(0.3, -0.8, 0.2), boxes, casters);

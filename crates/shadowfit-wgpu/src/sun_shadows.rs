@@ -148,8 +148,8 @@ impl SunShadows {
 
     /// Whether static casters are kept from frame to frame. They are by default. Pictures are the same either way
     /// but for 3 in 100,000 factors, at edges that were drawn with a matrix that is rounded otherwise.
-    pub fn set_caching(&mut self, keeps: bool) {
-        self.maps.keeps = keeps;
+    pub fn set_caching(&mut self, caching: bool) {
+        self.maps.caching = caching;
     }
 
     /// Which casters are drawn; see [`Culling`]. Pictures are the same either way.
@@ -189,7 +189,7 @@ impl SunShadows {
             return Ok(false);
         }
         let mut maps = CachedMaps::new(&self.device, descriptor)?;
-        (maps.schedule, maps.keeps, maps.culling) = (self.maps.schedule, self.maps.keeps, self.maps.culling);
+        (maps.schedule, maps.caching, maps.culling) = (self.maps.schedule, self.maps.caching, self.maps.culling);
         self.maps = maps;
         Ok(true)
     }

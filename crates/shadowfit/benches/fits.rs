@@ -247,7 +247,7 @@ fn focused(c: &mut Criterion) {
             group.bench_function(format!("{name}, {kind}"), |b| {
                 b.iter(|| {
                     let views = [camera(&mut turn).frustum().expect("a good camera")];
-                    let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
+                    let boxes = Boxes::world(&boxes);
                     let input =
                         FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
                     fitter.fit(&input, black_box(&settings), &mut Scratch::new(&mut storage)).expect("a good fit")
@@ -309,7 +309,7 @@ fn windows(c: &mut Criterion) {
     for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {
         let boxes = objects(count);
         let needs: Vec<_> = (0..WALK).map(|frame| demand(&walk(frame), &boxes)).collect();
-        let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
+        let boxes = Boxes::world(&boxes);
         let mut storage = vec![DVec2::ZERO; Scratch::required(count, 4)];
         for (case, preset, is_seen) in [
             ("windows-4", "windows-4", true),

@@ -106,7 +106,7 @@ mod tests {
         };
         let views = [camera.frustum().expect("a camera")];
         let ground = [Aabb::new(Vec3::new(-100.0, -0.1, -200.0), Vec3::new(100.0, 0.0, 10.0))];
-        let boxes = Boxes { origin: DVec3::ZERO, boxes: &ground };
+        let boxes = Boxes::world(&ground);
         let sun = Vec3::new(0.3, -0.8, 0.2);
         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
         let technique = Technique::default();

@@ -6,6 +6,8 @@ use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_wgpu::{Casters, PassContent, ShadowPass, SunFrame, SunShadows, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
+use crate::shaders::read_back::texels;
+
 /// Where the town lies, far from the world's origin.
 const PLACE: DVec3 = DVec3::new(12_000.0, 40.0, -7_000.0);
 
@@ -205,29 +207,7 @@ impl Engine {
 fn unwrapped(gpu: &Gpu, maps: &SunShadows) -> Vec<Vec<f32>> {
     let texture = maps.map().view().texture();
     let size = texture.size();
-    let bytes = u64::from(size.width * size.height * size.depth_or_array_layers) * 4;
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: bytes,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(size.width * 4),
-        rows_per_image: Some(size.height),
-    };
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-        size,
-    );
-    gpu.queue.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the maps can be read"));
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-    let mapped = buffer.slice(..).get_mapped_range().expect("the maps are mapped");
-    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&mapped);
+    let depths: Vec<f32> = texels(&gpu.device, &gpu.queue, texture);
     let layer = |(index, map): (usize, &FittedMap)| {
         let used = map.projection.resolution;
         let texels = (0..used.y).flat_map(move |y| (0..used.x).map(move |x| (x, y)));

@@ -6,6 +6,7 @@ use shadowfit_render::Gpu;
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
+use crate::shaders::read_back::texels;
 use crate::support::software_gpu;
 
 /// The camera's eye.
@@ -290,21 +291,9 @@ impl Painter {
 }
 
 /// Submits what was recorded, and waits for the picture.
-pub(super) fn read(device: &Device, mut encoder: wgpu::CommandEncoder, picture: &wgpu::Texture) -> Picture {
-    let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(SIDE * SIDE * 4),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIDE * 4), rows_per_image: None };
-    let destination = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-    encoder.copy_texture_to_buffer(picture.as_image_copy(), destination, picture.size());
+pub(super) fn read(device: &Device, encoder: wgpu::CommandEncoder, picture: &wgpu::Texture) -> Picture {
     device.queue.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the picture can be read"));
-    device.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-    let mapped = buffer.slice(..).get_mapped_range().expect("the picture is mapped");
-    Picture(bytemuck::pod_collect_to_vec(&mapped))
+    Picture(texels(&device.device, &device.queue, picture))
 }
 
 fn caster_pipeline(

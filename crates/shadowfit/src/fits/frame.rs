@@ -34,7 +34,7 @@ use crate::view::{Range, ViewFrustum};
 ///     Aabb::new(Vec3::new(-20.0, -0.1, -40.0), Vec3::new(20.0, 0.0, 10.0)), // ground
 ///     Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0)),    // house
 /// ];
-/// let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+/// let boxes = Boxes::world(&objects);
 /// let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
 /// let settings = FitSettings::default().with_max_distance(40.0);
 /// let mut storage = [Default::default(); Scratch::required(2, 1)];

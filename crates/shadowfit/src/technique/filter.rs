@@ -4,7 +4,7 @@
 //! from axis to axis. A floor and a ceiling in texels keep it within what a map can show and a shader can pay for.
 
 use crate::base::{FitError, checks};
-use crate::technique::settings::setters;
+use crate::technique::setters::setters;
 
 /// How the stored depths are turned into a shadow factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

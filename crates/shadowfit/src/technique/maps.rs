@@ -1,8 +1,9 @@
 //! The kinds of maps that a technique may have, each with the settings that only it has.
 
 use crate::base::{FitError, checks};
+use crate::technique::setters::setters;
 use crate::technique::settings::{
-    DEFAULT_WASTE, FitKind, Hysteresis, MAX_MAPS, MapSelection, RectangleKind, Shape, SplitScheme, Stabilise, setters,
+    DEFAULT_WASTE, FitKind, Hysteresis, MAX_MAPS, MapSelection, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 
 /// How the view is shared out among the maps.

@@ -2,12 +2,14 @@
 //!
 //! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
 
-use crate::technique::settings::{BiasSettings, FilterKind, MapFormat, MapSettings, Softness, setters};
+use crate::technique::setters::setters;
+use crate::technique::settings::{BiasSettings, FilterKind, MapFormat, MapSettings, Softness};
 use glam::UVec2;
 
 mod filter;
 mod maps;
 mod presets;
+mod setters;
 pub mod settings;
 
 pub use maps::{Maps, OneMap, Slices, Windows};

@@ -11,36 +11,9 @@
 use glam::{UVec2, Vec3};
 
 use crate::base::DepthConvention;
+use crate::technique::setters::setters;
 
 pub use super::filter::{FilterKind, SoftRadius, Softness};
-
-/// Writes one `with_*` method per field of a settings struct, or of a part of it.
-macro_rules! setters {
-    ($settings:ident.$part:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
-        impl $settings {
-            $(
-                #[doc = concat!("These settings with another `", stringify!($part), ".", stringify!($field), "`.")]
-                #[must_use]
-                pub const fn $method(mut self, $field: $value) -> Self {
-                    self.$part.$field = $field;
-                    self
-                }
-            )+
-        }
-    };
-    ($settings:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
-        impl $settings {
-            $(
-                #[doc = concat!("These settings with another [`", stringify!($field), "`](Self::", stringify!($field), ").")]
-                #[must_use]
-                pub const fn $method(mut self, $field: $value) -> Self {
-                    self.$field = $field;
-                    self
-                }
-            )+
-        }
-    };
-}
 
 /// Which rule fits a shadow map to the camera frustum, or to its slice of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -475,5 +448,3 @@ setters!(BiasSettings {
     with_receiver_plane receiver_plane: f32,
     with_depth_steps depth_steps: f32,
 });
-
-pub(crate) use setters;

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
-use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, prove};
 use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, Hysteresis, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
@@ -12,10 +12,8 @@ use shadowfit::{
     Technique, ViewFrustum,
 };
 
-use crate::scenes::any_choice;
+use crate::scenes::{COVERING, any_choice, any_walk};
 use crate::support::{DIRECTION, SNAP, any_camera, any_direction, apply, camera, cases, double, float, sliced};
-
-const COVERING: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
 fn storage(boxes: usize) -> Vec<DVec2> {
     vec![DVec2::ZERO; Scratch::required(boxes, 10)]
@@ -133,33 +131,6 @@ fn reach_of(settings: &MapSettings) -> Reach {
     Reach::taps(settings.border.unwrap_or(3.0) + 0.5)
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Walk {
-    step: DVec3,
-    axis: DVec3,
-    turn: f64,
-}
-
-/// Standing still, walking, turning and leaps.
-fn any_walk() -> impl Strategy<Value = Walk> {
-    let step = prop_oneof![1 => Just(0.0), 3 => double(0.0, 0.01), 1 => double(0.0, 0.3)];
-    let turn = prop_oneof![1 => Just(0.0), 3 => double(0.0, 0.02), 1 => double(0.0, 1.0)];
-    (any_direction(), step, any_direction(), turn).prop_map(|(d, step, axis, turn)| Walk {
-        step: d.as_dvec3() * step,
-        axis: axis.as_dvec3().normalize(),
-        turn,
-    })
-}
-
-impl Walk {
-    fn moved(&self, camera: &PerspectiveCamera) -> PerspectiveCamera {
-        let turn = DQuat::from_axis_angle(self.axis, self.turn);
-        let turned = |v: Vec3| (turn * v.as_dvec3()).as_vec3();
-        let eye = camera.eye + self.step * f64::from(camera.far);
-        PerspectiveCamera { eye, forward: turned(camera.forward), up: turned(camera.up), ..*camera }
-    }
-}
-
 proptest! {
     #![proptest_config(cases(1000))]
 
@@ -230,7 +201,7 @@ proptest! {
                 let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
                 prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
-            camera = walk.moved(&camera);
+            camera = walk.moved_camera(&camera);
         }
     }
 }

@@ -292,14 +292,17 @@ pub(crate) struct Walk {
 
 impl Walk {
     pub(crate) fn moved(&self, view: &SceneView) -> SceneView {
-        let turn = DQuat::from_axis_angle(self.axis, self.turn);
-        let turned = |v: Vec3| (turn * v.as_dvec3()).as_vec3();
-        SceneView {
-            eye: view.eye + self.step * view.lens.far,
-            forward: turned(view.forward),
-            up: turned(view.up),
-            ..*view
-        }
+        let (forward, up) = (self.turned(view.forward), self.turned(view.up));
+        SceneView { eye: view.eye + self.step * view.lens.far, forward, up, ..*view }
+    }
+
+    pub(crate) fn moved_camera(&self, camera: &PerspectiveCamera) -> PerspectiveCamera {
+        let (forward, up) = (self.turned(camera.forward), self.turned(camera.up));
+        PerspectiveCamera { eye: camera.eye + self.step * f64::from(camera.far), forward, up, ..*camera }
+    }
+
+    fn turned(&self, direction: Vec3) -> Vec3 {
+        (DQuat::from_axis_angle(self.axis, self.turn) * direction.as_dvec3()).as_vec3()
     }
 }
 

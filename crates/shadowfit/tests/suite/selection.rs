@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec2};
 use shadowfit::selection::{DepthRange, MapBlend, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::settings::{MAX_MAPS, MapSelection};
-use shadowfit::{FitInput, FitState, FittedMaps, LightProjection, Scratch, Technique};
+use shadowfit::{FitInput, FitState, FittedMaps, LightProjection, PRESETS, Scratch, Technique};
 
 use crate::scenes::{any_light, any_technique, any_view};
 use crate::support::{DIRECTION, camera, cases, double, float, read_by};
@@ -128,6 +128,26 @@ fn free_texels_are_counted_from_the_nearest_side() {
         assert!(is_near, "{free:?} instead of {expected:?} at {texels}");
     }
     assert_eq!(fit.free_texels(DVec3::NAN), None);
+}
+
+#[test]
+fn no_map_is_read_beyond_the_shadow_distance() {
+    let camera = camera();
+    let views = [camera.frustum().expect("a camera")];
+    let mut reaching_beyond = 0;
+    for preset in &PRESETS {
+        let technique = preset.technique().with_max_distance(40.0);
+        let maps = fitted(&technique, &FitInput::new(&views, DIRECTION));
+        let read = |depth: f64| {
+            let point = camera.eye + camera.forward.as_dvec3().normalize() * depth;
+            (maps.read(&technique, point, depth), maps.iter().any(|map| map.projection.covers(point)))
+        };
+        assert!(read(39.9).0.is_some(), "{}", preset.name);
+        let (beyond, is_covered) = read(40.1);
+        assert_eq!(beyond, None, "{}", preset.name);
+        reaching_beyond += usize::from(is_covered);
+    }
+    assert!(reaching_beyond > 0, "the distance decides, not the maps' borders");
 }
 
 proptest! {

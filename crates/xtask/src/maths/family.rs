@@ -3,10 +3,10 @@
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
 use shadowfit::settings::{FitKind, RectangleKind};
-use shadowfit::{Aabb, FitInput, LightProjection};
+use shadowfit::{Aabb, Boxes, FitInput, LightProjection};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, MIDDLE, PURPLE, RED, RIGHT, YELLOW, bounds, fill, stroke};
-use super::scene::{Fitter, Look, boxes, camera, draw_box, draw_frustum, one_map, plain_fit};
+use super::scene::{Fitter, Look, camera, draw_box, draw_frustum, one_map, plain_fit};
 
 const LIGHT: Vec3 = Vec3::new(0.3, -0.85, 0.2);
 
@@ -35,7 +35,7 @@ const ROW: f64 = 262.0;
 
 pub(super) fn draw() -> Result<String> {
     let view = [camera(40.0, -4.0, 0.42, 40.0).frustum()?];
-    let village = Some(boxes(&VILLAGE));
+    let village = Some(Boxes::world(&VILLAGE));
     let input = FitInput { receivers: village, casters: village, ..FitInput::new(&view, LIGHT) };
     let mut fits = Vec::new();
     for (_, kind, rectangle, _) in MAPS {

@@ -4,8 +4,7 @@ use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FitState, FittedMaps, LightProjection, OneMap, PerspectiveCamera, Scratch, Technique,
-    ViewFrustum,
+    Aabb, FitInput, FitState, FittedMaps, LightProjection, OneMap, PerspectiveCamera, Scratch, Technique, ViewFrustum,
 };
 
 use super::canvas::{Canvas, Frame, GREY, Paint, stroke};
@@ -34,11 +33,6 @@ pub(super) fn plain_fit(kind: FitKind) -> FitSettings {
 pub(super) fn one_map(fit: FitSettings) -> Technique {
     let map = OneMap { shape: fit.shape, stabilise: Stabilise::Off };
     Technique::default().with_maps(map).with_fit(fit.map)
-}
-
-/// Boxes in world coordinates as fits take them.
-pub(super) fn boxes(boxes: &[Aabb]) -> Boxes<'_> {
-    Boxes { origin: DVec3::ZERO, boxes }
 }
 
 /// Fits frames one after the other, with a memory of their own.

@@ -3,10 +3,10 @@
 use anyhow::Result;
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace, SIDE};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, FitInput, FittedMaps, PerspectiveCamera, Technique};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, PerspectiveCamera, Technique};
 
 use super::canvas::{Canvas, Frame, INK, MAPS, RIGHT, fill, stroke};
-use super::scene::{self, Fitter, Look, Visible, boxes, draw_box, visible};
+use super::scene::{self, Fitter, Look, Visible, draw_box, visible};
 
 /// Where the sun travels.
 const LIGHT: Vec3 = Vec3::new(0.25, -0.72, -0.42);
@@ -153,7 +153,7 @@ impl Walk {
         let camera = PerspectiveCamera { near: 0.1, ..scene::camera(heading, -4.0, 0.8, 120.0) };
         let view = [camera.frustum()?];
         let demand = self.demand.as_ref().map(|(space, counts)| DemandGrid { space: *space, counts });
-        let street = Some(boxes(&STREET));
+        let street = Some(Boxes::world(&STREET));
         let input =
             FitInput { receivers: street, casters: street, demand: demand.as_slice(), ..FitInput::new(&view, LIGHT) };
         let maps = self.fitter.fit(&input, &self.technique)?;

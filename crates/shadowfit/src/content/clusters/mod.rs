@@ -20,7 +20,7 @@ use piece::{Corners, Outline, Triangle};
 /// they hold every point of every triangle. No group holds triangles of two objects.
 ///
 /// ```
-/// use shadowfit::glam::{DVec3, Vec3};
+/// use shadowfit::glam::Vec3;
 /// use shadowfit::Clusters;
 /// use shadowfit::Boxes;
 ///
@@ -32,7 +32,7 @@ use piece::{Corners, Outline, Triangle};
 ///     steps.extend([[near, left, far], [near, far, right]]);
 /// }
 /// let clusters = Clusters::build(&[&steps], Clusters::DEFAULT_LIMIT)?;
-/// let receivers = Boxes { origin: DVec3::ZERO, boxes: clusters.boxes() };
+/// let receivers = Boxes::world(clusters.boxes());
 /// assert!(receivers.boxes.iter().all(|step| step.max.y == step.min.y)); // no air in the boxes
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
