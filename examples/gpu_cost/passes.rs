@@ -267,7 +267,7 @@ pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table>
             let depth = shadowfit::DepthConvention::Reversed;
             let view = DemandView::from_camera(&camera, depth, direction, &settings, SIZE)?;
             let time = timer.frame(gpu, |encoder, times| {
-                let query = times.begin("need", encoder);
+                let query = times.begin("demand", encoder);
                 let writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
                 let recorded = pass.record(encoder, &engine.depth, &view, writes);
                 times.end(query, encoder);

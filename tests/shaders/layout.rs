@@ -204,7 +204,7 @@ fn the_uniform_of_the_need_pass_lies_as_in_wgsl() {
             pixel_width,
         }
     );
-    assert_same(&parse("need", &demand_wgsl(1)), &demand);
+    assert_same(&parse("demand", &demand_wgsl(1)), &demand);
 }
 
 #[test]

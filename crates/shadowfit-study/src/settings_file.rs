@@ -99,6 +99,11 @@ fn translate(file: &mut toml::Table) -> bool {
             input.insert(key.to_owned(), value);
         }
     }
+    let view = file.get_mut(Group::View.id()).and_then(|view| view.get_mut("mode"));
+    if let Some(mode) = view.filter(|mode| mode.as_str() == Some("need")) {
+        *mode = Value::from("demand");
+        is_former = true;
+    }
     is_former
 }
 
@@ -228,6 +233,8 @@ mod tests {
         assert_eq!(read(former("oriented", 3)), slices.into());
 
         let mut settings = Settings::default();
+        assert!(settings_from_toml(&table("[view]\nmode = \"need\""), &mut settings).expect("a former name"));
+        assert_eq!(settings.view.mode, ViewMode::Demand);
         let written = table(&settings_to_toml(&settings, ""));
         assert!(!settings_from_toml(&written, &mut settings).expect("a file of this version"));
         let of_another_kind = table("[fit]\nkind = \"windows\"\n[splits]\nscheme = \"uniform\"");

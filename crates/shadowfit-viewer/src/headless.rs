@@ -143,7 +143,7 @@ impl Album<'_> {
     fn views(&mut self) -> Result<()> {
         self.interface.bare = true;
         let names =
-            ["final", "truth", "errors", "pixels-per-texel", "maps", "texel-grid", "need", "updates", "outside"];
+            ["final", "truth", "errors", "pixels-per-texel", "maps", "texel-grid", "demand", "updates", "outside"];
         for (mode, name) in ViewMode::ALL.into_iter().zip(names) {
             self.stage.settings.view.mode = mode;
             self.stage.settings.view.inset = InsetMaps::Off;

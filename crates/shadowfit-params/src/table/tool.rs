@@ -176,7 +176,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "The texels of the maps on the surfaces that read them.",
             },
             ChoiceOption {
-                id: "need",
+                id: "demand",
                 label: "Demand",
                 help: "The scene as the light sees it: where the picture asks for how fine a texel, and the maps laid \
                        over it.",

@@ -31,6 +31,8 @@ pub(super) struct Key {
     pub(super) direction: glam::Vec3,
     /// Time of the scene's animation, in seconds.
     pub(super) seconds: f32,
+    /// They differ in a view that stands still, too, once it is known what it showed.
+    pub(super) maps: Vec<FittedMap>,
 }
 
 /// A picture that was judged, with its classes as a texture.
@@ -147,6 +149,7 @@ impl Live {
             technique: shot.settings.technique,
             direction: view.direction,
             seconds: shot.seconds,
+            maps: maps.to_vec(),
         };
         let since = match &self.last {
             Some((last, since)) if *last == key => *since,

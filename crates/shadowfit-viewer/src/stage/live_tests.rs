@@ -78,6 +78,26 @@ fn gpu_a_picture_that_is_waited_for_has_its_figures_at_once() {
 }
 
 #[test]
+fn gpu_a_view_that_stands_still_is_judged_again_when_its_maps_change() {
+    let (mut stage, target) = stage(false);
+    stage.side.live.waits = true;
+    draw(&mut stage, &target);
+    let maps = |stage: &Stage| stage.side.evaluator.drawn_fits().to_vec();
+    let figures = |stage: &Stage| stage.judged_figures().expect("it was judged");
+    // What the first frame showed places the maps of a later one.
+    let (first, before) = (maps(&stage), figures(&stage));
+    while maps(&stage) == first {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        draw(&mut stage, &target);
+    }
+    let shown = figures(&stage);
+    assert_ne!(shown, before);
+    stage.side.live.forget();
+    draw(&mut stage, &target);
+    assert_eq!(shown, figures(&stage), "those of the maps that are shown");
+}
+
+#[test]
 fn gpu_the_age_of_figures_is_told_by_the_clock_of_the_stage() {
     let (mut stage, target) = stage(false);
     stage.wait_for_rays();

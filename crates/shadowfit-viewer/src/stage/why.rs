@@ -85,9 +85,10 @@ impl Stage {
     /// The content of the picture at a point, in views of the camera.
     fn shown_at(&self, at: [f32; 2], size: [u32; 2]) -> Option<Key> {
         let in_other = self.is_comparing() && at[0] > self.split;
-        let (_, technique) = self.side_at(in_other).filter(|_| self.settings.view.mode.shows_camera())?;
+        let (side, technique) = self.side_at(in_other).filter(|_| self.settings.view.mode.shows_camera())?;
         let View { camera, direction, .. } = self.view(size);
-        Some(Key { camera, technique, direction, seconds: self.seconds })
+        let maps = side.evaluator.drawn_fits().to_vec();
+        Some(Key { camera, technique, direction, seconds: self.seconds, maps })
     }
 
     fn question(&self, at: [f32; 2], size: [u32; 2]) -> Option<WhyInput> {
