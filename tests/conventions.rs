@@ -16,6 +16,7 @@ use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, MapView, RESOLUTIONS, 
 use crate::support::software_gpu;
 
 const FIT_ONCE: &str = include_str!("../examples/fit_once.rs");
+const README: &str = include_str!("../README.md");
 const CORE_README: &str = include_str!("../crates/shadowfit/README.md");
 const CORE_DOCS: &str = include_str!("../crates/shadowfit/src/lib.rs");
 
@@ -155,7 +156,7 @@ fn the_core_the_shadow_map_and_the_docs_recommend_the_same_technique() {
     assert_eq!(ShadowMapDescriptor::default(), ShadowMapDescriptor::from(&recommended));
     assert_eq!(recommended.border(), 3.0, "the reach of PCF 5×5");
     for (name, text) in [
-        ("README.md", include_str!("../README.md")),
+        ("README.md", README),
         ("the core's README.md", CORE_README),
         ("fit_once", FIT_ONCE),
         ("engine_integration", include_str!("../examples/engine_integration.rs")),
@@ -171,10 +172,12 @@ fn first_example<'a>(page: impl Iterator<Item = &'a str>) -> String {
 }
 
 #[test]
-fn the_core_s_readme_docs_and_example_begin_with_the_same_code_and_the_default_technique() {
+fn the_readmes_the_core_s_docs_and_the_example_begin_with_the_same_code_and_the_default_technique() {
     let example = &FIT_ONCE[FIT_ONCE.find("use shadowfit").expect("the example uses shadowfit")..];
     assert!(example.contains("Technique::default()"));
-    assert_eq!(first_example(CORE_README.lines()), example.trim_end());
+    for readme in [README, CORE_README] {
+        assert_eq!(first_example(readme.lines()), example.trim_end());
+    }
     let docs =
         CORE_DOCS.lines().map(|line| line.trim_start_matches("//!")).map(|line| line.strip_prefix(' ').unwrap_or(line));
     assert_eq!(first_example(docs), example.trim_end());
