@@ -23,15 +23,15 @@ fn main() -> Result<(), FitError> {
     let objects = columns();
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), 1)];
-    let mut workspace = Scratch::new(&mut storage);
+    let mut scratch = Scratch::new(&mut storage);
 
     let (mut fitter, technique) = (FitState::new(), Technique::default());
     let mut least = Margins { planes: [f32::INFINITY; 6], casters: f32::INFINITY };
     for frame in 0..FRAMES {
         let views = [camera(frame).frustum()?];
         let input = input(&views, boxes);
-        let maps = fitter.fit(&input, &technique, &mut workspace)?;
-        for (index, proof) in proofs(&input, &technique, &maps, &mut workspace)?.into_iter().enumerate() {
+        let maps = fitter.fit(&input, &technique, &mut scratch)?;
+        for (index, proof) in proofs(&input, &technique, &maps, &mut scratch)?.into_iter().enumerate() {
             match proof {
                 CoverageProof::Proven(margins) => least = least_of(least, margins),
                 hole => println!("frame {frame}, map {index}: {hole:?}"),
@@ -48,7 +48,7 @@ fn main() -> Result<(), FitError> {
     let views = [camera(0).frustum()?];
     let input = input(&views, boxes);
     let slices = Slices::default();
-    let count = fewest_maps(&input, &technique.with_maps(slices), 1.5, &mut workspace)?;
+    let count = fewest_maps(&input, &technique.with_maps(slices), 1.5, &mut scratch)?;
     println!("{count} slices instead of {} make texels at most 1.5 times as coarse", slices.count);
 
     // Where no boxes say what is visible: without bounds, with those that a reduction of the last depth buffer gives,
@@ -57,9 +57,9 @@ fn main() -> Result<(), FitError> {
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
         let input = FitInput { receivers: None, depth_bounds, ..input };
-        let maps = FitState::new().fit(&input, &logarithmic, &mut workspace)?;
+        let maps = FitState::new().fit(&input, &logarithmic, &mut scratch)?;
         let ends: Vec<f32> = maps.iter().rev().skip(1).rev().map(|map| map.far).collect();
-        let is_proven = proofs(&input, &logarithmic, &maps, &mut workspace)?.iter().all(CoverageProof::is_proven);
+        let is_proven = proofs(&input, &logarithmic, &maps, &mut scratch)?.iter().all(CoverageProof::is_proven);
         println!("{depth_bounds:?}: slices end at {ends:?} m, no holes: {is_proven}");
     }
     Ok(())
@@ -71,13 +71,13 @@ fn proofs(
     input: &FitInput,
     technique: &Technique,
     maps: &FittedMaps,
-    workspace: &mut Scratch,
+    scratch: &mut Scratch,
 ) -> Result<Vec<CoverageProof>, FitError> {
     let mut proofs = Vec::new();
     for map in maps.iter() {
         let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
             .with_normal_offset(map.bias.normal_offset);
-        proofs.push(prove(input, &map.projection, &query, workspace)?);
+        proofs.push(prove(input, &map.projection, &query, scratch)?);
     }
     Ok(proofs)
 }

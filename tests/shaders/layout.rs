@@ -182,7 +182,7 @@ fn the_volumes_of_the_culling_uniform_lie_as_in_wgsl() {
 }
 
 #[test]
-fn the_uniform_of_the_need_pass_lies_as_in_wgsl() {
+fn the_uniform_of_the_demand_pass_lies_as_in_wgsl() {
     let demand = layout!(
         "Demand" = DemandUniform {
             world_from_pixel,

@@ -97,7 +97,7 @@ impl Menu {
         opened.chain(saved).chain(presets)
     }
 
-    /// The menu, as a line of its own; `can_save` adds the button that saves the technique by a name.
+    /// The menu, as a line of its own; with `saved`, the techniques saved by name, a button saves this one too.
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,

@@ -184,7 +184,7 @@ mod tests {
             frames.iter().map(|view| scene.fit_next(&mut fitter, inputs, view).expect("maps")).collect()
         };
         let (seen, estimated) = (along("windows-4"), along("windows-boxes-4"));
-        assert_ne!(alone("windows-4"), alone("windows-boxes-4"), "the picture's own needs count");
+        assert_ne!(alone("windows-4"), alone("windows-boxes-4"), "the picture's own demand counts");
         assert_eq!(seen[0], estimated[0], "the first frame knows the boxes alone");
         assert_eq!(seen[0], alone("windows-boxes-4"));
         assert_ne!(seen[1], estimated[1], "the next one knows what the first one showed");

@@ -13,10 +13,10 @@
 //! use shadowfit_wgpu::demand::{DemandPass, DemandView};
 //!
 //! let mut fitter = ShadowFitter::new(&Technique::default());
-//! let mut need = DemandPass::new(device, queue, 1).ok(); // without it fits take boxes
+//! let mut demand = DemandPass::new(device, queue, 1).ok(); // without it fits take boxes
 //! loop {
 //!     // The newest counts that are there; those of the frame before until then.
-//!     if let Some(pass) = &mut need
+//!     if let Some(pass) = &mut demand
 //!         && let Some(seen) = pass.take()?
 //!     {
 //!         fitter.see(seen);
@@ -25,7 +25,7 @@
 //!     let maps = fitter.fit(&FitInput::new(&views, direction))?;
 //!     // Draw the maps and the scene as ever, and then:
 //!     let mut encoder = device.create_command_encoder(&Default::default());
-//!     if let Some(pass) = &mut need {
+//!     if let Some(pass) = &mut demand {
 //!         let settings = &fitter.technique().fit;
 //!         let view = DemandView::from_camera(camera, DepthConvention::Reversed, direction, settings, size)?;
 //!         pass.record(&mut encoder, depth, &view, None)?;

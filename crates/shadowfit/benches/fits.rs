@@ -198,8 +198,8 @@ fn against_bevy(c: &mut Criterion) {
         b.iter(|| {
             let views = [black_box(&camera(&mut turn)).frustum().expect("a good camera")];
             let input = FitInput::new(black_box(&views), black_box(DIRECTION));
-            let mut workspace = Scratch::new(&mut storage);
-            fitter.fit_into(&input, black_box(&settings), &mut workspace, &mut maps).expect("a good fit");
+            let mut scratch = Scratch::new(&mut storage);
+            fitter.fit_into(&input, black_box(&settings), &mut scratch, &mut maps).expect("a good fit");
             black_box(&maps);
         });
     });

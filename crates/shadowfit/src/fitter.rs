@@ -72,10 +72,10 @@ impl FitState {
         &mut self,
         input: &FitInput,
         technique: &Technique,
-        workspace: &mut Scratch,
+        scratch: &mut Scratch,
     ) -> Result<FittedMaps, FitError> {
         let mut maps = FittedMaps::default();
-        self.fit_into(input, technique, workspace, &mut maps)?;
+        self.fit_into(input, technique, scratch, &mut maps)?;
         Ok(maps)
     }
 
@@ -88,7 +88,7 @@ impl FitState {
         &mut self,
         input: &FitInput,
         technique: &Technique,
-        workspace: &mut Scratch,
+        scratch: &mut Scratch,
         maps: &mut FittedMaps,
     ) -> Result<(), FitError> {
         // 1. The light, and the rule that the technique's maps are fitted by.
@@ -96,7 +96,7 @@ impl FitState {
         let last = self.last.as_ref().filter(|last| last.technique == *technique);
         let light = light.held(last.filter(|_| technique.maps.are_kept()).map(|last| last.direction));
         // 2. The boxes, and what the views see of them.
-        let (content, points) = Content::new(input.scene(), workspace.storage)?;
+        let (content, points) = Content::new(input.scene(), scratch.storage)?;
         let range = whole_range(input, technique.fit.max_distance);
         let last_view = last.map(|last| &last.view);
         let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view };
@@ -177,11 +177,11 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
 /// # let views = [camera.frustum()?];
 /// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
 /// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-/// # let mut workspace = Scratch::new(&mut storage);
+/// # let mut scratch = Scratch::new(&mut storage);
 /// let technique = Technique::preset("calm-4").unwrap().with_count(8);
-/// let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
+/// let count = fewest_maps(&input, &technique, 1.5, &mut scratch)?;
 /// assert!(count < 8); // the last ones would make texels less than 1.5 times as fine
-/// let maps = FitState::new().fit(&input, &technique.with_count(count), &mut workspace)?;
+/// let maps = FitState::new().fit(&input, &technique.with_count(count), &mut scratch)?;
 /// assert_eq!(maps.len(), count as usize);
 /// # Ok::<(), FitError>(())
 /// ```
@@ -193,14 +193,14 @@ pub fn fewest_maps(
     input: &FitInput,
     technique: &Technique,
     waste: f32,
-    workspace: &mut Scratch,
+    scratch: &mut Scratch,
 ) -> Result<u32, FitError> {
     let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;
     if technique.maps.count() == 1 {
         return Ok(1);
     }
-    let (content, _) = Content::new(input.scene(), workspace.storage)?;
+    let (content, _) = Content::new(input.scene(), scratch.storage)?;
     let range = whole_range(input, technique.fit.max_distance);
     let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view: None };
     Ok(slices::fewest(&frame, &technique.maps.as_slices(), waste))

@@ -112,9 +112,9 @@ impl FittedMaps {
     /// #     far: 200.0,
     /// # };
     /// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-    /// # let workspace = &mut Scratch::new(&mut storage);
+    /// # let scratch = &mut Scratch::new(&mut storage);
     /// let (views, technique) = ([camera.frustum()?], Technique::default());
-    /// let maps = FitState::new().fit(&FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)), &technique, workspace)?;
+    /// let maps = FitState::new().fit(&FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)), &technique, scratch)?;
     /// let read = maps.read(&technique, DVec3::new(0.0, 1.0, -20.0), 25.0).expect("it is in view");
     /// println!("map {}, blended into {:?}", read.map, read.blend);
     /// # assert!(maps[read.main()].projection.covers(DVec3::new(0.0, 1.0, -20.0)));
@@ -126,8 +126,8 @@ impl FittedMaps {
             return None;
         }
         match technique.maps.selection() {
-            choice @ MapSelection::Coverage { blend } => {
-                let order = MapOrder::new(choice, self.iter().map(|map| &map.projection));
+            selection @ MapSelection::Coverage { blend } => {
+                let order = MapOrder::new(selection, self.iter().map(|map| &map.projection));
                 let (reach, blend) = (f64::from(technique.reach()), f64::from(blend));
                 by_coverage(order.iter(), reach, blend, |map| self[map].projection.free_texels(point))
             }

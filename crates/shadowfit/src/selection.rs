@@ -94,10 +94,10 @@ impl MapOrder {
     /// assert!(MapOrder::new(MapSelection::default(), &maps).iter().eq([1, 2, 0]));
     /// assert!(MapOrder::new(MapSelection::ViewDepth { overlap: 0.0 }, &maps).iter().eq([0, 1, 2, 3]));
     /// ```
-    pub fn new<'a>(choice: MapSelection, maps: impl IntoIterator<Item = &'a LightProjection>) -> Self {
+    pub fn new<'a>(selection: MapSelection, maps: impl IntoIterator<Item = &'a LightProjection>) -> Self {
         let area = |fit: &LightProjection| f64::from(fit.texel_size.x) * f64::from(fit.texel_size.y);
         let maps = maps.into_iter();
-        match choice {
+        match selection {
             MapSelection::Coverage { .. } => Self::by_area(maps.map(|fit| (!fit.is_empty).then(|| area(fit)))),
             MapSelection::ViewDepth { .. } => Self::by_area(maps.map(|_| Some(1.0))),
         }

@@ -70,8 +70,8 @@ impl ShadowFitter {
             None => *input,
         };
         self.scratch.resize(Scratch::required(input.boxes(), input.views.len() + VIEWS_AHEAD), DVec2::ZERO);
-        let workspace = &mut Scratch::new(&mut self.scratch);
-        let fitted = self.history.fit_into(&input, &self.technique, workspace, &mut self.fitted);
+        let scratch = &mut Scratch::new(&mut self.scratch);
+        let fitted = self.history.fit_into(&input, &self.technique, scratch, &mut self.fitted);
         if let Err(error) = fitted {
             self.fitted = FittedMaps::default();
             return Err(error);

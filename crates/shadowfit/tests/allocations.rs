@@ -78,8 +78,8 @@ fn no_fit_allocates() {
                 let settings = FitSettings::default().with_kind(kind).with_rectangle(rectangle).with_casters(casters);
                 let what = format!("{settings:?}");
                 without_allocation(&what, || fit(&views[0], DIRECTION, &settings)).expect("a good frustum");
-                let mut workspace = Scratch::new(&mut storage);
-                without_allocation(&what, || fit_scene(&input, &settings, &mut workspace)).expect("a good scene");
+                let mut scratch = Scratch::new(&mut storage);
+                without_allocation(&what, || fit_scene(&input, &settings, &mut scratch)).expect("a good scene");
             }
         }
     }
@@ -99,8 +99,8 @@ fn no_fit_of_several_maps_allocates() {
                 let settings = Technique::default().with_maps(slices).with_fit(fit);
                 let (what, mut fitter) = (format!("{settings:?}"), FitState::new());
                 for _ in 0..2 {
-                    let mut workspace = Scratch::new(&mut storage);
-                    let maps = without_allocation(&what, || fitter.fit(&input, &settings, &mut workspace));
+                    let mut scratch = Scratch::new(&mut storage);
+                    let maps = without_allocation(&what, || fitter.fit(&input, &settings, &mut scratch));
                     assert_eq!(maps.expect("a good scene").len(), 4);
                 }
             }
@@ -128,8 +128,8 @@ fn no_fit_of_windows_allocates() {
     for (name, grids) in [("windows-4", &[][..]), ("windows-4", &grids), ("windows-8", &grids)] {
         let (technique, mut fitter) = (Technique::preset(name).expect("a preset"), FitState::new());
         for demand in [&[][..], grids, grids, grids, &[], grids] {
-            let (input, mut workspace) = (FitInput { demand, ..known }, Scratch::new(&mut storage));
-            let maps = without_allocation(name, || fitter.fit(&input, &technique, &mut workspace));
+            let (input, mut scratch) = (FitInput { demand, ..known }, Scratch::new(&mut storage));
+            let maps = without_allocation(name, || fitter.fit(&input, &technique, &mut scratch));
             assert_eq!(maps.expect("a good scene").len(), technique.maps.count() as usize);
         }
     }
@@ -141,16 +141,16 @@ fn no_proof_and_no_scrolling_allocates() {
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
-    let mut workspace = Scratch::new(&mut storage);
+    let mut scratch = Scratch::new(&mut storage);
     let slices = Slices { shape: Shape::new(FitKind::Sphere), ..Slices::default() };
     let fit = MapSettings::default().with_casters(CasterPolicy::PerObject);
     let settings = Technique::default().with_maps(slices).with_fit(fit);
     let mut fitter = FitState::new();
-    let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
-    let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
+    let before = fitter.fit(&input, &settings, &mut scratch).expect("a good scene");
+    let now = fitter.fit(&input, &settings, &mut scratch).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
         let query = CoverageQuery::of_map(map, &settings, Reach::POINT);
-        let verified = without_allocation("verify", || prove(&input, &map.projection, &query, &mut workspace));
+        let verified = without_allocation("verify", || prove(&input, &map.projection, &query, &mut scratch));
         assert!(verified.expect("a good map").is_proven());
         let scroll = without_allocation("scroll", || Scroll::between(before, map));
         assert!(!scroll.is_redraw());

@@ -161,7 +161,7 @@ impl fmt::Display for FitError {
             ),
             Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
             Self::ScratchTooSmall { given, required } => {
-                write!(f, "the workspace has {given} elements and needs {required}; see Scratch::required")
+                write!(f, "the scratch memory has {given} elements and needs {required}; see Scratch::required")
             }
             Self::CountMismatch { input, given, expected } => {
                 write!(f, "{input} is {given}; give {expected} as before, or build anew")

@@ -59,10 +59,10 @@ impl FittedMaps {
     /// #     far: 200.0,
     /// # };
     /// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-    /// # let workspace = &mut Scratch::new(&mut storage);
+    /// # let scratch = &mut Scratch::new(&mut storage);
     /// let (views, technique) = ([camera.frustum()?], Technique::default());
     /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-    /// let maps = FitState::new().fit(&input, &technique, workspace)?;
+    /// let maps = FitState::new().fit(&input, &technique, scratch)?;
     /// let volumes = maps.caster_volumes(&views, &technique)?;
     ///
     /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
@@ -356,8 +356,8 @@ mod tests {
         ENDS.into_iter().map(map).collect()
     }
 
-    fn by(choice: MapSelection) -> MapReading {
-        MapReading { selection: choice, ..Technique::default().reading() }
+    fn by(selection: MapSelection) -> MapReading {
+        MapReading { selection, ..Technique::default().reading() }
     }
 
     /// Where each map begins to be read, in metres.
@@ -454,8 +454,8 @@ mod tests {
         let maps = maps(&frustum(0.9));
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let mut volumes = [CasterVolume::nowhere(DVec3::ZERO); 3];
-        for choice in [MapSelection::ViewDepth { overlap: 0.0 }, MapSelection::default()] {
-            let swept = caster_volumes(&maps, &by(choice), &reader, &[], &mut volumes);
+        for selection in [MapSelection::ViewDepth { overlap: 0.0 }, MapSelection::default()] {
+            let swept = caster_volumes(&maps, &by(selection), &reader, &[], &mut volumes);
             assert_eq!(swept, Err(FitError::NoView));
         }
         assert_eq!(FittedMaps::default().caster_volumes(&[], &Technique::default()), Err(FitError::NoView));

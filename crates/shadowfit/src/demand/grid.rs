@@ -35,7 +35,7 @@ pub const SIDE: usize = 32;
 /// Length of [`DemandGrid::counts`].
 pub const CELLS: usize = LEVELS * SIDE * SIDE;
 
-/// Height of the picture in pixels, whatever its resolution: only the ratios of needs matter, so all grids
+/// Height of the picture in pixels, whatever its resolution: only the ratios of demands matter, so all grids
 /// count in pixels of the same size.
 pub const PIXELS: f32 = 1080.0;
 
@@ -47,7 +47,7 @@ const CELLS_IN_DISTANCE: f32 = 4.0;
 /// would ask for the finest texels of all.
 pub const MIN_FACING: f32 = 0.05;
 
-/// The plane across the light in which needs are counted, and the scale of it.
+/// The plane across the light in which demand is counted, and the scale of it.
 ///
 /// The plane is that of the windows for the same light: its second axis is shortened by the ratio of
 /// their texels' sides, so that windows are squares in it.
@@ -171,7 +171,7 @@ impl DemandGrid<'_> {
     }
 }
 
-/// Length of the difference of two unit directions up to which needs under the one serve for the
+/// Length of the difference of two unit directions up to which demand under the one serves for the
 /// other: a moving sun steps by less, and at two degrees they hardly differ.
 const SAME_LIGHT: f64 = 0.035;
 

@@ -129,7 +129,7 @@ impl<'a> Scratch<'a> {
             .saturating_add(64)
     }
 
-    /// A workspace over storage, whose content is ignored.
+    /// A scratch over storage, whose content is ignored.
     pub fn new(storage: &'a mut [DVec2]) -> Self {
         Self { storage }
     }

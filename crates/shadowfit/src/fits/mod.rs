@@ -87,13 +87,9 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 ///
 /// As [`fit`]; [`FitError::NoView`] without a view; [`FitError::ScratchTooSmall`], see
 /// [`Scratch::required`].
-pub fn fit_scene(
-    input: &FitInput,
-    settings: &FitSettings,
-    workspace: &mut Scratch,
-) -> Result<LightProjection, FitError> {
+pub fn fit_scene(input: &FitInput, settings: &FitSettings, scratch: &mut Scratch) -> Result<LightProjection, FitError> {
     let (rule, light) = prepare(input, settings, default_border(settings))?;
-    let (content, points) = Content::new(input.scene(), workspace.storage)?;
+    let (content, points) = Content::new(input.scene(), scratch.storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 

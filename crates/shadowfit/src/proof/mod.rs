@@ -122,17 +122,17 @@ pub struct Margins {
 /// let views = [camera.frustum()?];
 /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
 /// let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-/// let mut workspace = Scratch::new(&mut storage);
+/// let mut scratch = Scratch::new(&mut storage);
 ///
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
 /// let settings = FitSettings::default().with_border(0.5);
 /// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
-/// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
-/// assert!(prove(&input, &map, &query, &mut workspace)?.is_proven());
+/// let map = shadowfit::fit_scene(&input, &settings, &mut scratch)?;
+/// assert!(prove(&input, &map, &query, &mut scratch)?.is_proven());
 ///
 /// // Without them there is a hole, and the proof says where.
-/// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
-/// let CoverageProof::Uncovered { plane, by, .. } = prove(&input, &map, &query, &mut workspace)? else { panic!() };
+/// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut scratch)?;
+/// let CoverageProof::Uncovered { plane, by, .. } = prove(&input, &map, &query, &mut scratch)? else { panic!() };
 /// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
@@ -153,18 +153,18 @@ pub struct Margins {
 /// #     far: 200.0,
 /// # };
 /// # let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-/// # let mut workspace = Scratch::new(&mut storage);
+/// # let mut scratch = Scratch::new(&mut storage);
 /// let (mut fitter, technique) = (FitState::new(), Technique::default());
 /// for _ in 0..10 {
 ///     camera.eye.x += 0.3;
 ///     let views = [camera.frustum()?];
 ///     let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-///     let maps = fitter.fit(&input, &technique, &mut workspace)?;
+///     let maps = fitter.fit(&input, &technique, &mut scratch)?;
 ///     if cfg!(debug_assertions) {
 ///         for map in maps.iter() {
 ///             let query = CoverageQuery::of_map(map, &technique, technique.filter.into())
 ///                 .with_normal_offset(map.bias.normal_offset);
-///             let proof = prove(&input, &map.projection, &query, &mut workspace)?;
+///             let proof = prove(&input, &map.projection, &query, &mut scratch)?;
 ///             assert!(proof.is_proven(), "{proof:?}");
 ///         }
 ///     }
@@ -183,7 +183,7 @@ pub fn prove(
     input: &FitInput,
     fit: &LightProjection,
     query: &CoverageQuery,
-    workspace: &mut Scratch,
+    scratch: &mut Scratch,
 ) -> Result<CoverageProof, FitError> {
     let range = query.checked()?;
     if input.views.is_empty() {
@@ -196,7 +196,7 @@ pub fn prove(
     checks::point("the fit's origin", fit.origin)?;
     let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
-    let (content, points) = Content::new(input.scene(), workspace.storage)?;
+    let (content, points) = Content::new(input.scene(), scratch.storage)?;
     let offset = content.origin - fit.origin;
     let mut receivers = Worst::new(&half_spaces, offset);
     receivers.add_all(&content, range);

@@ -163,7 +163,7 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Share of the points with the finest needs, whose needs count as no finer than those of the rest: estimates from
+/// Share of the points with the finest demands, which count as no finer than those of the rest: estimates from
 /// boxes find too many near the eye.
 const FINEST: f32 = 0.1;
 

@@ -1,4 +1,4 @@
-//! The cells of need that windows are placed by, in the plane across the light, and where a window holds most of what
+//! The cells of demand that windows are placed by, in the plane across the light, and where a window holds most of what
 //! is left to be served.
 //!
 //! For a place the cost of all cells is entered into a raster, of which the sum over every square as large as the
@@ -15,7 +15,7 @@ pub(super) const MAX_CELLS: usize = 1024;
 /// A number for each cell.
 pub(super) type PerCell = [f32; MAX_CELLS];
 
-/// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
+/// Share of the visible points with the finest demands, which count as no finer than those of the rest:
 /// surfaces seen at grazing angles ask for arbitrarily fine texels.
 const FINEST: f32 = 0.02;
 
@@ -97,7 +97,7 @@ impl Counted {
         place
     }
 
-    /// The texel that the share of the points with the finest needs are taken to ask for, over that of
+    /// The texel that the share of the points with the finest demands are taken to ask for, over that of
     /// the finest level.
     fn finest(&self, share: f32) -> f32 {
         let mut levels = [0.0_f32; LEVELS];

@@ -70,12 +70,12 @@ impl Inputs {
     }
 
     fn fit(&self, fitter: &mut FitState) -> Result<FittedMaps, FitError> {
-        self.with(|input, workspace| fitter.fit(input, &self.settings, workspace))
+        self.with(|input, scratch| fitter.fit(input, &self.settings, scratch))
     }
 
     fn single(&self) -> Result<LightProjection, FitError> {
         let settings = FitSettings { shape: self.settings.maps.shape().unwrap_or_default(), map: self.settings.fit };
-        self.with(|input, workspace| shadowfit::fit_scene(input, &settings, workspace))
+        self.with(|input, scratch| shadowfit::fit_scene(input, &settings, scratch))
     }
 
     /// Changes slices; leaves other maps as they are.

@@ -107,7 +107,7 @@ impl Stage {
     }
 }
 
-fn workspace(boxes: usize, views: usize) -> Vec<DVec2> {
+fn scratch(boxes: usize, views: usize) -> Vec<DVec2> {
     vec![DVec2::ZERO; Scratch::required(boxes, views)]
 }
 
@@ -125,7 +125,7 @@ fn check_frame(
     let histogram = DepthHistogram { near: 0.1, far: 100.0, bins: &counts, classes: 1 };
     let receivers = stage.receivers();
     let input = FitInput { receivers, histogram: Some(histogram), ..FitInput::new(&frusta, direction) };
-    let mut storage = workspace(stage.boxes.as_ref().map_or(0, Vec::len), views.len());
+    let mut storage = scratch(stage.boxes.as_ref().map_or(0, Vec::len), views.len());
     let maps = fitter.fit(&input, settings, &mut Scratch::new(&mut storage)).unwrap();
     assert_eq!(maps.len(), settings.maps.count() as usize);
     let last = f64::from(settings.fit.max_distance);
@@ -152,7 +152,7 @@ proptest! {
         let stage = Stage::new(&plans, &view);
         let frusta = [view.frustum()];
         let input = FitInput { receivers: stage.receivers(), ..FitInput::new(&frusta, direction) };
-        let mut storage = workspace(10, 1);
+        let mut storage = scratch(10, 1);
         let map = shadowfit::fit_scene(&input, &fit, &mut Scratch::new(&mut storage)).unwrap();
         // Only one fit looks at receivers; the others store all that is in view.
         let receivers = if fit.shape.kind == FitKind::Focused { stage.receivers() } else { None };

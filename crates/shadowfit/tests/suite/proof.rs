@@ -143,10 +143,10 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
-        let mut workspace = Scratch::new(&mut storage);
-        let map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
+        let mut scratch = Scratch::new(&mut storage);
+        let map = shadowfit::fit_scene(&input, &fit, &mut scratch).unwrap();
         let query = CoverageQuery::of_fit(&fit, reach_of(&fit.map));
-        let proof = prove(&input, &map, &query, &mut workspace).unwrap();
+        let proof = prove(&input, &map, &query, &mut scratch).unwrap();
         prop_assert!(proof.is_proven(), "{proof:?}");
     }
 
@@ -161,13 +161,13 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
-        let mut workspace = Scratch::new(&mut storage);
-        let mut map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
+        let mut scratch = Scratch::new(&mut storage);
+        let mut map = shadowfit::fit_scene(&input, &fit, &mut scratch).unwrap();
         // Shift the map by up to a tenth: most of these have holes, and the others must have none.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();
         let query = CoverageQuery { near: f32::MIN, far: f32::MAX, ..CoverageQuery::of_fit(&fit, reach_of(&fit.map)) };
-        let CoverageProof::Proven(_) = prove(&input, &map, &query, &mut workspace).unwrap() else { return Ok(()) };
+        let CoverageProof::Proven(_) = prove(&input, &map, &query, &mut scratch).unwrap() else { return Ok(()) };
         let corner = |i: usize| views[0].corners[i].as_dvec3();
         for (x, y, z) in places {
             let at = |t: f64, a: DVec3, b: DVec3| a * (1.0 - t) + b * t;
@@ -190,15 +190,15 @@ proptest! {
         prop_assume!(camera.near < settings.fit.max_distance);
         let scene = scene(&plans, &camera);
         let mut storage = storage(scene.len());
-        let mut workspace = Scratch::new(&mut storage);
+        let mut scratch = Scratch::new(&mut storage);
         let (mut fitter, mut camera) = (FitState::new(), camera);
         for frame in 0..frames {
             let views = [camera.frustum().unwrap()];
             let input = scene.input(&views, direction);
-            let maps = fitter.fit(&input, &settings, &mut workspace).unwrap();
+            let maps = fitter.fit(&input, &settings, &mut scratch).unwrap();
             for (i, map) in maps.iter().enumerate() {
                 let query = CoverageQuery::of_map(map, &settings, reach_of(&settings.fit));
-                let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+                let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
                 prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
             camera = walk.moved_camera(&camera);
@@ -233,11 +233,11 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
     let views = [camera.frustum().unwrap()];
     let input = scene.input(&views, Vec3::new(-0.172_338_68, -0.965_532_3, -0.195_055_77));
     let mut storage = storage(scene.len());
-    let mut workspace = Scratch::new(&mut storage);
-    let maps = FitState::new().fit(&input, &settings, &mut workspace).unwrap();
+    let mut scratch = Scratch::new(&mut storage);
+    let maps = FitState::new().fit(&input, &settings, &mut scratch).unwrap();
     for (i, map) in maps.iter().enumerate() {
         let query = CoverageQuery::of_map(map, &settings, reach_of(&fit.map));
-        let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+        let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
         assert!(proof.is_proven(), "map {i}: {proof:?}");
     }
 }

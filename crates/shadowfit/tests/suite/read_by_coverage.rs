@@ -144,11 +144,11 @@ proptest! {
         for frame in 0..3 {
             let views = [view.frustum()];
             let input = input(&views, direction, origin, &boxes);
-            let mut workspace = Scratch::new(&mut storage);
-            let maps = fitter.fit(&input, &technique, &mut workspace).unwrap();
+            let mut scratch = Scratch::new(&mut storage);
+            let maps = fitter.fit(&input, &technique, &mut scratch).unwrap();
             for (i, map) in maps.iter().enumerate() {
                 let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
-                let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+                let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
                 prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
             view = walk.moved(&view);
@@ -176,17 +176,17 @@ fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
     ];
     let input = input(&views, direction, DVec3::ZERO, &boxes);
     let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 1)];
-    let mut workspace = Scratch::new(&mut storage);
+    let mut scratch = Scratch::new(&mut storage);
     let manual = SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
     let mut proof = |choice| {
         // Spheres serve all of their map anyway, rectangles do not.
         let stable = Technique::preset("stable-4").unwrap().maps.with_kind(FitKind::FrustumAabb).as_slices();
         let slices = stable.with_count(3).with_splits(manual).with_selection(choice);
         let technique = Technique::default().with_maps(slices);
-        let map = FitState::new().fit(&input, &technique, &mut workspace).unwrap()[0];
+        let map = FitState::new().fit(&input, &technique, &mut scratch).unwrap()[0];
         let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
         let query = CoverageQuery { is_shared: true, ..query };
-        prove(&input, &map.projection, &query, &mut workspace).unwrap()
+        prove(&input, &map.projection, &query, &mut scratch).unwrap()
     };
     assert!(proof(MapSelection::default()).is_proven());
     let lost = proof(MapSelection::ViewDepth { overlap: 0.0 });

@@ -111,12 +111,12 @@ fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut
             ..FitInput::new(&views, waver.vec3(Vec3::new(0.3, -0.8, 0.4)))
         };
         let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 1)];
-        let mut workspace = Scratch::new(&mut storage);
-        let maps = fitter.fit(&input, technique, &mut workspace).unwrap();
+        let mut scratch = Scratch::new(&mut storage);
+        let maps = fitter.fit(&input, technique, &mut scratch).unwrap();
         for map in maps.iter() {
             let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
                 .with_normal_offset(map.bias.normal_offset);
-            let proof = prove(&input, &map.projection, &query, &mut workspace).unwrap();
+            let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
             assert!(proof.is_proven(), "{way:?}: {proof:?}");
         }
         visit(&maps);

@@ -78,16 +78,16 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     let (receivers, casters) = [&ground[..], &tower].map(|boxes| Some(Boxes { origin: DVec3::ZERO, boxes })).into();
     let input = FitInput { receivers, casters, ..FitInput::new(&views, direction) };
     let mut storage = vec![DVec2::ZERO; Scratch::required(tower.len(), 1)];
-    let mut workspace = Scratch::new(&mut storage);
+    let mut scratch = Scratch::new(&mut storage);
     // Whether a window has the tower's foot, and its proof.
     let mut proofs = |policy| -> Vec<(bool, CoverageProof)> {
         let technique = windows(4, 1024);
         let technique = technique.with_fit(technique.fit.with_casters(policy));
-        let maps = FitState::new().fit(&input, &technique, &mut workspace).unwrap();
+        let maps = FitState::new().fit(&input, &technique, &mut scratch).unwrap();
         let proof = |map: &FittedMap| {
             let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
             let foot = map.projection.free_texels(DVec3::new(0.0, -0.05, -7.0));
-            (foot.is_some(), prove(&input, &map.projection, &query, &mut workspace).unwrap())
+            (foot.is_some(), prove(&input, &map.projection, &query, &mut scratch).unwrap())
         };
         maps.iter().map(proof).collect()
     };
