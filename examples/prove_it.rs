@@ -12,7 +12,8 @@ use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, Margins, prove};
 use shadowfit::settings::SplitScheme;
 use shadowfit::{
-    Aabb, Boxes, FitError, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique, ViewFrustum,
+    Aabb, Boxes, FitError, FitInput, FittedMaps, PerspectiveCamera, Scratch, ShadowFitter, Slices, Technique,
+    ViewFrustum,
 };
 
 const FRAMES: u32 = 120;
@@ -21,17 +22,18 @@ const SUN: Vec3 = Vec3::new(0.55, -0.6, -0.4);
 
 fn main() -> Result<(), FitError> {
     let objects = columns();
-    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let boxes = Boxes::world(&objects);
     let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), 1)];
     let mut scratch = Scratch::new(&mut storage);
 
-    let (mut fitter, technique) = (FitState::new(), Technique::default());
+    let technique = Technique::default();
+    let mut fitter = ShadowFitter::new(&technique);
     let mut least = Margins { planes: [f32::INFINITY; 6], casters: f32::INFINITY };
     for frame in 0..FRAMES {
         let views = [camera(frame).frustum()?];
         let input = input(&views, boxes);
-        let maps = fitter.fit(&input, &technique, &mut scratch)?;
-        for (index, proof) in proofs(&input, &technique, &maps, &mut scratch)?.into_iter().enumerate() {
+        let maps = fitter.fit(&input)?;
+        for (index, proof) in proofs(&input, &technique, maps, &mut scratch)?.into_iter().enumerate() {
             match proof {
                 CoverageProof::Proven(margins) => least = least_of(least, margins),
                 hole => println!("frame {frame}, map {index}: {hole:?}"),
@@ -57,9 +59,10 @@ fn main() -> Result<(), FitError> {
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
         let input = FitInput { receivers: None, depth_bounds, ..input };
-        let maps = FitState::new().fit(&input, &logarithmic, &mut scratch)?;
+        let mut fitter = ShadowFitter::new(&logarithmic);
+        let maps = fitter.fit(&input)?;
         let ends: Vec<f32> = maps.iter().rev().skip(1).rev().map(|map| map.far).collect();
-        let is_proven = proofs(&input, &logarithmic, &maps, &mut scratch)?.iter().all(CoverageProof::is_proven);
+        let is_proven = proofs(&input, &logarithmic, maps, &mut scratch)?.iter().all(CoverageProof::is_proven);
         println!("{depth_bounds:?}: slices end at {ends:?} m, no holes: {is_proven}");
     }
     Ok(())

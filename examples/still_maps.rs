@@ -7,10 +7,10 @@
 //! cargo run --example still_maps
 //! ```
 
-use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::scroll::Scroll;
-use shadowfit::{Aabb, Boxes, FitError, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique};
+use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_params::tool::LightSettings;
 
 const SECONDS: u32 = 60;
@@ -21,11 +21,9 @@ const WALKING_SPEED: f64 = 1.4;
 const SUN_SPEED: f32 = std::f32::consts::TAU / 86_400.0;
 
 fn main() -> Result<(), FitError> {
-    let technique = Technique::default();
     let objects = street();
-    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), 1)];
-    let (mut fitter, mut light_steps) = (FitState::new(), LightSteps::default());
+    let boxes = Boxes::world(&objects);
+    let (mut fitter, mut light_steps) = (ShadowFitter::new(&Technique::default()), LightSteps::default());
     let mut before = FittedMaps::default();
     let mut total = Redrawn::default();
     println!("second  texels drawn anew  whole maps  sun");
@@ -40,9 +38,9 @@ fn main() -> Result<(), FitError> {
             let views = [camera(seconds).frustum()?];
             let input =
                 FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, light.direction) };
-            let maps = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage))?;
-            redrawn.add(&before, &maps);
-            before = maps;
+            let maps = fitter.fit(&input)?;
+            redrawn.add(&before, maps);
+            before = *maps;
         }
         let note = if steps > 0 { "steps" } else { "stands still" };
         println!("{second:>6}  {:>16.2}%  {:>10}  {note}", redrawn.percent(), redrawn.whole);
