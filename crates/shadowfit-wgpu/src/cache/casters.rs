@@ -7,6 +7,10 @@ use shadowfit::{Aabb, Boxes};
 ///
 /// A number may mean another caster in another frame, as long as their boxes differ: a static caster whose box is
 /// elsewhere is redrawn where it was and where it is.
+///
+/// A box may stand for many casters that an engine culls by itself, such as those in a cell of the world: then it holds
+/// all of them, and [`invalidate`](crate::SunShadows::invalidate) tells where those that stand still changed within it.
+/// Casters that move have boxes of their own, which may hold the same place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
     /// A box around each caster. Empty boxes cast nothing.

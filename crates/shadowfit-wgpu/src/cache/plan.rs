@@ -92,6 +92,20 @@ impl FramePlan {
     }
 }
 
+/// Rounding by which a shader may keep a caster in a box that the CPU culls, as a share of their coordinates: each
+/// allows for 16 · 2⁻²⁴ of them, and the coordinates of a box sum to half of those of a caster in it at least.
+const SHADER_ROUNDING: f32 = 64.0 / 16_777_216.0;
+
+/// A box of moving casters that holds whatever a shader may draw of them, so that it is mended in the next frame.
+/// `offset` lies between its origin and that of the shader's boxes, in metres along all axes together.
+fn widened(aabb: &Aabb, offset: f32) -> Aabb {
+    if aabb.is_empty() {
+        return Aabb::EMPTY;
+    }
+    let by = ((aabb.min.abs() + aabb.max.abs()).element_sum() + offset) * SHADER_ROUNDING;
+    Aabb::new(aabb.min - by, aabb.max + by)
+}
+
 /// One map of a frame.
 pub(super) struct Drawing<'a> {
     pub(super) index: usize,
@@ -227,7 +241,9 @@ impl Drawing<'_> {
     fn cull_moving(&self, parts: &[StoredRect], moving: &mut Vec<WorldBox>, plan: &mut FramePlan) {
         let boxes = self.casters.boxes;
         plan.moving_boxes.clear();
-        plan.moving_boxes.extend(self.known.moving.iter().map(|number| boxes.boxes[*number as usize]));
+        let offset = (boxes.origin - self.origin).abs().element_sum() as f32;
+        let widened = |number: &u32| widened(&boxes.boxes[*number as usize], offset);
+        plan.moving_boxes.extend(self.known.moving.iter().map(widened));
         let mut volumes = vec![self.in_view()];
         volumes.extend(parts.iter().map(|part| self.volume(part.window)));
         plan.masks.clear();

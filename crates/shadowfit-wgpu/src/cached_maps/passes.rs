@@ -1,7 +1,7 @@
 //! The passes of a frame, for the engine to draw.
 
 use super::CachedMaps;
-use crate::cache::{FramePlan, PassContent, PassPlan, PiecePlan};
+use crate::cache::{FramePlan, PassContent, PassPlan};
 use crate::layers::Opening;
 
 /// A pass into a map. A map that is kept unchanged has none.
@@ -14,6 +14,8 @@ pub struct ShadowPass<'a> {
 /// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowPiece<'a> {
+    /// Number of the piece among those of all passes of the frame.
+    pub number: usize,
     /// Number of the map.
     pub map: usize,
     /// Left, top, width and height of the viewport, in texels. It may begin outside the texture: maps wrap around in
@@ -44,13 +46,16 @@ impl<'a> ShadowPass<'a> {
     /// Its parts.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
         let (plan, pass) = (self.plan, self.pass);
-        plan.pieces[pass.pieces.clone()].iter().map(move |piece| shadow_piece(plan, pass, piece))
+        pass.pieces.clone().map(move |number| shadow_piece(plan, pass, number))
     }
 }
 
-fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, piece: &PiecePlan) -> ShadowPiece<'a> {
+/// A part of a pass by its number.
+pub(super) fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> ShadowPiece<'a> {
+    let piece = &plan.pieces[number];
     let (first, stored) = (piece.part.viewport(), piece.part.stored);
     ShadowPiece {
+        number,
         map: pass.map,
         viewport: [first.x as f32, first.y as f32, pass.size.x as f32, pass.size.y as f32],
         scissor: [stored.min.x, stored.min.y, stored.size.x, stored.size.y],
