@@ -4,7 +4,7 @@
 use shadowfit_wgpu::{CullingPiece, ShadowPiece, SunShadows, WgslOptions, caster_wgsl, culling_wgsl};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, DrawIndexedIndirectArgs};
 
-use crate::town::Block;
+use super::town::Block;
 
 /// What a caster is in the buffer.
 const CASTER: &str = "
@@ -55,9 +55,8 @@ const VERTEX: &str = "
 ";
 
 /// Indices of the mesh of all blocks.
-const INDICES: [u16; 36] = [
-    0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6,
-];
+const INDICES: [u16; 36] =
+    [0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6];
 
 /// The buffers of a frame that the compute shader fills.
 pub(crate) struct Draws {

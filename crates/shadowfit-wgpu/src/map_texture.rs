@@ -5,6 +5,22 @@ use core::fmt;
 use crate::{ShadowMapDescriptor, ShadowMapError};
 
 /// Layers of a texture that hold shadow maps: as many as there are maps, from one on.
+///
+/// ```no_run
+/// # fn demo(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), shadowfit_wgpu::SunShadowsError> {
+/// use shadowfit::Technique;
+/// use shadowfit_wgpu::{MapTexture, ShadowMapDescriptor, SunShadows};
+///
+/// // Four maps of the sun and two of the moon, in one array.
+/// let (by_day, by_night) = (Technique::default(), Technique::default().with_count(2));
+/// let mut descriptor = ShadowMapDescriptor::from(&by_day).texture();
+/// descriptor.size.depth_or_array_layers = 6;
+/// let texture = device.create_texture(&descriptor);
+/// let layers = |base_layer| MapTexture { texture: texture.clone(), base_layer };
+/// let sun = SunShadows::in_texture(device, queue, &by_day, 0, &layers(0))?;
+/// let moon = SunShadows::in_texture(device, queue, &by_night, 3, &layers(4))?;
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapTexture {
     /// The texture, as [`ShadowMapDescriptor::texture`] describes it.
@@ -67,33 +83,40 @@ impl MapTexture {
 
     /// Refuses a texture that cannot hold the maps of a descriptor.
     pub(crate) fn check(&self, device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
-        let is_gl = device.adapter_info().backend == wgpu::Backend::Gl;
-        self.mismatch(descriptor, is_gl).map_or(Ok(()), |error| Err(ShadowMapError::Texture(error)))
+        let backend = device.adapter_info().backend;
+        self.check_shape(descriptor)
+            .and_then(|()| check_base_layer(self.base_layer, backend))
+            .map_err(ShadowMapError::Texture)
     }
 
-    /// What is wrong with it.
-    fn mismatch(&self, descriptor: &ShadowMapDescriptor, is_gl: bool) -> Option<MapTextureError> {
+    fn check_shape(&self, descriptor: &ShadowMapDescriptor) -> Result<(), MapTextureError> {
         let Self { texture, base_layer } = self;
         let (base_layer, needed) = (*base_layer, descriptor.texture());
         let size = [texture.width(), texture.height()];
         let (layers, maps) = (texture.depth_or_array_layers(), descriptor.maps);
         let missing = needed.usage - texture.usage();
         if texture.dimension() != needed.dimension {
-            Some(MapTextureError::Dimension(texture.dimension()))
-        } else if texture.sample_count() != 1 {
-            Some(MapTextureError::Samples(texture.sample_count()))
-        } else if texture.format() != needed.format {
-            Some(MapTextureError::Format { texture: texture.format(), maps: needed.format })
-        } else if size != descriptor.resolution {
-            Some(MapTextureError::Size { texture: size, maps: descriptor.resolution })
-        } else if base_layer.checked_add(maps).is_none_or(|end| end > layers) {
-            Some(MapTextureError::Layers { texture: layers, base_layer, maps })
-        } else if !missing.is_empty() {
-            Some(MapTextureError::Usages { missing })
-        } else {
-            (is_gl && base_layer > 0).then_some(MapTextureError::BaseLayer(base_layer))
+            return Err(MapTextureError::Dimension(texture.dimension()));
         }
+        if texture.format() != needed.format {
+            return Err(MapTextureError::Format { texture: texture.format(), maps: needed.format });
+        }
+        if size != descriptor.resolution {
+            return Err(MapTextureError::Size { texture: size, maps: descriptor.resolution });
+        }
+        if texture.sample_count() != needed.sample_count {
+            return Err(MapTextureError::Samples(texture.sample_count()));
+        }
+        if base_layer.checked_add(maps).is_none_or(|end| end > layers) {
+            return Err(MapTextureError::Layers { texture: layers, base_layer, maps });
+        }
+        if missing.is_empty() { Ok(()) } else { Err(MapTextureError::Usages { missing }) }
     }
+}
+
+/// Refuses layers that shaders cannot read.
+fn check_base_layer(base_layer: u32, backend: wgpu::Backend) -> Result<(), MapTextureError> {
+    if backend == wgpu::Backend::Gl && base_layer > 0 { Err(MapTextureError::BaseLayer(base_layer)) } else { Ok(()) }
 }
 
 impl fmt::Display for MapTextureError {
@@ -117,3 +140,17 @@ impl fmt::Display for MapTextureError {
 }
 
 impl core::error::Error for MapTextureError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opengl_reads_textures_from_their_first_layer_on_only() {
+        assert_eq!(check_base_layer(0, wgpu::Backend::Gl), Ok(()));
+        assert_eq!(check_base_layer(2, wgpu::Backend::Vulkan), Ok(()));
+        let error = check_base_layer(2, wgpu::Backend::Gl).expect_err("another layer");
+        assert_eq!(error, MapTextureError::BaseLayer(2));
+        assert!(error.to_string().contains("layer 2") && error.to_string().contains("layer 0"), "{error}");
+    }
+}

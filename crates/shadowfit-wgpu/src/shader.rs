@@ -1,8 +1,8 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
-use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
 use shadowfit::DepthConvention;
+use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
 
 use crate::{CullingPiece, MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
 

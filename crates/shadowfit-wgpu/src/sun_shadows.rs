@@ -17,8 +17,8 @@ use shadowfit::{
 use crate::cached_maps::CachedMaps;
 use crate::demand::{DemandPass, DemandPassError, DemandView, supported};
 use crate::{
-    Casters, Culling, CullingPiece, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, ShadowPiece,
-    SunFrame, UpdateSchedule,
+    Casters, Culling, CullingPiece, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError,
+    ShadowPass, ShadowPiece, SunFrame, UpdateSchedule,
 };
 
 pub use error::SunShadowsError;
@@ -102,9 +102,9 @@ impl SunShadows {
     /// memory, or two suns share an array. [`ShadowMapDescriptor::texture`] says what the texture must be like;
     /// `first_binding` is as in [`Self::with_first_binding`].
     ///
-    /// Nothing but the layers from [`MapTexture::base_layer`] on is cleared, written or read, as many as the technique has maps. They
-    /// are kept from frame to frame: where something else writes them in between, [`Self::set_caching`] has to be off.
-    /// [`Self::set_technique`] stays in the texture.
+    /// Nothing but the layers from [`MapTexture::base_layer`] on is cleared, written or read, as many as the technique
+    /// has maps. They are kept from frame to frame: where something else writes them in between, [`Self::set_caching`]
+    /// has to be off. [`Self::set_technique`] stays in the texture.
     ///
     /// # Errors
     ///
@@ -204,8 +204,8 @@ impl SunShadows {
         Ok(is_new)
     }
 
-    /// As [`Self::set_technique`], in another texture of the engine's: for a technique that the one before has not the
-    /// size, the format or the layers for. The maps are always recreated.
+    /// As [`Self::set_technique`], in another texture of the engine's: for a technique whose maps the present one cannot
+    /// hold. They are always recreated.
     ///
     /// # Errors
     ///

@@ -12,10 +12,12 @@ impl CachedMaps {
     pub(crate) fn culling_pieces(&self) -> impl Iterator<Item = CullingPiece> {
         let plan = &self.plan;
         let numbers = |pass: &'_ PassPlan| pass.pieces.clone();
-        plan.passes.iter().flat_map(move |pass| numbers(pass).map(move |number| (pass, number))).map(|(pass, number)| {
-            let volumes = self.volumes_of(pass, &plan.pieces[number]).into_iter().flatten();
-            CullingPiece::new(volumes, self.origin).of_piece(&shadow_piece(plan, pass, number), pass.content)
-        })
+        plan.passes.iter().flat_map(move |pass| numbers(pass).map(move |number| (pass, number))).map(
+            |(pass, number)| {
+                let volumes = self.volumes_of(pass, &plan.pieces[number]).into_iter().flatten();
+                CullingPiece::new(volumes, self.origin).of_piece(&shadow_piece(plan, pass, number), pass.content)
+            },
+        )
     }
 
     /// Volumes each of which holds all casters of a piece: those over its rectangle, and those that can shadow something
