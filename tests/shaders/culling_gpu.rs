@@ -201,20 +201,32 @@ fn wgsl_culls_what_rust_culls() {
 fn a_piece_takes_what_stands_still_or_moves_and_all_of_its_volumes() {
     let (gpu, volumes, shapes) = (software_gpu(), volumes(), shapes());
     let both = CullingPiece::new([volumes[1], volumes[2]], EYE);
-    assert_eq!(both.plane_count, volumes[1].count + volumes[2].count);
+    let planes = [volumes[1].count, volumes[1].count + volumes[2].count];
+    assert_eq!([both.fixed_planes, both.moving_planes], [planes[1]; 2]);
     let single = |volume: usize| CullingPiece::new([volumes[volume]], EYE);
-    let pieces = [single(1), single(2), both, CullingPiece { moving: 0, ..both }, CullingPiece { fixed: 0, ..both }];
-    let mut found = [0; 5];
+    let pieces = [
+        single(1),
+        single(2),
+        both,
+        CullingPiece { moving: 0, ..both },
+        CullingPiece { fixed: 0, ..both },
+        CullingPiece { fixed_planes: planes[0], ..both },
+    ];
+    let mut found = [0; 6];
     for (number, masks) in ask(&gpu, &pieces, &shapes).iter().enumerate() {
         for mask in &masks[..3] {
             let is_in = |piece: u32| mask >> piece & 1 == 1;
             let moves = number % 2 == 1;
             assert_eq!(is_in(2), is_in(0) && is_in(1));
             assert_eq!([is_in(3), is_in(4)], [is_in(2) && !moves, is_in(2) && moves]);
+            assert_eq!(is_in(5), if moves { is_in(2) } else { is_in(0) });
             for (piece, count) in (0..).zip(&mut found) {
                 *count += u32::from(is_in(piece));
             }
         }
     }
-    assert!(found[2] < found[0] && found[2] < found[1] && found[3] > 5 && found[4] > 5, "{found:?}");
+    assert!(
+        found[2] < found[0] && found[2] < found[1] && found[3] > 5 && found[4] > 5 && found[5] > found[2],
+        "{found:?}"
+    );
 }

@@ -175,7 +175,19 @@ fn the_pieces_that_casters_are_culled_by_lie_as_in_wgsl() {
     assert_same(
         &culling,
         &layout!(
-            "shadowfit_CullingPiece" = CullingPiece { planes, viewport, scissor, plane_count, map, fixed, moving }
+            "shadowfit_CullingPiece" = CullingPiece {
+                planes,
+                viewport,
+                scissor,
+                map,
+                fixed,
+                moving,
+                fixed_planes,
+                moving_planes,
+                padding_0,
+                padding_1,
+                padding_2,
+            }
         ),
     );
     let (_, global) = culling.global_variables.iter().next().expect("the pieces");

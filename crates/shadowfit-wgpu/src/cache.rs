@@ -27,7 +27,7 @@ use schedule::Candidate;
 
 pub use casters::Casters;
 pub use plan::PassContent;
-pub(crate) use plan::{FramePlan, Layer, PassPlan, PiecePlan};
+pub(crate) use plan::{FramePlan, Layer, PassPlan};
 pub use schedule::UpdateSchedule;
 
 /// Most rectangles of a map that are drawn separately in a frame; more are merged into one that holds them.

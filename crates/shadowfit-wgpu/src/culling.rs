@@ -13,21 +13,29 @@ use crate::{PassContent, ShadowPiece};
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CullingPiece {
     /// Planes (n, d) with unit normals that point inward: a point p, in metres relative to the origin of the frame, is
-    /// inside where n·p + d >= 0. Casters that lie wholly behind one of them are not drawn. Everything is inside those
-    /// past `plane_count`.
+    /// inside where n·p + d >= 0. Everything is inside unused ones.
     pub planes: [[f32; 4]; CullingPiece::MAX_PLANES],
     /// [`ShadowPiece::viewport`].
     pub viewport: [f32; 4],
     /// [`ShadowPiece::scissor`].
     pub scissor: [u32; 4],
-    /// Number of `planes` in use.
-    pub plane_count: u32,
     /// Number of the map.
     pub map: u32,
     /// 1 where casters that stand still belong into the piece, or else 0.
     pub fixed: u32,
     /// 1 where casters that move belong into it, or else 0.
     pub moving: u32,
+    /// Number of planes, from the first one on, that casters which stand still are culled by: those that lie wholly
+    /// behind one of them are not drawn.
+    pub fixed_planes: u32,
+    /// The same of casters that move.
+    pub moving_planes: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
 }
 
 impl CullingPiece {
@@ -46,7 +54,7 @@ impl CullingPiece {
                 count += 1;
             }
         }
-        piece.plane_count = count as u32;
+        (piece.fixed_planes, piece.moving_planes) = (count as u32, count as u32);
         piece
     }
 

@@ -389,7 +389,7 @@ impl SunShadows {
     /// their casters on the GPU: a record for each [`ShadowPiece`] of [`Self::passes`], by its
     /// [number](ShadowPiece::number). Planes are relative to [`SunFrame::origin`].
     pub fn culling_pieces(&self) -> impl Iterator<Item = CullingPiece> {
-        self.maps.culling_pieces()
+        self.passes().flat_map(|pass| pass.culling_pieces())
     }
 
     /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at

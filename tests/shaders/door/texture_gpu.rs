@@ -214,6 +214,21 @@ fn gpu_a_texture_that_cannot_hold_the_maps_is_refused_by_name_and_value_and_the_
 }
 
 #[test]
+fn gpu_a_texture_that_is_destroyed_or_another_device_s_is_refused_in_the_device_s_words() {
+    let [device, other] = [(); 2].map(|()| Device::from(software_gpu()));
+    let quiet = Quiet::new(&device);
+    let destroyed = texture(&device, &technique(), 4, |_| ());
+    destroyed.destroy();
+    for texture in [destroyed, texture(&other, &technique(), 4, |_| ())] {
+        let texture = MapTexture { texture, base_layer: 0 };
+        let refused = SunShadows::in_texture(&device.device, &device.queue, &technique(), 0, &texture);
+        let refused = refused.expect_err("no maps");
+        assert!(matches!(refused, SunShadowsError::Map(ShadowMapError::Device(_))), "{refused}");
+    }
+    quiet.assert("textures of other devices");
+}
+
+#[test]
 fn gpu_another_technique_stays_in_the_texture_or_moves_to_one_that_holds_it() {
     let device = Device::from(software_gpu());
     let quiet = Quiet::new(&device);

@@ -310,3 +310,40 @@ impl Drawing<'_> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use shadowfit::glam::{Vec3, Vec4};
+
+    use super::*;
+
+    /// Numbers in 0..1 that fill the cube evenly.
+    fn evenly(index: u32, axis: i32) -> f32 {
+        (f64::from(index) * 1.220_744_084_605_759_5_f64.powi(-axis)).fract() as f32
+    }
+
+    #[test]
+    fn whatever_a_shader_keeps_of_a_box_of_casters_the_widened_box_keeps() {
+        let mut lost_without = 0;
+        for i in 1..20_000 {
+            let [x, y, z, a] = [1, 2, 3, 4].map(|axis| evenly(i, axis));
+            let normal = (Vec3::new(x, y, z) - 0.5).normalize_or(Vec3::Y);
+            // A caster in the farthest corner along the normal of a box whose other corner is at the origin.
+            let corner = Vec3::new(a, x, y) * 300.0 * normal.signum();
+            let group = Aabb::new(corner.min(Vec3::ZERO), corner.max(Vec3::ZERO));
+            let caster = Aabb::new(corner.min(corner * 0.99), corner.max(corner * 0.99));
+            // The plane lies beyond the corner by what both tests may round.
+            let reach = normal.as_dvec3().dot(corner.as_dvec3()) as f32;
+            let beyond = corner.abs().element_sum() * 2.0 * evenly(i, 5) * 16.0 / 16_777_216.0;
+            let mut volume = CasterVolume::everywhere(DVec3::ZERO);
+            (volume.planes[0], volume.count) = (Vec4::from((normal, -reach - beyond)), 1);
+            let touches = |aabb: &Aabb| volume.intersects_aabb(aabb.min, aabb.max);
+            if touches(&caster) {
+                assert!(touches(&widened(&group, 0.0)), "{i}");
+                lost_without += u32::from(!touches(&group));
+            }
+        }
+        assert!(lost_without > 100, "{lost_without} are lost without widening");
+        assert!(widened(&Aabb::EMPTY, 1.0).is_empty());
+    }
+}

@@ -7,8 +7,8 @@ use crate::layers::Opening;
 /// A pass into a map. A map that is kept unchanged has none.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowPass<'a> {
-    plan: &'a FramePlan,
-    pass: &'a PassPlan,
+    pub(super) maps: &'a CachedMaps,
+    pub(super) pass: &'a PassPlan,
 }
 
 /// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
@@ -45,13 +45,12 @@ impl<'a> ShadowPass<'a> {
 
     /// Its parts.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
-        let (plan, pass) = (self.plan, self.pass);
+        let (plan, pass) = (&self.maps.plan, self.pass);
         pass.pieces.clone().map(move |number| shadow_piece(plan, pass, number))
     }
 }
 
-/// A part of a pass by its number.
-pub(super) fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> ShadowPiece<'a> {
+fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> ShadowPiece<'a> {
     let piece = &plan.pieces[number];
     let (first, stored) = (piece.part.viewport(), piece.part.stored);
     ShadowPiece {
@@ -81,7 +80,7 @@ impl CachedMaps {
 
     /// The passes of this frame, in the order in which they must be drawn.
     pub(crate) fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
-        self.plan.passes.iter().map(|pass| ShadowPass { plan: &self.plan, pass })
+        self.plan.passes.iter().map(|pass| ShadowPass { maps: self, pass })
     }
 
     /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
@@ -111,7 +110,7 @@ impl CachedMaps {
         group: u32,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'encoder> {
-        let opening = Opening { map: &self.map, plan: pass.plan, group };
+        let opening = Opening { map: &self.map, plan: &pass.maps.plan, group };
         self.layers.begin(encoder, opening, pass.pass, timestamps)
     }
 }

@@ -8,11 +8,16 @@ struct shadowfit_CullingPiece {
     planes: array<vec4<f32>, MAX_PIECE_PLANES>,
     viewport: vec4<f32>,
     scissor: vec4<u32>,
-    plane_count: u32,
     map: u32,
     // 1 where casters that stand still, and where casters that move, belong into the piece.
     fixed: u32,
     moving: u32,
+    // The planes, from the first one on, that each of them lie inside.
+    fixed_planes: u32,
+    moving_planes: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 @group(GROUP) @binding(0) var<storage, read> shadowfit_pieces: array<shadowfit_CullingPiece>;
@@ -23,6 +28,11 @@ const SHADOWFIT_ROUNDING: f32 = 9.5367431640625e-7;
 // Whether casters that move, or those that stand still, belong into a piece.
 fn shadowfit_takes(piece: u32, moves: bool) -> bool {
     return select(shadowfit_pieces[piece].fixed, shadowfit_pieces[piece].moving, moves) != 0u;
+}
+
+// The planes that casters that move, or those that stand still, lie inside, by their number.
+fn shadowfit_plane_count(piece: u32, moves: bool) -> u32 {
+    return select(shadowfit_pieces[piece].fixed_planes, shadowfit_pieces[piece].moving_planes, moves);
 }
 
 // Whether what reaches so far along a plane's normal is behind the plane. size: sum of the shape's coordinates.
@@ -36,7 +46,8 @@ fn shadowfit_draws_box(piece: u32, moves: bool, box_min: vec3<f32>, box_max: vec
         return false;
     }
     let size = dot(abs(box_min) + abs(box_max), vec3<f32>(1.0));
-    for (var i = 0u; i < shadowfit_pieces[piece].plane_count; i += 1u) {
+    let count = shadowfit_plane_count(piece, moves);
+    for (var i = 0u; i < count; i += 1u) {
         let plane = shadowfit_pieces[piece].planes[i];
         let farthest = select(box_max, box_min, plane.xyz < vec3<f32>(0.0));
         if shadowfit_is_behind(plane, dot(plane.xyz, farthest), size) {
@@ -52,7 +63,8 @@ fn shadowfit_draws_sphere(piece: u32, moves: bool, centre: vec3<f32>, radius: f3
         return false;
     }
     let size = dot(abs(centre), vec3<f32>(1.0)) + radius;
-    for (var i = 0u; i < shadowfit_pieces[piece].plane_count; i += 1u) {
+    let count = shadowfit_plane_count(piece, moves);
+    for (var i = 0u; i < count; i += 1u) {
         let plane = shadowfit_pieces[piece].planes[i];
         if shadowfit_is_behind(plane, dot(plane.xyz, centre) + radius, size) {
             return false;
@@ -67,7 +79,8 @@ fn shadowfit_draws_oriented_box(piece: u32, moves: bool, centre: vec3<f32>, half
         return false;
     }
     let size = dot(abs(centre) + abs(half_axes[0]) + abs(half_axes[1]) + abs(half_axes[2]), vec3<f32>(1.0));
-    for (var i = 0u; i < shadowfit_pieces[piece].plane_count; i += 1u) {
+    let count = shadowfit_plane_count(piece, moves);
+    for (var i = 0u; i < count; i += 1u) {
         let plane = shadowfit_pieces[piece].planes[i];
         // A vector times a matrix: its dot products with the columns.
         let along = dot(abs(plane.xyz * half_axes), vec3<f32>(1.0));
