@@ -40,7 +40,8 @@ fn gpu_the_default_technique_runs_on_a_device_of_webgl2_limits_without_an_error(
         let views = [camera.frustum().expect("a camera")];
         let moves = [false, false, true];
         let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
-        let frame = SunFrame::new(&views, SUN, boxes, Casters { moves: &moves, ..Casters::fixed(boxes) }).with_origin(DVec3::ZERO);
+        let frame = SunFrame::new(&views, SUN, boxes, Casters { moves: &moves, ..Casters::fixed(boxes) })
+            .with_origin(DVec3::ZERO);
         sun.update(&device.queue, &frame).expect("a good frame");
         assert!(sun.prove(&frame).expect("a good frame").is_proven());
         let picture = painter.draw(&device, &[(&sun, boxes.boxes)]);

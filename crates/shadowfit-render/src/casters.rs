@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use glam::{DVec3, Mat4, Vec3};
+use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes};
 use shadowfit_wgpu::Casters;
 

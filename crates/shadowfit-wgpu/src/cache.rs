@@ -16,6 +16,8 @@
 //! into the shown layer; the static casters' own layer follows in the next frame that keeps the map.
 
 mod casters;
+#[cfg(test)]
+mod histories;
 mod identity;
 mod plan;
 mod price;
