@@ -242,6 +242,8 @@ pub use bias::Bias;
 #[cfg(feature = "alloc")]
 pub use content::clusters::Clusters;
 pub use content::normal_cone::NormalCone;
+#[cfg(feature = "alloc")]
+pub use content::tree::{BoxChange, BoxRevision, BoxTree};
 pub use culling::CasterVolume;
 #[cfg(feature = "alloc")]
 pub use demand::Seen;

@@ -2,10 +2,15 @@
 //!
 //! Boxes of objects and clusters come in an order in which neighbours in the list are mostly neighbours in space. So
 //! the bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
+//! Of the boxes of a tree those in view are taken from it once a frame; what is asked of all of them is asked of the tree.
 
 #[cfg(feature = "alloc")]
 pub(crate) mod clusters;
+mod groups;
 pub(crate) mod normal_cone;
+mod standing;
+#[cfg(feature = "alloc")]
+pub(crate) mod tree;
 
 use core::cell::OnceCell;
 
@@ -13,7 +18,10 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::enclosing::{EnclosingSphere, HullBuilder, SymmetricFrustum, minimal};
 use crate::base::{Aabb, Boxes, FitError, checks, moved};
+use crate::content::groups::Groups;
 use crate::content::normal_cone::NormalCone;
+use crate::content::standing::Corners;
+pub(crate) use crate::content::standing::{BoxTree, each_in_view};
 use crate::light::LightAxes;
 use crate::view::{Range, Slice, View, ViewFrustum, slice_corners};
 
@@ -26,19 +34,34 @@ pub(crate) struct Scene<'a> {
     pub(crate) receivers: Option<Boxes<'a>>,
     pub(crate) receiver_cones: &'a [NormalCone],
     pub(crate) casters: Option<Boxes<'a>>,
+    /// Boxes that receive and cast beside those of the lists.
+    pub(crate) standing: Option<&'a BoxTree>,
+    /// View depth up to which standing boxes are of use as receivers, in metres.
+    pub(crate) reach: f32,
+}
+
+impl Scene<'_> {
+    fn count(&self) -> [usize; 2] {
+        [self.receivers, self.casters].map(|boxes| boxes.map_or(0, |boxes| boxes.boxes.len()))
+    }
 }
 
 /// The views and boxes of one frame, with the view depths of each box computed once.
 pub(crate) struct Content<'a> {
     pub(crate) views: &'a [ViewFrustum],
     pub(crate) origin: DVec3,
-    pub(crate) receivers: Option<Boxes<'a>>,
-    pub(crate) casters: Option<Boxes<'a>>,
+    /// The list of receivers.
+    receivers: Option<Boxes<'a>>,
+    /// The list of casters.
+    casters: Option<Boxes<'a>>,
+    standing: Option<&'a BoxTree>,
+    /// The standing boxes in view, which are receivers after those of the list.
+    seen: Corners<'a>,
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
     receiver_groups: Groups<'a>,
-    pub(crate) caster_groups: Groups<'a>,
+    caster_groups: Groups<'a>,
     symmetric: OnceCell<Option<SymmetricFrustum>>,
     across: OnceCell<Option<(DVec2, DVec2)>>,
 }
@@ -59,21 +82,25 @@ impl<'a> Content<'a> {
     where
         'a: 'w,
     {
-        let origin = input.views[0].origin;
-        let count_of = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
-        let (count, casters) = (count_of(input.receivers), count_of(input.casters));
+        let (origin, [listed, casters]) = (input.views[0].origin, input.count());
+        let is_same = is_same(input.receivers, input.casters);
+        for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
+            check(boxes)?;
+        }
+        let given = storage.len();
+        let (seen, storage) = match input.standing {
+            Some(tree) => Corners::in_view(tree, (input.views, input.reach), storage)?,
+            None => (Corners::default(), storage),
+        };
+        let count = listed + seen.len();
         let needed = count.saturating_mul(input.views.len());
-        let grouped = [Groups::required(count), Groups::required(casters)];
+        let grouped = [Groups::required(listed), Groups::required(casters)];
         let required = needed
             .saturating_add(2 * 8 * input.views.len())
             .saturating_add(HullBuilder::SLACK)
             .saturating_add(grouped[0] + grouped[1]);
         if storage.len() < required {
-            return Err(FitError::ScratchTooSmall { given: storage.len(), required });
-        }
-        let is_same = is_same(input.receivers, input.casters);
-        for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
-            check(boxes)?;
+            return Err(FitError::ScratchTooSmall { given, required: required + (given - storage.len()) });
         }
         let (depths, points) = storage.split_at_mut(needed);
         let (of_receivers, points) = points.split_at_mut(grouped[0]);
@@ -83,9 +110,15 @@ impl<'a> Content<'a> {
         };
         let receiver_groups = groups(input.receivers, of_receivers);
         let caster_groups = if is_same { receiver_groups } else { groups(input.casters, of_casters) };
-        if let Some(receivers) = &input.receivers {
-            for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
-                view_depths(&input, receivers, &receiver_groups, view, depths);
+        for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
+            let (of_list, of_standing) = depths.split_at_mut(listed);
+            if let Some(receivers) = &input.receivers {
+                view_depths(&input, receivers, &receiver_groups, view, of_list);
+            }
+            let view = View::new(view, origin);
+            for (i, depths) in of_standing.iter_mut().enumerate() {
+                let (min, max) = seen.get(i);
+                *depths = view.depths(min, max).map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
             }
         }
         let content = Content {
@@ -93,6 +126,8 @@ impl<'a> Content<'a> {
             origin,
             receivers: input.receivers,
             casters: input.casters,
+            standing: input.standing,
+            seen,
             depths,
             receiver_groups,
             caster_groups,
@@ -110,6 +145,8 @@ impl<'a> Content<'a> {
             origin: input.views[0].origin,
             receivers: None,
             casters: None,
+            standing: None,
+            seen: Corners::default(),
             depths: &[],
             receiver_groups: Groups::default(),
             caster_groups: Groups::default(),
@@ -167,18 +204,55 @@ impl<'a> Content<'a> {
         self.views.iter().map(|view| View::new(view, self.origin))
     }
 
+    /// Whether it is known what receives shadows.
+    pub(crate) fn knows_receivers(&self) -> bool {
+        self.receivers.is_some() || self.standing.is_some()
+    }
+
+    /// Whether anything is known to cast shadows.
+    pub(crate) fn has_casters(&self) -> bool {
+        self.standing.is_some() || self.casters.is_some_and(|casters| !casters.boxes.is_empty())
+    }
+
+    /// The list of receivers, and that of casters.
+    pub(crate) fn lists(&self) -> [Option<Boxes<'a>>; 2] {
+        [self.receivers, self.casters]
+    }
+
+    /// Number of receivers of the list.
+    fn listed(&self) -> usize {
+        self.receivers.map_or(0, |receivers| receivers.boxes.len())
+    }
+
+    /// Number of receivers of the list and of standing boxes in view.
+    fn count(&self) -> usize {
+        self.listed() + self.seen.len()
+    }
+
+    /// Depths of all receivers in each view.
+    fn depths(&self) -> impl Iterator<Item = &[DVec2]> {
+        self.depths.chunks(self.count().max(1))
+    }
+
+    /// A receiver's box.
+    #[inline]
+    pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
+        let listed = self.listed();
+        if let (Some(receivers), true) = (&self.receivers, index < listed) {
+            return Some(moved(&receivers.boxes[index], receivers.origin - self.origin));
+        }
+        (index < self.count()).then(|| self.seen.get(index - listed))
+    }
+
     /// Least and greatest view depth of what the views see of the receivers, `None` when nothing.
     pub(crate) fn depth_range(&self) -> Option<(f64, f64)> {
-        let receivers = self.receivers.as_ref()?;
-        let offset = receivers.origin - self.origin;
         let mut range = OUT_OF_VIEW;
-        for (view, depths) in self.views().zip(self.depths.chunks(receivers.boxes.len().max(1))) {
+        for (view, depths) in self.views().zip(self.depths()) {
             let whole = view.slice(view.near, view.far);
-            for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
+            for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
                 range.y = range.y.max(depths.y.min(view.far));
                 // The part of a box that is in view may begin much farther out than the box.
-                if depths.x < range.x {
-                    let (min, max) = moved(aabb, offset);
+                if let Some((min, max)) = self.receiver(i).filter(|_| depths.x < range.x) {
                     let Ok(()) = whole.clip(min, max, &mut |p| {
                         range.x = range.x.min(view.depth.distance(p).max(view.near));
                         Ok::<(), core::convert::Infallible>(())
@@ -192,24 +266,32 @@ impl<'a> Content<'a> {
     /// Greatest distance of any receiver from an eye, in view or not: no turn of the camera makes
     /// a view depth exceed it. `None` when no receiver is known.
     pub(crate) fn farthest(&self) -> Option<f64> {
-        let receivers = self.receivers.as_ref()?;
-        let mut squared = None;
+        let of_corner = |min: DVec3, max: DVec3| {
+            let corner = min.abs().max(max.abs());
+            corner.dot(corner)
+        };
+        let mut squared: Option<f64> = None;
         for view in self.views {
-            let (offset, to_eye) = (receivers.origin - view.origin, self.origin - view.origin);
-            let of_corner = |min: DVec3, max: DVec3| {
-                let corner = min.abs().max(max.abs());
-                corner.dot(corner)
-            };
-            for (run, min, max) in self.receiver_groups.runs() {
+            let to_eye = self.origin - view.origin;
+            let may_be_farther = |squared: &Option<f64>, min: DVec3, max: DVec3| {
                 let most = of_corner(min + to_eye, max + to_eye) * (1.0 + 1e-9);
-                if squared.is_some_and(|squared| most < squared) {
-                    continue;
-                }
-                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
-                    let (min, max) = moved(aabb, offset);
-                    squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                squared.is_none_or(|squared| most >= squared)
+            };
+            if let Some(receivers) = &self.receivers {
+                let offset = receivers.origin - view.origin;
+                for (run, min, max) in self.receiver_groups.runs() {
+                    if !may_be_farther(&squared, min, max) {
+                        continue;
+                    }
+                    for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                        let (min, max) = moved(aabb, offset);
+                        squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                    }
                 }
             }
+            self.each_standing(&mut squared, may_be_farther, |squared, min, max| {
+                *squared = Some(of_corner(min + to_eye, max + to_eye).max(squared.unwrap_or(0.0)));
+            });
         }
         squared.map(libm::sqrt)
     }
@@ -218,25 +300,24 @@ impl<'a> Content<'a> {
     /// known.
     pub(crate) fn receivers_across(&self, axes: &LightAxes) -> Option<(DVec2, DVec2)> {
         *self.across.get_or_init(|| {
-            let receivers = self.receivers.as_ref()?;
-            let offset = receivers.origin - self.origin;
-            let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
             let across = |min, max| {
                 let (centre, half) = axes.project_box(min, max);
                 ((centre - half).truncate(), (centre + half).truncate())
             };
-            for (run, min, max) in self.receiver_groups.runs() {
+            let is_new = |(low, high): &(DVec2, DVec2), min, max| {
                 let (a, b) = across(min, max);
-                if a.cmpge(low).all() && b.cmple(high).all() {
-                    continue;
-                }
-                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
-                    let (min, max) = moved(aabb, offset);
-                    let (a, b) = across(min, max);
-                    (low, high) = (low.min(a), high.max(b));
-                }
+                !(a.cmpge(*low).all() && b.cmple(*high).all())
+            };
+            let widen = |(low, high): &mut (DVec2, DVec2), min, max| {
+                let (a, b) = across(min, max);
+                (*low, *high) = (low.min(a), high.max(b));
+            };
+            let mut bounds = (DVec2::MAX, DVec2::MIN);
+            if let Some(receivers) = &self.receivers {
+                each_of_list(receivers, &self.receiver_groups, self.origin, &mut bounds, is_new, widen);
             }
-            (low.x <= high.x).then_some((low, high))
+            self.each_standing(&mut bounds, is_new, widen);
+            (bounds.0.x <= bounds.1.x).then_some(bounds)
         })
     }
 
@@ -247,18 +328,14 @@ impl<'a> Content<'a> {
         range: Range,
         mut visit: impl FnMut(usize, &Slice, DVec3, DVec3) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Some(receivers) = &self.receivers else { return Ok(()) };
-        let offset = receivers.origin - self.origin;
-        let count = receivers.boxes.len().max(1);
-        for (view, depths) in self.views().zip(self.depths.chunks(count)) {
+        for (view, depths) in self.views().zip(self.depths()) {
             let slice = view.slice(f64::from(range.near), f64::from(range.far));
             if slice.near >= slice.far {
                 continue;
             }
-            for i in scattered(receivers.boxes.len()) {
-                let (aabb, depths) = (&receivers.boxes[i], depths[i]);
-                if depths.x <= slice.far && depths.y >= slice.near {
-                    let (min, max) = moved(aabb, offset);
+            for i in scattered(depths.len()) {
+                let is_in = depths[i].x <= slice.far && depths[i].y >= slice.near;
+                if let Some((min, max)) = self.receiver(i).filter(|_| is_in) {
                     visit(i, &slice, min, max)?;
                 }
             }
@@ -269,12 +346,11 @@ impl<'a> Content<'a> {
     /// Passes on each receiver's box that reaches into one of the views, with its least and greatest view
     /// depth.
     pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut((f64, f64), DVec3, DVec3)) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
-        let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
-        for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
-            let (min, max) = moved(aabb, offset);
-            visit((depths.x, depths.y), min, max);
+        let depths = self.depths().nth(view).unwrap_or_default();
+        for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
+            if let Some((min, max)) = self.receiver(i) {
+                visit((depths.x, depths.y), min, max);
+            }
         }
     }
 
@@ -286,38 +362,73 @@ impl<'a> Content<'a> {
         is_new: impl Fn(&S, DVec3, DVec3) -> bool,
         mut visit: impl FnMut(&mut S, DVec3, DVec3),
     ) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
-        for (run, min, max) in self.receiver_groups.runs() {
-            if !is_new(state, min, max) {
-                continue;
-            }
-            for i in run {
-                let is_seen = |depths: &[DVec2]| depths.get(i).is_some_and(|depths| depths.x <= depths.y);
-                if self.depths.chunks(receivers.boxes.len()).any(is_seen) {
-                    let (min, max) = moved(&receivers.boxes[i], offset);
+        let mut visit_run = |state: &mut S, run: core::ops::Range<usize>| {
+            for i in run.filter(|i| self.depths().any(|depths| depths[*i].x <= depths[*i].y)) {
+                if let Some((min, max)) = self.receiver(i) {
                     visit(state, min, max);
                 }
             }
+        };
+        for (run, min, max) in self.receiver_groups.runs() {
+            if is_new(state, min, max) {
+                visit_run(state, run);
+            }
         }
-    }
-
-    /// A receiver's box.
-    pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
-        let receivers = self.receivers.as_ref()?;
-        Some(moved(receivers.boxes.get(index)?, receivers.origin - self.origin))
+        visit_run(state, self.listed()..self.count());
     }
 
     /// Passes on each receiver's box that reaches into a view, whether it is dark or not, with its index.
     pub(crate) fn each_in_view(&self, view: &View, mut visit: impl FnMut(usize, DVec3, DVec3)) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
-        for (i, aabb) in receivers.boxes.iter().enumerate().filter(|(_, aabb)| !aabb.is_empty()) {
-            let (min, max) = moved(aabb, offset);
-            if view.depths(min, max).is_some() {
+        let boxes = self.receivers.map_or(&[][..], |receivers| receivers.boxes);
+        let listed = (0..boxes.len()).filter(|i| !boxes[*i].is_empty());
+        for i in listed.chain(boxes.len()..self.count()) {
+            if let Some((min, max)) = self.receiver(i).filter(|(min, max)| view.depths(*min, *max).is_some()) {
                 visit(i, min, max);
             }
         }
+    }
+
+    /// Passes on each caster's box, in view or not, with a state: those for which, and for the bounds of those around
+    /// which, `is_new` is true.
+    pub(crate) fn each_caster<S>(
+        &self,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, DVec3, DVec3),
+    ) {
+        if let Some(casters) = &self.casters {
+            each_of_list(casters, &self.caster_groups, self.origin, state, &is_new, &mut visit);
+        }
+        self.each_standing(state, is_new, visit);
+    }
+
+    /// [`Self::each_caster`] of the standing boxes alone, which receive as well.
+    pub(crate) fn each_standing<S>(
+        &self,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, DVec3, DVec3),
+    ) {
+        let Some(tree) = self.standing else { return };
+        let offset = tree.origin() - self.origin;
+        let enter = |state: &mut S, (), aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            is_new(state, min, max).then_some(())
+        };
+        tree.visit((), state, enter, |state, (), _, aabb| {
+            let (min, max) = moved(aabb, offset);
+            visit(state, min, max);
+        });
+    }
+
+    /// A box around all casters, in view or not, if there are any.
+    pub(crate) fn caster_bounds(&self) -> Option<(DVec3, DVec3)> {
+        let listed = self.caster_groups.runs().map(|(_, min, max)| (min, max));
+        let all = listed.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let mut bounds = all.unwrap_or((DVec3::MAX, DVec3::MIN));
+        let is_new = |all: &(DVec3, DVec3), min: DVec3, max: DVec3| !(min.cmpge(all.0).all() && max.cmple(all.1).all());
+        self.each_standing(&mut bounds, is_new, |all, min, max| *all = (all.0.min(min), all.1.max(max)));
+        (bounds.0.x <= bounds.1.x).then_some(bounds)
     }
 
     /// Corners of the views' slices.
@@ -328,6 +439,26 @@ impl<'a> Content<'a> {
     /// Corners of each view's slice that is not empty.
     pub(crate) fn slices(&self, range: Range) -> impl Iterator<Item = [DVec3; 8]> {
         self.views.iter().filter_map(move |view| slice_corners(view, self.origin, range.near, range.far))
+    }
+}
+
+/// Passes on the boxes of a list, relative to an origin, with a state, in the runs for whose bounds `is_new` is true.
+fn each_of_list<S>(
+    list: &Boxes,
+    groups: &Groups,
+    origin: DVec3,
+    state: &mut S,
+    is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+    mut visit: impl FnMut(&mut S, DVec3, DVec3),
+) {
+    for (run, min, max) in groups.runs() {
+        if !is_new(state, min, max) {
+            continue;
+        }
+        for aabb in list.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+            let (min, max) = moved(aabb, list.origin - origin);
+            visit(state, min, max);
+        }
     }
 }
 
@@ -397,49 +528,4 @@ fn check(boxes: &Boxes) -> Result<(), FitError> {
         }
     }
     Ok(())
-}
-
-/// Boxes in a run: few enough that runs stay small, enough that their tests cost little. 8 and 32 are both
-/// slower with 1,024 clusters of real scenes.
-const RUN: usize = 16;
-
-/// Elements of storage that the bounds of a run take.
-const ELEMENTS: usize = 3;
-
-/// Boxes in runs, with the bounds of each.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Groups<'a> {
-    boxes: &'a [Aabb],
-    bounds: &'a [DVec2],
-    /// From the origin that the boxes are seen from to their own.
-    offset: DVec3,
-}
-
-impl<'a> Groups<'a> {
-    /// Elements of storage for the runs of a number of boxes.
-    pub(crate) const fn required(boxes: usize) -> usize {
-        boxes.div_ceil(RUN) * ELEMENTS
-    }
-
-    /// The runs of boxes as seen from an origin; storage is as long as [`Self::required`] or longer.
-    pub(crate) fn new(boxes: &Boxes<'a>, origin: DVec3, storage: &'a mut [DVec2]) -> Self {
-        for (run, bounds) in boxes.boxes.chunks(RUN).zip(storage.chunks_exact_mut(ELEMENTS)) {
-            let all = run.iter().filter(|aabb| !aabb.is_empty()).fold(Aabb::EMPTY, |all, aabb| all.union(*aabb));
-            let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
-            bounds.copy_from_slice(&[min.truncate(), DVec2::new(min.z, max.x), DVec2::new(max.y, max.z)]);
-        }
-        Self { boxes: boxes.boxes, bounds: storage, offset: boxes.origin - origin }
-    }
-
-    /// The runs: indices of their boxes, and the corners of the bounds of those that are not empty, from the
-    /// origin. Runs of empty boxes are left out.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = (core::ops::Range<usize>, DVec3, DVec3)> + use<'a> {
-        let (offset, count) = (self.offset, self.boxes.len());
-        self.bounds.chunks_exact(ELEMENTS).enumerate().filter_map(move |(i, bounds)| {
-            let min = DVec3::new(bounds[0].x, bounds[0].y, bounds[1].x);
-            let max = DVec3::new(bounds[1].y, bounds[2].x, bounds[2].y);
-            let run = RUN * i..count.min(RUN * (i + 1));
-            (min.x <= max.x && !run.is_empty()).then_some((run, min + offset, max + offset))
-        })
-    }
 }

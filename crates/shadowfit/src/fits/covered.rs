@@ -155,7 +155,7 @@ const SAME_PLANE: f64 = 1e-5;
 
 /// What set each plane: the view where the plane lies at the view's own extent, else the receivers.
 fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [Constraint; 6] {
-    if content.receivers.is_none() || hull.is_empty {
+    if !content.knows_receivers() || hull.is_empty {
         return [Constraint::View; 6];
     }
     let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
@@ -256,7 +256,7 @@ impl<'a> LightHull<'a> {
         range: Range,
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
-        if content.receivers.is_none() {
+        if !content.knows_receivers() {
             return Self::of_views(content, axes, range, points);
         }
         let mut collector = Collector::new(axes, points);

@@ -4,7 +4,7 @@ use glam::{DVec2, Vec3};
 
 use crate::base::{Boxes, FitError};
 use crate::content::normal_cone::NormalCone;
-use crate::content::{Content, Scene};
+use crate::content::{BoxTree, Content, Scene, each_in_view};
 use crate::demand::grid::DemandGrid;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
 use crate::fits::{FitRule, Volume};
@@ -63,6 +63,11 @@ pub struct FitInput<'a> {
     /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension). An empty slice means
     /// that nothing casts.
     pub casters: Option<Boxes<'a>>,
+    /// Boxes that receive and cast shadows beside those of the two lists, handed over once in a hierarchy, so that a
+    /// frame costs what is in reach: for thousands of boxes that stand. With them the lists need not be known: what is
+    /// `None` adds nothing.
+    #[cfg(feature = "alloc")]
+    pub standing: Option<&'a BoxTree>,
     /// The depths that the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
@@ -84,28 +89,53 @@ impl<'a> FitInput<'a> {
             receivers: None,
             receiver_cones: &[],
             casters: None,
+            #[cfg(feature = "alloc")]
+            standing: None,
             histogram: None,
             demand: &[],
             depth_bounds: None,
         }
     }
 
-    /// What content is made of.
+    /// What content is made of; shadows end at a view depth, in metres.
     #[inline]
-    pub(crate) fn scene(&self) -> Scene<'a> {
+    pub(crate) fn scene(&self, reach: f32) -> Scene<'a> {
         let Self { views, direction, receivers, receiver_cones, casters, .. } = *self;
-        Scene { views, direction, receivers, receiver_cones, casters }
+        Scene { views, direction, receivers, receiver_cones, casters, standing: self.tree(), reach }
+    }
+
+    /// Whether it is known what casts shadows.
+    pub(crate) fn knows_casters(&self) -> bool {
+        self.casters.is_some() || self.tree().is_some()
+    }
+
+    #[cfg(feature = "alloc")]
+    fn tree(&self) -> Option<&'a BoxTree> {
+        self.standing
+    }
+
+    #[cfg(not(feature = "alloc"))]
+    #[expect(clippy::unused_self, reason = "as with an allocator")]
+    fn tree(&self) -> Option<&'a BoxTree> {
+        None
+    }
+
+    /// Number of elements of [`Scratch`] that is enough for any fit of this input, as [`Scratch::required`] says it of
+    /// lists: standing boxes in view count as well. Maps that are
+    /// [held](crate::settings::Stabilise::Hysteresis) look at the views of two frames ahead, for which two more views
+    /// count.
+    pub fn scratch(&self) -> usize {
+        let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
+        let mut boxes = count(self.receivers).max(count(self.casters));
+        if let (Some(tree), false) = (self.tree(), self.views.is_empty()) {
+            each_in_view(tree, (self.views, f32::MAX), |_, _| boxes += 1);
+        }
+        Scratch::required(boxes, self.views.len() + VIEWS_AHEAD)
     }
 }
 
-#[cfg(feature = "alloc")]
-impl FitInput<'_> {
-    /// Boxes that fits work with: receivers or casters, whichever are more.
-    pub(crate) fn boxes(&self) -> usize {
-        let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
-        count(self.receivers).max(count(self.casters))
-    }
-}
+/// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
+const VIEWS_AHEAD: usize = 2;
 
 /// Storage that fits work in, owned by the caller, so that nothing allocates.
 #[derive(Debug)]

@@ -70,10 +70,16 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     if rule.form.is_exact {
         // It uses nothing but the corners, and is as cheap as the sample's own code only without
         // storage.
-        return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.map.max_distance, &mut []);
+        return fit_whole(
+            &Content::of_views(input.scene(settings.map.max_distance)),
+            &light,
+            &rule,
+            settings.map.max_distance,
+            &mut [],
+        );
     }
     let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-    let (content, points) = Content::new(input.scene(), &mut storage)?;
+    let (content, points) = Content::new(input.scene(settings.map.max_distance), &mut storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
@@ -89,7 +95,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 /// [`Scratch::required`].
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, scratch: &mut Scratch) -> Result<LightProjection, FitError> {
     let (rule, light) = prepare(input, settings, default_border(settings))?;
-    let (content, points) = Content::new(input.scene(), scratch.storage)?;
+    let (content, points) = Content::new(input.scene(settings.map.max_distance), scratch.storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
@@ -118,7 +124,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
     for view in input.views {
         view.check()?;
     }
-    let rule = FitRule::new(settings, border, input.casters.is_some())?;
+    let rule = FitRule::new(settings, border, input.knows_casters())?;
     let direction = checks::unit("the light's direction", input.direction)?;
     let up = checks::unit("the up direction", settings.map.up)?;
     let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);

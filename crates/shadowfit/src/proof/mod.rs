@@ -20,7 +20,7 @@ mod half_space;
 use glam::{DVec2, DVec3};
 
 use crate::base::checks::UNIT;
-use crate::base::{FitError, box_corners, checks, moved};
+use crate::base::{FitError, box_corners, checks};
 use crate::bias::{HARDWARE_SNAP, Reach};
 use crate::content::Content;
 use crate::fits::covered::LightHull;
@@ -196,7 +196,7 @@ pub fn prove(
     checks::point("the fit's origin", fit.origin)?;
     let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
-    let (content, points) = Content::new(input.scene(), scratch.storage)?;
+    let (content, points) = Content::new(input.scene(range.far), scratch.storage)?;
     let offset = content.origin - fit.origin;
     let mut receivers = Worst::new(&half_spaces, offset);
     receivers.add_all(&content, range);
@@ -204,9 +204,8 @@ pub fn prove(
         return Ok(proof);
     }
     let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
-    let has_casters = content.casters.is_some_and(|casters| !casters.boxes.is_empty());
     let is_read = if query.is_shared { !fit.is_empty } else { receivers.any.is_some() };
-    if is_read && has_casters && query.casters != CasterPolicy::DepthClamp {
+    if is_read && content.has_casters() && query.casters != CasterPolicy::DepthClamp {
         let nearest = |over: Outline| nearest_caster(&content, &over, &half_spaces, offset);
         let (by, point) = if query.is_shared {
             let (corners, distance) = whole_map(fit, &axes, offset);
@@ -263,19 +262,18 @@ const SHIFT_ROUNDINGS: f64 = 32.0;
 
 /// The casters' least distance behind the near plane, in metres, and where.
 fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
-    let casters = content.casters.unwrap_or_default();
-    let (moved_by, mut scratch) = (casters.origin - content.origin, OutlineScratch::new());
+    let mut scratch = OutlineScratch::new();
     let mut least = (f64::INFINITY, DVec3::ZERO);
-    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
-        let (min, max) = moved(aabb, moved_by);
+    let is_over = |_: &(f64, DVec3), min, max| over.may_hold(min, max, f64::MIN);
+    content.each_caster(&mut least, is_over, |least, min, max| {
         over.parts_over(min, max, f64::MIN, &mut scratch, |corner| {
             let p = over.axes.unproject(corner) + offset;
             let margin = half_spaces.near().into_iter().map(|near| near.margin(p)).fold(f64::INFINITY, f64::min);
             if margin < least.0 {
-                least = (margin, p);
+                *least = (margin, p);
             }
         });
-    }
+    });
     least
 }
 
@@ -296,7 +294,7 @@ impl<'a> Worst<'a> {
 
     /// Adds everything that the views see between two depths.
     fn add_all(&mut self, content: &Content, range: Range) {
-        if content.receivers.is_none() {
+        if !content.knows_receivers() {
             content.corners(range).for_each(|corner| self.add(corner));
             return;
         }

@@ -108,7 +108,7 @@ impl Sizes {
     fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
         let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
-        if maps.rule.form.covers == Covers::Receivers && maps.content.receivers.is_some() {
+        if maps.rule.form.covers == Covers::Receivers && maps.content.knows_receivers() {
             collect_receivers(&mut extents, maps.content, &directions, bins);
         } else {
             for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
