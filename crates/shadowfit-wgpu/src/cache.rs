@@ -17,17 +17,21 @@
 
 mod casters;
 #[cfg(test)]
+mod fixtures;
+#[cfg(test)]
 mod histories;
 mod identity;
 mod plan;
 mod price;
 mod schedule;
+#[cfg(test)]
+mod streams;
 mod tiles;
 
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3};
 use shadowfit::scroll::{Scroll, TexelRect};
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{Aabb, CasterVolume, FittedMap};
+use shadowfit::{Aabb, BoxTree, CasterVolume, FittedMap};
 
 use casters::{Changes, KnownCasters, WorldBox};
 use price::Price;
@@ -136,6 +140,8 @@ pub(crate) struct CacheFrame<'a> {
     /// The fitted maps.
     pub(crate) fitted: &'a [FittedMap],
     pub(crate) casters: &'a Casters<'a>,
+    /// Static casters beside them.
+    pub(crate) standing: Option<&'a BoxTree>,
     /// The map that holds the points outside all others, by coverage.
     pub(crate) coarsest: Option<usize>,
     /// Direction in which the light travels.
@@ -163,13 +169,13 @@ impl MapCache {
     pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         let changed = WorldBox::new(aabb, origin);
         if !changed.is_empty() {
-            self.change(&Changes { gone: vec![changed], come: Vec::new() });
+            self.change(&Changes { gone: vec![changed], ..Changes::default() });
         }
     }
 
     /// Step 1: finds where static casters changed.
     pub(crate) fn take(&mut self, frame: &CacheFrame<'_>) {
-        let changes = self.known.update(frame.casters);
+        let changes = self.known.update(frame.casters, frame.standing);
         self.change(&changes);
         self.is_split |= self.settings.can_mend && self.settings.caching && !self.known.moving.is_empty();
         self.frame += 1;
@@ -270,6 +276,7 @@ impl MapCache {
                 fitted: &choice.maps[index],
                 known: &self.known,
                 casters: frame.casters,
+                standing: frame.standing,
                 to_light: -frame.direction.normalize_or_zero(),
                 origin: frame.origin,
                 in_view: volumes.get(index),
@@ -288,6 +295,10 @@ impl KeptMap {
     fn change(&mut self, changes: &Changes) {
         let Some(drawn) = &self.drawn else { return };
         let (origin, size) = (drawn.projection.origin, drawn.projection.resolution);
+        if changes.is_all {
+            self.is_kept = false;
+            self.changed.add(TexelRect::all(size), size);
+        }
         let rect = |changed: &WorldBox| TexelRect::of_box(&drawn.projection, &changed.relative_to(origin), origin);
         for come in &changes.come {
             self.changed.add(rect(come), size);
@@ -330,7 +341,7 @@ impl KeptMap {
         if scroll.is_redraw() || (is_moved && size != settings.layer) {
             return None;
         }
-        let price = Price::new(casters, self.over, whole(now));
+        let price = Price::new(casters, self.over, whole(now), self.is_split);
         let changed = self.changed.rects(&price).into_iter().map(|rect| moved(rect, scroll.shift, size));
         let rects: Vec<TexelRect> = scroll.exposed().chain(changed).filter(|rect| !rect.is_empty()).collect();
         let is_worth = price.is_worth(&rects, whole(now));

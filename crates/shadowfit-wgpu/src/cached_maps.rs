@@ -126,6 +126,7 @@ impl CachedMaps {
         let cached = CacheFrame {
             fitted,
             casters: &frame.casters,
+            standing: frame.standing,
             coarsest: MapOrder::new(self.map.descriptor().selection, fitted.iter().map(|map| &map.projection))
                 .iter()
                 .last(),

@@ -1,7 +1,7 @@
 //! The casters of a frame, by number, and what changed since the frame before.
 
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Aabb, Boxes};
+use shadowfit::{Aabb, BoxRevision, BoxTree, Boxes};
 
 use super::identity::{Caster, pair};
 
@@ -97,6 +97,8 @@ fn rounding(aabb: &Aabb) -> f64 {
 pub(super) struct Changes {
     pub(super) gone: Vec<WorldBox>,
     pub(super) come: Vec<WorldBox>,
+    /// Whether anything may have changed.
+    pub(super) is_all: bool,
 }
 
 /// The casters of the last frame.
@@ -108,6 +110,8 @@ pub(crate) struct KnownCasters {
     keys: Vec<u64>,
     /// Those that move, by number.
     pub(crate) moving: Vec<u32>,
+    /// The state of the standing ones.
+    standing: Option<BoxRevision>,
 }
 
 impl KnownCasters {
@@ -117,7 +121,23 @@ impl KnownCasters {
     }
 
     /// Takes the casters of a frame, and finds where static ones changed.
-    pub(super) fn update(&mut self, casters: &Casters<'_>) -> Changes {
+    pub(super) fn update(&mut self, casters: &Casters<'_>, standing: Option<&BoxTree>) -> Changes {
+        let mut changes = self.update_listed(casters);
+        let before = core::mem::replace(&mut self.standing, standing.map(BoxTree::revision));
+        let Some((before, tree)) = before.zip(standing) else {
+            changes.is_all = before.is_some() || standing.is_some();
+            return changes;
+        };
+        let Some(changed) = tree.changes_since(before) else { return Changes { is_all: true, ..changes } };
+        for change in changed {
+            let [before, after] = [change.before, change.after].map(|aabb| WorldBox::new(&aabb, tree.origin()));
+            changes.gone.extend(Some(before).filter(|aabb| !aabb.is_empty()));
+            changes.come.extend(Some(after).filter(|aabb| !aabb.is_empty()));
+        }
+        changes
+    }
+
+    fn update_listed(&mut self, casters: &Casters<'_>) -> Changes {
         let Boxes { origin, boxes } = casters.boxes;
         let keys = &casters.keys[..casters.keys.len().min(boxes.len())];
         let (mut gone, mut come) = (Vec::new(), Vec::new());
@@ -154,17 +174,17 @@ impl KnownCasters {
         // One that is known by another number stays as it was drawn.
         pair(&mut gone, &mut come, |number, aabb| self.drawn[number] = aabb);
         let boxes = |list: Vec<Caster>| list.into_iter().map(|caster| caster.aabb).collect();
-        Changes { gone: boxes(gone), come: boxes(come) }
+        Changes { gone: boxes(gone), come: boxes(come), is_all: false }
     }
 }
 
 /// Sorts casters by where they begin as seen from the light, the nearest first, and then by number. `to_light` is the
 /// unit direction toward the light.
-pub(super) fn sort(numbers: &mut [u32], boxes: &[Aabb], to_light: Vec3, order: &mut Vec<u64>) {
+pub(super) fn sort(numbers: &mut [u32], to_light: Vec3, order: &mut Vec<u64>, aabb: impl Fn(u32) -> Aabb) {
     order.clear();
     order.extend(numbers.iter().map(|number| {
         // Descending floats as ascending integers.
-        let bits = height(&boxes[*number as usize], to_light).to_bits();
+        let bits = height(&aabb(*number), to_light).to_bits();
         let descending = if bits >> 31 == 0 { !bits & 0x7fff_ffff } else { bits };
         u64::from(descending) << 32 | u64::from(*number)
     }));
@@ -196,12 +216,12 @@ mod tests {
     }
 
     fn take(known: &mut KnownCasters, boxes: &[Aabb], moves: &[bool], keys: &[u64]) -> Changes {
-        known.update(&Casters { boxes: Boxes::world(boxes), moves, keys })
+        known.update(&Casters { boxes: Boxes::world(boxes), moves, keys }, None)
     }
 
     fn changes(gone: &[Aabb], come: &[Aabb]) -> Changes {
         let boxes = |list: &[Aabb]| list.iter().copied().map(world).collect();
-        Changes { gone: boxes(gone), come: boxes(come) }
+        Changes { gone: boxes(gone), come: boxes(come), is_all: false }
     }
 
     #[test]
@@ -226,7 +246,7 @@ mod tests {
     #[test]
     fn lists_in_another_order_change_only_where_a_caster_came_or_went() {
         let boxes = row(100);
-        let after = |change: &dyn Fn(&mut Vec<Aabb>)| {
+        let after = |change: &dyn Fn(&mut Vec<Aabb>)| -> Changes {
             let known = &mut KnownCasters::default();
             take(known, &boxes, &[], &[]);
             let mut other = boxes.clone();
@@ -237,8 +257,8 @@ mod tests {
         };
         assert_eq!(after(&|list| list.reverse()), Changes::default());
         assert_eq!(after(&|list| list.rotate_left(37)), Changes::default());
-        assert_eq!(after(&|list| drop(list.remove(40))), changes(&[boxes[40]], &[]));
-        assert_eq!(after(&|list| drop(list.swap_remove(40))), changes(&[boxes[40]], &[]));
+        assert_eq!(after(&|list| list.retain(|aabb| *aabb != boxes[40])), changes(&[boxes[40]], &[]));
+        assert_eq!(after(&|list| list[40] = list.pop().unwrap_or(Aabb::EMPTY)), changes(&[boxes[40]], &[]));
         assert_eq!(after(&|list| list.insert(0, cube(-9.0, 4.0))), changes(&[], &[cube(-9.0, 4.0)]));
         let culled = after(&|list| list.retain(|aabb| aabb.min.x < 270.0));
         assert_eq!(culled, changes(&boxes[90..], &[]));
@@ -298,7 +318,7 @@ mod tests {
             [aabb(0.0), aabb(80.0), aabb(80.1)]
         };
         let eye = place + DVec3::new(30.0, 1.7, 50.0);
-        let mut take = |origin, boxes: &[Aabb]| known.update(&Casters::fixed(Boxes { origin, boxes }));
+        let mut take = |origin, boxes: &[Aabb]| known.update(&Casters::fixed(Boxes { origin, boxes }), None);
         assert_eq!(take(eye, &relative(eye)).come.len(), 3);
         for step in 1..200 {
             let eye = eye + DVec3::new(0.013, 0.001, -0.027) * f64::from(step);
@@ -312,9 +332,9 @@ mod tests {
     fn casters_are_sorted_nearest_to_the_light_first() {
         let boxes = [cube(0.0, 4.0), cube(0.0, -3.0), cube(0.0, 9.0), cube(0.0, -1.0), cube(5.0, 4.0)];
         let mut numbers = [4, 0, 1, 2, 3];
-        sort(&mut numbers, &boxes, Vec3::Y, &mut Vec::new());
+        sort(&mut numbers, Vec3::Y, &mut Vec::new(), |number| boxes[number as usize]);
         assert_eq!(numbers, [2, 0, 4, 3, 1]);
-        sort(&mut numbers, &boxes, Vec3::NEG_Y, &mut Vec::new());
+        sort(&mut numbers, Vec3::NEG_Y, &mut Vec::new(), |number| boxes[number as usize]);
         assert_eq!(numbers, [1, 3, 0, 4, 2]);
     }
 

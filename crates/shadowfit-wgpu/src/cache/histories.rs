@@ -8,14 +8,15 @@ use std::sync::LazyLock;
 
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
+use shadowfit::Boxes;
+use shadowfit::glam::Vec3;
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Boxes, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
 
+use super::fixtures::{SIDE, fitted};
 use super::*;
 
-/// Maps of the finest windows, and their texels a side.
+/// The finest windows.
 const MAPS: usize = 3;
-const SIDE: u32 = 2048;
 
 /// Samples along a side of a map.
 const SAMPLES: u32 = 24;
@@ -25,29 +26,25 @@ const PLACE: DVec3 = DVec3::new(3000.0, 10.0, -2000.0);
 
 const LIGHTS: [Vec3; 3] = [Vec3::new(0.45, -0.8, 0.3), Vec3::new(0.4, -0.8, 0.35), Vec3::new(-0.6, -0.5, 0.1)];
 
-/// The maps of each light, for two distances, at the world's origin.
-static FITTED: LazyLock<[[FittedMaps; 2]; 3]> =
-    LazyLock::new(|| LIGHTS.map(|light| [40.0, 60.0].map(|far| fitted(light, far))));
-
-fn fitted(direction: Vec3, far: f32) -> FittedMaps {
-    let camera = PerspectiveCamera {
-        eye: DVec3::new(0.0, 2.0, 0.0),
-        forward: Vec3::NEG_Z,
-        up: Vec3::Y,
-        fov_y: 0.9,
-        aspect: 1.5,
-        near: 0.1,
-        far: 200.0,
-    };
-    let views = [camera.frustum().expect("a camera")];
+/// The maps of each light, for two distances, at the world's place.
+static FITTED: LazyLock<[[[FittedMap; MAPS]; 2]; 3]> = LazyLock::new(|| {
     let boxes = [Aabb::new(Vec3::new(-90.0, -1.0, -90.0), Vec3::new(90.0, 12.0, 90.0))];
-    let boxes = Boxes::world(&boxes);
-    let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, direction) };
-    let technique =
-        Technique::preset("windows-4").expect("a preset").with_resolution(SIDE, SIDE).with_max_distance(far);
-    let mut fitter = ShadowFitter::default();
-    fitter.set_technique(&technique);
-    *fitter.fit(&input).expect("maps")
+    let maps = |light, far| {
+        let maps = fitted(light, far, &boxes);
+        core::array::from_fn(|index| placed(&maps[index]))
+    };
+    LIGHTS.map(|light| [40.0, 60.0].map(|far| maps(light, far)))
+});
+
+/// A map of the world's origin at the world's place.
+fn placed(map: &FittedMap) -> FittedMap {
+    let mut map = panned(map, PLACE);
+    let toward_light = map.projection.light_from_world.transpose().z_axis.truncate().as_dvec3();
+    let along = PLACE.dot(toward_light);
+    map.projection.origin += toward_light * along;
+    let anchor = map.anchor.as_mut().expect("a map on a grid");
+    anchor.depth = anchor.depth.map(|depth| depth + along);
+    map
 }
 
 /// A map that lies elsewhere on its grid, by metres.
@@ -71,6 +68,8 @@ struct Object {
     half: DVec3,
     key: u64,
     moves: bool,
+    /// Its number in the tree of standing casters; the others are in the list.
+    stands: Option<u32>,
     /// Number of the bit that stands for its shape where it is.
     bit: u32,
 }
@@ -95,6 +94,9 @@ enum Event {
     /// Thirds of the casters that have keys.
     Keys(usize),
     Moves(Index),
+    /// From the list into the tree, or back.
+    Stand(Index),
+    NewTree,
     Schedule(UpdateSchedule),
     Light(usize),
     Distance(usize),
@@ -122,11 +124,13 @@ fn event() -> impl Strategy<Value = Event> {
         1 => number().prop_map(Event::Rotate),
         1 => Just(Event::SortByPlace),
         2 => (number(), place()).prop_map(|(number, place)| Event::Place(number, place)),
-        1 => (-2.0..2.0).prop_map(Event::PlaceAll),
+        1 => (0.2..2.0).prop_map(Event::PlaceAll),
         2 => number().prop_map(Event::Reshape),
         1 => (0..4_usize).prop_map(Event::Keys),
         2 => number().prop_map(Event::Moves),
-        1 => select(&schedules).prop_map(Event::Schedule),
+        3 => number().prop_map(Event::Stand),
+        1 => Just(Event::NewTree),
+        1 => select(schedules.to_vec()).prop_map(Event::Schedule),
         1 => (0..3_usize).prop_map(Event::Light),
         1 => (0..2_usize).prop_map(Event::Distance),
         3 => [-6.0..6.0, -6.0..6.0].prop_map(Event::Pan),
@@ -148,6 +152,7 @@ type Samples = Vec<Sample>;
 /// A world, its maps, and what they hold.
 struct World {
     objects: Vec<Object>,
+    tree: BoxTree,
     bits: u32,
     keys: u64,
     /// Thirds of the casters that have keys.
@@ -170,6 +175,7 @@ impl World {
         let samples = || vec![Sample::default(); (SAMPLES * SAMPLES) as usize];
         let mut world = Self {
             objects: Vec::new(),
+            tree: BoxTree::new(PLACE),
             bits: 0,
             keys: 0,
             keyed: 0,
@@ -195,7 +201,8 @@ impl World {
     fn insert(&mut self, at: usize, centre: DVec3, half: DVec3) {
         self.keys += 1;
         let bit = self.next_bit();
-        self.objects.insert(at, Object { centre: PLACE + centre, half, key: self.keys, moves: false, bit });
+        self.objects
+            .insert(at, Object { centre: PLACE + centre, half, key: self.keys, moves: false, stands: None, bit });
     }
 
     fn next_bit(&mut self) -> u32 {
@@ -219,7 +226,7 @@ impl World {
                 self.insert(self.number(number), centre, half);
             }
             Event::Copy(of, number) => {
-                let copy = Object { key: self.keys + 1, ..self.objects[self.number(of)] };
+                let copy = Object { key: self.keys + 1, stands: None, ..self.objects[self.number(of)] };
                 self.keys += u64::from(self.frame.is_multiple_of(2));
                 self.objects.insert(self.number(number), copy);
             }
@@ -227,12 +234,19 @@ impl World {
             Event::SwapRemove(number) => drop(self.objects.swap_remove(self.number(number))),
             Event::RemoveFrom(number) => self.objects.truncate(self.number(number).max(4)),
             Event::Reverse => self.objects.reverse(),
-            Event::Rotate(number) => self.objects.rotate_left(self.number(number)),
+            Event::Rotate(number) => {
+                let by = self.number(number);
+                self.objects.rotate_left(by);
+            }
             Event::SortByPlace => self.objects.sort_by(|a, b| a.centre.x.total_cmp(&b.centre.x)),
             Event::Place(number, place) => {
                 let (bit, number) = (self.next_bit(), self.number(number));
                 let (centre, half) = at(place);
-                self.objects[number] = Object { centre: PLACE + centre, half, bit, ..self.objects[number] };
+                let object = &mut self.objects[number];
+                // The same box stands for the same shape.
+                if (object.centre - PLACE - centre).length() > 0.01 {
+                    (object.centre, object.half, object.bit) = (PLACE + centre, half, bit);
+                }
             }
             Event::PlaceAll(by) => {
                 for number in 0..self.objects.len() {
@@ -246,7 +260,7 @@ impl World {
                 let object = &mut self.objects[number];
                 (object.bit, object.key) = (bit, self.keys);
                 // Without a key in this frame and in the one before, nothing else tells.
-                if self.keyed < 3 || self.were_keyed < 3 {
+                if self.keyed < 3 || self.were_keyed < 3 || object.stands.is_some() {
                     self.invalidate(number);
                 }
             }
@@ -254,7 +268,24 @@ impl World {
             Event::Moves(number) => {
                 let (bit, number) = (self.next_bit(), self.number(number));
                 let object = &mut self.objects[number];
-                (object.moves, object.bit) = (!object.moves, bit);
+                if object.stands.is_none() {
+                    (object.moves, object.bit) = (!object.moves, bit);
+                }
+            }
+            Event::Stand(number) => {
+                let number = self.number(number);
+                let object = &mut self.objects[number];
+                object.stands = match object.stands.take().and_then(|number| self.tree.remove(number)) {
+                    Some(_) => None,
+                    None => Some(self.tree.insert(Aabb::EMPTY).expect("a box")),
+                };
+                object.moves = false;
+            }
+            Event::NewTree => {
+                self.tree = BoxTree::new(self.place);
+                for object in self.objects.iter_mut().rev().filter(|object| object.stands.is_some()) {
+                    object.stands = Some(self.tree.insert(Aabb::EMPTY).expect("a box"));
+                }
             }
             Event::Schedule(schedule) => self.cache.schedule = *schedule,
             Event::Light(light) => self.light = *light,
@@ -269,37 +300,51 @@ impl World {
         for object in self.objects.iter_mut().filter(|object| object.moves) {
             object.centre.y += if self.frame.is_multiple_of(2) { 0.3 } else { -0.3 };
         }
+        self.tell_tree();
         self.frame += 1;
     }
 
+    /// Tells the tree where its boxes are, and which are gone.
+    fn tell_tree(&mut self) {
+        let mut numbers = Vec::new();
+        self.tree.for_each(|number, _| numbers.push(number));
+        for number in
+            numbers.into_iter().filter(|number| self.objects.iter().all(|object| object.stands != Some(*number)))
+        {
+            self.tree.remove(number);
+        }
+        for object in &self.objects {
+            if let Some(number) = object.stands {
+                self.tree.set(number, object.aabb(self.tree.origin())).expect("a good box");
+            }
+        }
+    }
+
     fn invalidate(&mut self, number: usize) {
-        let Object { centre, half, .. } = self.objects[number];
-        let aabb = Aabb::new((centre - half - self.place).as_vec3(), (centre + half - self.place).as_vec3());
-        self.cache.invalidate(&aabb, self.place);
+        self.cache.invalidate(&self.objects[number].aabb(self.place), self.place);
     }
 
     /// Carries out the plan of a frame, and compares what the maps hold.
     fn draw(&mut self) -> Result<(), TestCaseError> {
         let maps: Vec<FittedMap> =
-            FITTED[self.light][self.distance][..MAPS].iter().map(|map| panned(map, self.place)).collect();
+            FITTED[self.light][self.distance].iter().map(|map| panned(map, self.place - PLACE)).collect();
         // Boxes relative to a moving origin: they round anew in each frame.
-        let aabb = |object: &Object| {
-            let centre = (object.centre - self.place).as_vec3();
-            Aabb::new(centre - object.half.as_vec3(), centre + object.half.as_vec3())
-        };
-        let boxes: Vec<Aabb> = self.objects.iter().map(aabb).collect();
-        let moves: Vec<bool> = self.objects.iter().map(|object| object.moves).collect();
-        let keyed = self.objects.iter().take(self.objects.len() * self.keyed / 3);
+        let listed: Vec<Object> = self.objects.iter().filter(|object| object.stands.is_none()).copied().collect();
+        let boxes: Vec<Aabb> = listed.iter().map(|object| object.aabb(self.place)).collect();
+        let moves: Vec<bool> = listed.iter().map(|object| object.moves).collect();
+        let keyed = listed.iter().take(listed.len() * self.keyed / 3);
         let keys: Vec<u64> = keyed.map(|object| object.key).collect();
         let boxes = Boxes { origin: self.place, boxes: &boxes };
         let casters = Casters { boxes, moves: &moves, keys: &keys };
         let frame = CacheFrame {
             fitted: &maps,
             casters: &casters,
+            standing: (listed.len() < self.objects.len()).then_some(&self.tree),
             coarsest: Some(MAPS - 1),
             direction: LIGHTS[self.light],
             origin: self.place,
         };
+        // The frame borrows the tree, which no step changes.
         self.cache.take(&frame);
         let everywhere = CasterVolume::everywhere(self.place);
         let is_due = core::array::from_fn(|map| self.cache.shows_gone(map, &everywhere));
@@ -307,17 +352,17 @@ impl World {
         let mut plan = core::mem::take(&mut self.plan);
         self.cache.plan(&choice, &frame, &[], &mut plan);
         for pass in &plan.passes {
-            self.carry_out(&plan, pass, &choice.maps[pass.map], boxes);
+            self.carry_out(&plan, pass, &choice.maps[pass.map], &listed);
         }
         self.plan = plan;
         choice.maps.iter().enumerate().try_for_each(|(index, map)| {
             let waits = choice.decisions[index] == Decision::Wait;
-            self.compare(index, map, boxes, waits)
+            self.compare(index, map, waits)
         })
     }
 
     /// Draws a pass into the samples of its layer.
-    fn carry_out(&mut self, plan: &FramePlan, pass: &PassPlan, map: &FittedMap, boxes: Boxes<'_>) {
+    fn carry_out(&mut self, plan: &FramePlan, pass: &PassPlan, map: &FittedMap, listed: &[Object]) {
         let samples = |part: TexelRect| samples_in(part, self.jitter);
         let [shown, fixed] = [&mut self.shown[pass.map], &mut self.fixed[pass.map]];
         if pass.layer == Layer::Shown {
@@ -342,28 +387,31 @@ impl World {
             samples(*rect).for_each(|index| layer[index] = Sample::default());
         }
         for piece in &plan.pieces[pass.pieces.clone()] {
-            for number in &plan.casters[piece.casters.clone()] {
-                let (rect, viewport) =
-                    (covered(map, &boxes.boxes[*number as usize], boxes.origin), piece.part.viewport());
+            let standing = |number: &u32| self.objects.iter().find(|object| object.stands == Some(*number));
+            let casters = plan.casters[piece.casters.clone()].iter().map(|number| &listed[*number as usize]);
+            let standing =
+                plan.standing[piece.standing.clone()].iter().map(|number| standing(number).expect("it stands"));
+            for object in casters.chain(standing) {
+                let (rect, viewport) = (covered(map, &object.aabb(self.place), self.place), piece.part.viewport());
                 let min = rect.min.as_ivec2() + viewport;
                 let [min, end] = [min, min + rect.size.as_ivec2()].map(|corner| corner.max(IVec2::ZERO).as_uvec2());
                 let drawn = TexelRect { min, size: end - min }.intersection(piece.part.stored);
-                let bit = self.objects[*number as usize].sample(self.frame);
-                samples(drawn).for_each(|index| layer[index] = layer[index].with(bit));
+                samples(drawn).for_each(|index| layer[index] = layer[index].with(object.sample(self.frame)));
             }
         }
     }
 
     /// Compares what a map holds with what is there.
-    fn compare(&self, index: usize, map: &FittedMap, boxes: Boxes<'_>, waits: bool) -> Result<(), TestCaseError> {
+    fn compare(&self, index: usize, map: &FittedMap, waits: bool) -> Result<(), TestCaseError> {
         let (size, wrap) = (map.projection.resolution, self.cache.wrap(index));
-        let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(boxes.origin);
+        let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
         let mut expected = vec![Sample::default(); self.shown[index].len()];
-        for (object, aabb) in self.objects.iter().zip(boxes.boxes) {
-            if !volume.intersects_aabb(aabb.min, aabb.max) {
+        for object in &self.objects {
+            let aabb = object.aabb(self.place);
+            if self.cache.settings.culling != Culling::Off && !volume.intersects_aabb(aabb.min, aabb.max) {
                 continue;
             }
-            let parts = covered(map, aabb, boxes.origin).stored(wrap, size);
+            let parts = covered(map, &aabb, self.place).stored(wrap, size);
             for at in parts.flat_map(|part| samples_in(part.stored, self.jitter)) {
                 expected[at] = expected[at].with(object.sample(self.frame));
             }
@@ -381,6 +429,11 @@ impl World {
 }
 
 impl Object {
+    fn aabb(&self, origin: DVec3) -> Aabb {
+        let (centre, half) = ((self.centre - origin).as_vec3(), self.half.as_vec3());
+        Aabb::new(centre - half, centre + half)
+    }
+
     /// What a sample holds of it.
     fn sample(&self, frame: u32) -> Sample {
         if self.moves {
@@ -426,7 +479,7 @@ fn covered(map: &FittedMap, aabb: &Aabb, origin: DVec3) -> TexelRect {
 }
 
 fn settings() -> impl Strategy<Value = CacheSettings> {
-    let culling = select(&[Culling::Swept, Culling::WholeMap, Culling::Off]);
+    let culling = select(vec![Culling::Swept, Culling::WholeMap, Culling::Off]);
     (proptest::bool::weighted(0.85), culling, 0..10_u32).prop_map(|(can_mend, culling, caching)| CacheSettings {
         caching: caching > 0,
         can_mend,
@@ -447,9 +500,10 @@ proptest! {
         events in proptest::collection::vec(event(), 100),
     ) {
         let mut world = World::new(settings, UVec2::from(jitter));
-        for event in &events {
+        for (frame, event) in events.iter().enumerate() {
             world.change(event);
-            world.draw()?;
+            let drawn = world.draw();
+            prop_assert!(drawn.is_ok(), "{drawn:?} after {event:?}, the last of {:?}", &events[..=frame]);
         }
     }
 }

@@ -6,7 +6,7 @@ use shadowfit::culling::cull;
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3};
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, Boxes, CasterVolume, FittedMap};
+use shadowfit::{Aabb, BoxTree, Boxes, CasterVolume, FittedMap};
 
 use super::casters::{KnownCasters, WorldBox, sort};
 use super::{CacheSettings, Casters, Culling, Decision, KeptMap};
@@ -66,6 +66,8 @@ pub(crate) struct PiecePlan {
     pub(crate) part: StoredRect,
     /// A range of [`FramePlan::casters`].
     pub(crate) casters: Range<usize>,
+    /// A range of [`FramePlan::standing`].
+    pub(crate) standing: Range<usize>,
 }
 
 /// The passes of a frame.
@@ -74,10 +76,13 @@ pub(crate) struct FramePlan {
     pub(crate) passes: Vec<PassPlan>,
     pub(crate) pieces: Vec<PiecePlan>,
     pub(crate) casters: Vec<u32>,
+    pub(crate) standing: Vec<u32>,
     pub(crate) rects: Vec<TexelRect>,
     pub(crate) boxes: Vec<Aabb>,
     pub(crate) views: Vec<IVec2>,
     masks: Vec<u8>,
+    /// Standing casters in some volumes, with a bit for each.
+    standing_masks: Vec<(u32, u8)>,
     /// What casters are sorted by.
     order: Vec<u64>,
     moving_boxes: Vec<Aabb>,
@@ -89,6 +94,7 @@ impl FramePlan {
         self.passes.clear();
         self.pieces.clear();
         self.casters.clear();
+        self.standing.clear();
         self.rects.clear();
         self.boxes.clear();
         self.views.clear();
@@ -102,6 +108,7 @@ pub(super) struct Drawing<'a> {
     pub(super) fitted: &'a FittedMap,
     pub(super) known: &'a KnownCasters,
     pub(super) casters: &'a Casters<'a>,
+    pub(super) standing: Option<&'a BoxTree>,
     /// Unit direction toward the light.
     pub(super) to_light: Vec3,
     /// Origin of positions in the shaders, in world space, in metres.
@@ -139,14 +146,16 @@ impl Drawing<'_> {
 
     /// One pass with all casters that can shadow something in view.
     fn casters_in_view(&self, plan: &mut FramePlan) {
-        self.cull(&[self.in_view()], plan);
+        let volumes = [self.in_view()];
+        self.cull(&volumes, plan);
         let casts = |number: u32| self.known.is_fixed(number) || self.casters.moves(number as usize);
-        self.whole_map(PassContent::All, |number, mask| mask != 0 && casts(number), plan);
+        self.whole_map(PassContent::All, &volumes, |number, mask| mask != 0 && casts(number), plan);
     }
 
     /// One pass with all static casters over the map, and what moves in view.
     fn all_casters(&self, map: &mut KeptMap, plan: &mut FramePlan) {
-        self.cull(&[self.volume(self.whole()), self.in_view()], plan);
+        let volumes = [self.volume(self.whole()), self.in_view()];
+        self.cull(&volumes, plan);
         map.moving.clear();
         let Boxes { origin, boxes } = self.casters.boxes;
         let moving = self.known.moving.iter().filter(|number| plan.masks[**number as usize] == 0b11);
@@ -155,21 +164,50 @@ impl Drawing<'_> {
         let is_over =
             |number: u32, mask: u8| (mask & 1 == 1 && self.known.is_fixed(number)) || (mask == 0b11 && moves(number));
         let content = if map.moving.is_empty() { PassContent::Static } else { PassContent::All };
-        let drawn = self.whole_map(content, is_over, plan);
+        let drawn = self.whole_map(content, &volumes[..1], is_over, plan);
         map.over = drawn - map.moving.len();
     }
 
-    /// A pass that clears the shown layer and draws the casters that are chosen by their numbers and masks. Returns
-    /// their number.
-    fn whole_map(&self, content: PassContent, is_over: impl Fn(u32, u8) -> bool, plan: &mut FramePlan) -> usize {
-        let (first, piece) = (plan.casters.len(), plan.pieces.len());
+    /// A pass that clears the shown layer and draws the casters of the list that are chosen by their numbers and masks,
+    /// and the standing ones in a volume. Returns their number.
+    fn whole_map(
+        &self,
+        content: PassContent,
+        standing: &[CasterVolume],
+        is_over: impl Fn(u32, u8) -> bool,
+        plan: &mut FramePlan,
+    ) -> usize {
+        let piece = plan.pieces.len();
         let over = (0..).zip(&plan.masks).filter(|(number, mask)| is_over(*number, **mask));
+        let casters = plan.casters.len();
         plan.casters.extend(over.map(|(number, _)| number));
-        self.sort(first, plan);
-        let part = StoredRect { window: self.whole(), stored: self.whole() };
-        plan.pieces.push(PiecePlan { part, casters: first..plan.casters.len() });
+        self.find_standing(standing, &mut plan.standing_masks);
+        self.piece(StoredRect { window: self.whole(), stored: self.whole() }, casters, 0, plan);
         self.pass(plan, (content, Layer::Shown, true), piece);
-        plan.casters.len() - first
+        plan.pieces[piece].casters.len() + plan.pieces[piece].standing.len()
+    }
+
+    /// Adds a piece with the casters from this one on, and those standing ones that have a bit in their masks.
+    fn piece(&self, part: StoredRect, casters: usize, bit: usize, plan: &mut FramePlan) {
+        let standing = plan.standing.len();
+        let is_over = |(_, mask): &&(u32, u8)| mask >> bit & 1 == 1;
+        plan.standing.extend(plan.standing_masks.iter().filter(is_over).map(|(number, _)| *number));
+        let boxes = self.casters.boxes.boxes;
+        sort(&mut plan.casters[casters..], self.to_light, &mut plan.order, |number| boxes[number as usize]);
+        if let Some(tree) = self.standing {
+            let aabb = |number| tree.get(number).unwrap_or(Aabb::EMPTY);
+            sort(&mut plan.standing[standing..], self.to_light, &mut plan.order, aabb);
+        }
+        let (casters, standing) = (casters..plan.casters.len(), standing..plan.standing.len());
+        plan.pieces.push(PiecePlan { part, casters, standing });
+    }
+
+    /// Finds the standing casters in some volumes.
+    fn find_standing(&self, volumes: &[CasterVolume], masks: &mut Vec<(u32, u8)>) {
+        masks.clear();
+        if let Some(tree) = self.standing {
+            tree.cull(volumes, |number, mask| masks.push((number, mask)));
+        }
     }
 
     /// The passes of a map that is kept but for some rectangles: static casters, then what moves. The static ones have
@@ -222,12 +260,12 @@ impl Drawing<'_> {
         for parts in parts.chunks(VOLUMES) {
             let volumes: Vec<CasterVolume> = parts.iter().map(|part| self.volume(part.window)).collect();
             cull(&volumes, origin, &near_boxes, &mut plan.masks);
+            self.find_standing(&volumes, &mut plan.standing_masks);
             for (bit, part) in parts.iter().enumerate() {
                 let first = plan.casters.len();
                 let is_over = |(_, mask): &(&u32, &u8)| **mask >> bit & 1 == 1;
                 plan.casters.extend(near.iter().zip(&plan.masks).filter(is_over).map(|(number, _)| *number));
-                self.sort(first, plan);
-                plan.pieces.push(PiecePlan { part: *part, casters: first..plan.casters.len() });
+                self.piece(*part, first, bit, plan);
             }
         }
     }
@@ -258,14 +296,14 @@ impl Drawing<'_> {
         if !boxes.is_empty() {
             plan.views.extend(parts.iter().map(StoredRect::viewport));
         }
+        plan.standing_masks.clear();
         for (index, part) in parts.iter().enumerate() {
             let first = plan.casters.len();
             let bits = 1 | 2 << index;
             let numbers = self.known.moving.iter().zip(&plan.moving_masks).filter(|(_, mask)| **mask & bits == bits);
             plan.casters.extend(numbers.map(|(number, _)| *number));
-            self.sort(first, plan);
             if plan.casters.len() > first {
-                plan.pieces.push(PiecePlan { part: *part, casters: first..plan.casters.len() });
+                self.piece(*part, first, 0, plan);
             }
         }
         if drawn.is_empty() && boxes.is_empty() && plan.pieces.len() == piece {
@@ -291,11 +329,6 @@ impl Drawing<'_> {
     /// Where rectangles of the map are stored.
     fn stored(&self, rects: &[TexelRect], wrap: UVec2) -> Vec<StoredRect> {
         rects.iter().flat_map(|rect| rect.stored(wrap, self.fitted.projection.resolution)).collect()
-    }
-
-    /// Puts the casters from this one on into the order in which they are drawn.
-    fn sort(&self, first: usize, plan: &mut FramePlan) {
-        sort(&mut plan.casters[first..], self.casters.boxes.boxes, self.to_light, &mut plan.order);
     }
 
     /// Casters that can shadow something in view; all where these are not known.

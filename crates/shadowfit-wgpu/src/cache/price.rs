@@ -16,6 +16,9 @@ const CASTER: f64 = 600.0;
 /// The cost of testing one caster of the list against a rectangle, in texels: 70 µs for 10,000 boxes and four volumes.
 const CULLED: f64 = 6.0;
 
+/// What a texel costs that is also restored from the static casters' layer: read, and written once more.
+const RESTORED: f64 = 0.5;
+
 /// Prices of a map's parts in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Price {
@@ -23,14 +26,19 @@ pub(super) struct Price {
     pub(super) rect: f64,
     /// Of a texel, with the casters over it.
     pub(super) texel: f64,
+    /// Of a texel of a map that is drawn as a whole.
+    whole: f64,
 }
 
 impl Price {
-    /// Prices where so many casters are listed, and so many of them lie over a map of so many texels.
-    pub(super) fn new(listed: usize, over: usize, texels: u64) -> Self {
+    /// Prices where so many casters are listed, and so many of them lie over a map of so many texels. `restores`: whether
+    /// static casters have a layer of their own.
+    pub(super) fn new(listed: usize, over: usize, texels: u64, restores: bool) -> Self {
         // Casters are taken as spread evenly: what lies where is known only after culling.
         let each = over as f64 / texels.max(1) as f64;
-        Self { rect: RECT + CULLED * listed as f64, texel: 1.0 + CASTER * each }
+        let whole = 1.0 + CASTER * each;
+        let texel = if restores { whole + RESTORED } else { whole };
+        Self { rect: RECT + CULLED * listed as f64, texel, whole }
     }
 
     pub(super) fn of(&self, texels: u64) -> f64 {
@@ -39,7 +47,7 @@ impl Price {
 
     /// Whether rectangles cost less than the map as a whole, which needs no rectangle.
     pub(super) fn is_worth(&self, rects: &[TexelRect], whole: u64) -> bool {
-        rects.iter().map(|rect| self.of(rect.area())).sum::<f64>() < self.texel * whole as f64
+        rects.iter().map(|rect| self.of(rect.area())).sum::<f64>() < self.whole * whole as f64
     }
 }
 
@@ -51,7 +59,7 @@ mod tests {
 
     #[test]
     fn rectangles_are_worth_it_until_they_cost_what_the_map_costs() {
-        let price = Price::new(1000, 500, 1 << 22);
+        let price = Price::new(1000, 500, 1 << 22, false);
         let rects = |count, side| vec![TexelRect { min: UVec2::ZERO, size: UVec2::splat(side) }; count];
         assert!(price.is_worth(&[], 1 << 22));
         assert!(price.is_worth(&rects(64, 64), 1 << 22));
@@ -59,5 +67,8 @@ mod tests {
         assert!(!price.is_worth(&rects(1, 2048), 1 << 22));
         assert!(!price.is_worth(&rects(64, 256), 1 << 22));
         assert!(!price.is_worth(&rects(2, 64), 128 * 128), "small maps are drawn as a whole");
+        let restored = Price::new(1000, 500, 1 << 22, true);
+        assert!(!restored.is_worth(&rects(1, 2000), 1 << 22));
+        assert!(restored.is_worth(&rects(1, 1500), 1 << 22));
     }
 }

@@ -239,7 +239,7 @@ mod tests {
     }
 
     fn price() -> Price {
-        Price::new(1000, 500, 1 << 21)
+        Price::new(1000, 500, 1 << 21, false)
     }
 
     #[test]
