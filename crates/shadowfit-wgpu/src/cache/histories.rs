@@ -221,6 +221,8 @@ impl World {
         self.were_keyed = self.keyed;
         match event {
             Event::Nothing => {}
+            // There is always something.
+            Event::Remove(_) | Event::SwapRemove(_) if self.objects.len() == 1 => {}
             Event::Insert(number, place) => {
                 let (centre, half) = at(place);
                 self.insert(self.number(number), centre, half);
@@ -293,9 +295,6 @@ impl World {
             Event::Pan([x, z]) => self.place += DVec3::new(*x, 0.01 * x, *z),
             Event::Invalidate(number) => self.invalidate(self.number(number)),
             Event::InvalidateAll => self.cache.reset(),
-        }
-        if self.objects.is_empty() {
-            self.insert(0, DVec3::ZERO, DVec3::ONE);
         }
         for object in self.objects.iter_mut().filter(|object| object.moves) {
             object.centre.y += if self.frame.is_multiple_of(2) { 0.3 } else { -0.3 };
