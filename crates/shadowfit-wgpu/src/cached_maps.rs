@@ -1,5 +1,6 @@
 //! Shadow maps that keep the parts where nothing moved: the drawing half of [`SunShadows`](crate::SunShadows).
 
+mod culling;
 mod passes;
 mod updates;
 
@@ -11,7 +12,9 @@ use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
 use crate::layers::Layers;
 use crate::map::stored_casters;
-use crate::{Culling, MAX_MAPS, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
+use crate::{
+    Culling, MAX_MAPS, MapTexture, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule,
+};
 
 pub use passes::{ShadowPass, ShadowPiece};
 pub use updates::{MapUpdate, UpdateContent};
@@ -43,13 +46,20 @@ pub(crate) struct CachedMaps {
 }
 
 impl CachedMaps {
-    /// Makes the maps.
+    /// Makes the maps: in a texture of the engine's, if there is one.
     ///
     /// # Errors
     ///
-    /// As [`ShadowMap::new`].
-    pub(crate) fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
-        let map = ShadowMap::new(device, descriptor)?;
+    /// As [`ShadowMap::in_texture`].
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
+        texture: Option<&MapTexture>,
+    ) -> Result<Self, ShadowMapError> {
+        let map = match texture {
+            Some(texture) => ShadowMap::in_texture(device, descriptor, texture),
+            None => ShadowMap::new(device, descriptor),
+        }?;
         let layers = Layers::new(device, &map);
         Ok(Self {
             schedule: UpdateSchedule::default(),
