@@ -29,7 +29,7 @@
 //!     let views = [camera.frustum()?];
 //!     let objects = engine.boxes();
 //!     let boxes = Boxes::world(&objects);
-//!     let casters = Casters { boxes, moves: &engine.moves };
+//!     let casters = Casters { moves: &engine.moves, ..Casters::fixed(boxes) };
 //!     // Positions in the shaders are relative to the eye; `with_origin` takes another place.
 //!     let frame = SunFrame::new(&views, Vec3::new(0.3, -0.8, 0.2), boxes, casters);
 //!     sun.update(queue, &frame)?;

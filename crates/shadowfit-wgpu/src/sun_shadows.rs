@@ -431,7 +431,7 @@ impl SunShadows {
     /// is [off](Self::turn_off).
     pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
         let input = frame.input();
-        let mut storage = vec![DVec2::ZERO; Scratch::required(frame.boxes(), frame.views.len())];
+        let mut storage = vec![DVec2::ZERO; input.scratch()];
         let mut proof = Err(SunShadowsError::NoFrame);
         for (fitted, read) in self.fitted().iter().zip(self.maps()) {
             // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.

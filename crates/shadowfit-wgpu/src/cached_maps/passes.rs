@@ -23,8 +23,11 @@ pub struct ShadowPiece<'a> {
     pub viewport: [f32; 4],
     /// Left, top, width and height of the scissor rectangle, in texels.
     pub scissor: [u32; 4],
-    /// The casters to draw, by number, nearest to the light first, so that those behind others cost least.
+    /// The casters of the list to draw, by number, nearest to the light first, so that those behind others cost least.
     pub casters: &'a [u32],
+    /// The standing casters to draw ([`SunFrame::standing`](crate::SunFrame::standing)), by their numbers in the tree,
+    /// likewise.
+    pub standing: &'a [u32],
 }
 
 impl<'a> ShadowPass<'a> {
@@ -59,6 +62,7 @@ fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> Shad
         viewport: [first.x as f32, first.y as f32, pass.size.x as f32, pass.size.y as f32],
         scissor: [stored.min.x, stored.min.y, stored.size.x, stored.size.y],
         casters: &plan.casters[piece.casters.clone()],
+        standing: &plan.standing[piece.standing.clone()],
     }
 }
 
@@ -94,7 +98,7 @@ impl CachedMaps {
     ) {
         for pass in self.passes() {
             let mut opened = self.begin_pass(encoder, &pass, group, None);
-            for piece in pass.pieces().filter(|piece| !piece.casters.is_empty()) {
+            for piece in pass.pieces().filter(|piece| !piece.casters.is_empty() || !piece.standing.is_empty()) {
                 piece.set(&mut opened);
                 draw(&mut opened, &piece);
             }
