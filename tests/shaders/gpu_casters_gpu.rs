@@ -58,13 +58,13 @@ impl Pair {
     fn draw(&mut self, town: &Town, frame: u32, found: &mut Found) {
         let views = [camera(frame).frustum().expect("a camera")];
         let coarse = Boxes::world(&town.cells);
-        let casters = Casters { boxes: coarse, moves: &town.cells_move };
+        let casters = Casters { boxes: coarse, moves: &town.cells_move, keys: &[] };
         let of_shader = SunFrame::new(&views, SUNLIGHT, coarse, casters).with_origin(DVec3::ZERO);
         self.by_shader.update(&self.gpu.queue, &of_shader).expect("a good frame");
         assert!(self.by_shader.prove(&of_shader).expect("a good frame").is_proven());
         let boxes: Vec<Aabb> = town.blocks.iter().map(town::Block::aabb).collect();
         let moves: Vec<bool> = town.blocks.iter().map(|block| block.moves == 1).collect();
-        let listed = Casters { boxes: Boxes::world(&boxes), moves: &moves };
+        let listed = Casters { boxes: Boxes::world(&boxes), moves: &moves, keys: &[] };
         let of_lists = SunFrame { casters: listed, ..of_shader };
         self.by_lists.prepare(&self.gpu.queue, &of_lists, self.by_shader.fitted()).expect("a good frame");
         self.gpu.queue.write_buffer(&self.casters.casters, 0, bytemuck::cast_slice(&town.blocks));
