@@ -1,6 +1,7 @@
 //! Which casters of two lists are the same: those with the same key and the same box.
 //!
-//! Boxes are the same up to rounding, so they can be neither hashed nor compared as text. Each has a *mark*, a weighted
+//! Lists are compared number by number, with a look ahead where something was put in or taken out. What is left is
+//! paired wherever it is. Boxes are the same up to rounding, so they can be neither hashed nor compared as text. Each has a *mark*, a weighted
 //! sum of its coordinates: what is the same has nearly the same mark, and few others have. One list is sorted by key
 //! and mark, and the other is looked up in it.
 
@@ -14,6 +15,34 @@ pub(super) struct Caster {
     /// Metres by which the same box may differ.
     pub(super) rounding: f64,
     pub(super) number: usize,
+}
+
+impl Caster {
+    /// Whether one of the frame before is the same as one of this frame: its box is, and its key, where both have one.
+    pub(super) fn is_same(&self, now: &Self) -> bool {
+        let has_same_key = self.key.zip(now.key).is_none_or(|(before, now)| before == now);
+        has_same_key && self.aabb.is_same(&now.aabb, now.rounding)
+    }
+}
+
+/// Casters that are looked ahead for where two lists differ.
+const AHEAD: usize = 8;
+
+/// How many casters were taken out of a list, or put in, before it goes on as it did; `None` where neither is found, or
+/// where one only took another one's place. The functions give the casters of both lists from where they differ.
+pub(super) fn shift(
+    before: impl Fn(usize) -> Option<Caster>,
+    now: impl Fn(usize) -> Option<Caster>,
+) -> Option<[usize; 2]> {
+    let is_same = |[ahead_before, ahead_now]: [usize; 2]| {
+        before(ahead_before).zip(now(ahead_now)).is_some_and(|(before, now)| before.is_same(&now))
+    };
+    if before(0)?.aabb.is_empty() || now(0)?.aabb.is_empty() || is_same([1, 1]) {
+        return None;
+    }
+    let taken_out = (1..=AHEAD).map(|ahead| [ahead, 0]);
+    let put_in = (1..=AHEAD).map(|ahead| [0, ahead]);
+    taken_out.chain(put_in).find(|ahead| is_same(*ahead))
 }
 
 /// Weights of a mark. No sums of a few of them are equal, so that neither grids of boxes nor boxes in a row share marks.
