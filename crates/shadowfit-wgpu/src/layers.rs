@@ -127,7 +127,7 @@ impl StaticLayers {
     fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let descriptor = map.descriptor();
         let format = map.depth_stencil_state().format;
-        let texture = crate::map::texture(device, descriptor, format);
+        let texture = crate::map::texture(device, descriptor, (format, descriptor.maps));
         let types = [bindings::depths(wgpu::TextureViewDimension::D2, false)];
         let layout = bindings::layout(device, "shadowfit static casters", wgpu::ShaderStages::FRAGMENT, (0, &types));
         let layer = |index: u32| {

@@ -1,5 +1,7 @@
 //! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
 
+use core::mem::offset_of;
+
 use shadowfit::glam::UVec2;
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
@@ -8,13 +10,15 @@ use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
 use crate::bindings;
 use crate::caught::caught;
 use crate::map_view::check;
-use crate::uniform::{CasterUniform, ReceiverUniform};
+use crate::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
 use crate::{MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
 pub struct ShadowMap {
     descriptor: ShadowMapDescriptor,
+    /// Layer of the first map in the array.
+    first_layer: u32,
     clamps_in_fragment: bool,
     layers: Vec<Layer>,
     view: wgpu::TextureView,
@@ -57,14 +61,14 @@ impl ShadowMap {
         let caster_layout = caster_layout(device, descriptor);
         let types = (descriptor.first_binding, receiver_types(descriptor));
         let receiver_layout = bindings::layout(device, "shadowfit receiver", RECEIVER_STAGES, types);
-        let layers =
-            (0..descriptor.maps).map(|index| Layer::new(device, descriptor, &caster_layout, textures, index)).collect();
+        let layers = layers(device, descriptor, &caster_layout, textures, 0);
         let view = textures.read().create_view(&wgpu::TextureViewDescriptor {
             label: Some("shadowfit map"),
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        let receiver_uniform = uniform_buffer(device, size_of::<ReceiverUniform>());
+        let size = if descriptor.cross_fades { size_of::<FadingUniform>() } else { size_of::<ReceiverUniform>() };
+        let receiver_uniform = uniform_buffer(device, size);
         let sampler = comparison_sampler(device, descriptor);
         let resources = receiver_resources(&receiver_uniform, &view, &sampler);
         let resources = (descriptor.first_binding, &resources[..types.1.len()]);
@@ -72,6 +76,7 @@ impl ShadowMap {
         let has_clamp = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         Self {
             descriptor: *descriptor,
+            first_layer: 0,
             clamps_in_fragment: descriptor.depth_clamp && !has_clamp,
             layers,
             view,
@@ -80,6 +85,28 @@ impl ShadowMap {
             receiver_layout,
             receiver_group,
             receiver_uniform,
+            volumes: Vec::new(),
+        }
+    }
+
+    /// The second set of maps of a descriptor that [cross-fades](ShadowMapDescriptor::cross_fades), with the textures and
+    /// the look-up of the first one.
+    pub(crate) fn second(&self, device: &wgpu::Device) -> Self {
+        let Layer { depth, color, .. } = &self.layers[0];
+        let textures =
+            Textures { depth: depth.texture().clone(), color: color.as_ref().map(|color| color.texture().clone()) };
+        let first_layer = self.descriptor.maps;
+        Self {
+            descriptor: self.descriptor,
+            first_layer,
+            clamps_in_fragment: self.clamps_in_fragment,
+            layers: layers(device, &self.descriptor, &self.caster_layout, &textures, first_layer),
+            view: self.view.clone(),
+            sampler: self.sampler.clone(),
+            caster_layout: self.caster_layout.clone(),
+            receiver_layout: self.receiver_layout.clone(),
+            receiver_group: self.receiver_group.clone(),
+            receiver_uniform: self.receiver_uniform.clone(),
             volumes: Vec::new(),
         }
     }
@@ -114,7 +141,7 @@ impl ShadowMap {
     ///
     /// | binding | holds | as |
     /// |---|---|---|
-    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes | uniform buffer |
+    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes; [`FadingUniform`] where the look-up [cross-fades](ShadowMapDescriptor::cross_fades) | uniform buffer |
     /// | first + 1 | the maps, one layer each | array of depth textures, or of unfilterable float textures for colour formats |
     /// | first + 2 | how depths are compared; only for depth formats | comparison sampler |
     pub fn receiver_layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
@@ -201,6 +228,18 @@ impl ShadowMap {
     /// layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
     /// are not finite and for a direction that is not of unit length. Nothing is written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[FittedMap]) -> Result<(), ShadowMapError> {
+        self.prepare_casters(queue, view, maps)?;
+        self.write_receiver(queue, &ReceiverUniform::new(maps, view, &self.descriptor));
+        Ok(())
+    }
+
+    /// The same for maps that the look-up does not read yet, or fades out: it stays as it is.
+    pub(crate) fn prepare_casters(
+        &mut self,
+        queue: &wgpu::Queue,
+        view: &MapView,
+        maps: &[FittedMap],
+    ) -> Result<(), ShadowMapError> {
         check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {
             let clamps_in_fragment = self.clamps_in_fragment.into();
@@ -208,13 +247,33 @@ impl ShadowMap {
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
             (layer.used, layer.wrap) = (map.projection.resolution, map.wrap);
         }
-        let uniform = ReceiverUniform::new(maps, view, &self.descriptor);
-        queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
         self.volumes
             .extend(maps.iter().map(|map| stored_casters(&map.projection, depth_clamp).relative_to(view.origin)));
         Ok(())
+    }
+
+    /// Writes what the look-up reads: this set of maps alone.
+    fn write_receiver(&self, queue: &wgpu::Queue, now: &ReceiverUniform) {
+        let (now, first_layer) = (now.in_layers(self.first_layer), self.first_layer);
+        let fading = FadingUniform { now, share: 1.0, first_layer, ..FadingUniform::default() };
+        let bytes = if self.descriptor.cross_fades { bytemuck::bytes_of(&fading) } else { bytemuck::bytes_of(&now) };
+        queue.write_buffer(&self.receiver_uniform, 0, bytes);
+    }
+
+    /// Mixes another set of maps into what the look-up reads, after [`Self::prepare`]. `share`: that of this set.
+    pub(crate) fn fade_from(
+        &self,
+        queue: &wgpu::Queue,
+        (before, maps): (&Self, &[FittedMap]),
+        view: &MapView,
+        share: f32,
+    ) {
+        let uniform = ReceiverUniform::new(maps, view, &before.descriptor).in_layers(before.first_layer);
+        let write = |offset: usize, bytes: &[u8]| queue.write_buffer(&self.receiver_uniform, offset as u64, bytes);
+        write(offset_of!(FadingUniform, before), bytemuck::bytes_of(&uniform));
+        write(offset_of!(FadingUniform, share), bytemuck::bytes_of(&share));
     }
 
     /// Moves the view depths between which shadows fade, in metres, from the next frame on.
@@ -225,7 +284,7 @@ impl ShadowMap {
     /// Makes all factors 0, until maps are [prepared](Self::prepare) again: for a light that gives nothing. There is
     /// nothing to draw.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {
-        queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&ReceiverUniform::off()));
+        self.write_receiver(queue, &ReceiverUniform::off());
         self.volumes.clear();
     }
 
@@ -320,6 +379,17 @@ pub(crate) fn stored_casters(fit: &LightProjection, depth_clamp: bool) -> Caster
     CasterVolume::of_map(fit, if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None })
 }
 
+/// The layers of a set of maps, from one of the array on.
+fn layers(
+    device: &wgpu::Device,
+    descriptor: &ShadowMapDescriptor,
+    layout: &wgpu::BindGroupLayout,
+    textures: &Textures,
+    first: u32,
+) -> Vec<Layer> {
+    (first..first + descriptor.maps).map(|index| Layer::new(device, descriptor, layout, textures, index)).collect()
+}
+
 impl Layer {
     fn new(
         device: &wgpu::Device,
@@ -331,7 +401,8 @@ impl Layer {
         let view = |texture: &wgpu::Texture| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: index,
+                // Depth buffers beside colours are not stored: both sets of maps draw with the same.
+                base_array_layer: index % texture.depth_or_array_layers(),
                 array_layer_count: Some(1),
                 ..Default::default()
             })
@@ -368,11 +439,16 @@ impl Textures {
         }
         // Devices below WebGPU's level may lack more than these flags say.
         caught(device, || Self {
-            depth: texture(device, descriptor, descriptor.depth_format()),
-            color: (!format.is_depth()).then(|| texture(device, descriptor, descriptor.texture_format())),
+            depth: texture(
+                device,
+                descriptor,
+                (descriptor.depth_format(), if format.is_depth() { descriptor.layers() } else { maps }),
+            ),
+            color: (!format.is_depth())
+                .then(|| texture(device, descriptor, (descriptor.texture_format(), descriptor.layers()))),
         })
         .map_err(|error| match error {
-            wgpu::Error::OutOfMemory { .. } => ShadowMapError::OutOfMemory { resolution, maps, format },
+            wgpu::Error::OutOfMemory { .. } => ShadowMapError::OutOfMemory { resolution, maps: descriptor.layers(), format },
             error => why(error.to_string()),
         })
     }
@@ -388,17 +464,18 @@ const USAGES: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT
     .union(wgpu::TextureUsages::TEXTURE_BINDING)
     .union(wgpu::TextureUsages::COPY_SRC);
 
+/// A texture of so many layers.
 pub(crate) fn texture(
     device: &wgpu::Device,
     descriptor: &ShadowMapDescriptor,
-    format: wgpu::TextureFormat,
+    (format, layers): (wgpu::TextureFormat, u32),
 ) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadowfit map"),
         size: wgpu::Extent3d {
             width: descriptor.resolution[0],
             height: descriptor.resolution[1],
-            depth_or_array_layers: descriptor.maps,
+            depth_or_array_layers: layers,
         },
         mip_level_count: 1,
         sample_count: 1,
