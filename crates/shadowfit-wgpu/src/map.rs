@@ -448,7 +448,9 @@ impl Textures {
                 .then(|| texture(device, descriptor, (descriptor.texture_format(), descriptor.layers()))),
         })
         .map_err(|error| match error {
-            wgpu::Error::OutOfMemory { .. } => ShadowMapError::OutOfMemory { resolution, maps: descriptor.layers(), format },
+            wgpu::Error::OutOfMemory { .. } => {
+                ShadowMapError::OutOfMemory { resolution, maps: descriptor.layers(), format }
+            }
             error => why(error.to_string()),
         })
     }

@@ -106,7 +106,8 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen, for which 10 bits an axis are enough. Which map a
 /// point reads is [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
-/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
+/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives. Where it
+/// [cross-fades](ShadowMapDescriptor::cross_fades), the factor is a mix of two sets of maps while one of them fades out.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
     let texel =

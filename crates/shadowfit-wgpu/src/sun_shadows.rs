@@ -320,7 +320,7 @@ impl SunShadows {
     ///
     /// It is never guessed from the sun's direction: worlds without a ground are lit from below.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {
-        self.last = None;
+        self.skip();
         if !self.is_off() {
             self.cut();
             self.maps.turn_off(queue);

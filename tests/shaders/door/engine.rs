@@ -35,6 +35,12 @@ const CASTER: &str = "
 }
 ";
 
+const COLOR: &str = "
+@fragment fn fs_PREFIX(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    return PREFIX_caster_color(at.z);
+}
+";
+
 /// Factors at a pixel of the ground.
 const FACTORS_WGSL: &str = "
 fn factors(pixel: vec2<f32>) -> vec4<f32> {
@@ -200,6 +206,16 @@ impl Picture {
         self.0[y * SIDE as usize + x]
     }
 
+    /// All factors.
+    pub(super) fn values(&self) -> impl Iterator<Item = u8> {
+        self.0.iter().flatten().copied()
+    }
+
+    /// Those of one sun.
+    pub(super) fn of(&self, sun: usize) -> impl Iterator<Item = u8> {
+        self.0.iter().map(move |factors| factors[sun])
+    }
+
     /// The greatest difference from another picture.
     pub(super) fn difference(&self, other: &Self) -> u8 {
         let pixels = self.0.iter().flatten().zip(other.0.iter().flatten());
@@ -223,7 +239,9 @@ impl Painter {
         layout: &wgpu::PipelineLayout,
     ) -> Self {
         let caster = |(sun, _, prefix): &(&SunShadows, u32, &str)| {
-            caster_wgsl(sun.map().descriptor(), &options(0, prefix)) + &CASTER.replace("PREFIX", prefix)
+            let color = if sun.map().color_target().is_some() { COLOR } else { "" };
+            let own = [CASTER, color].concat().replace("PREFIX", prefix);
+            caster_wgsl(sun.map().descriptor(), &options(0, prefix)) + &own
         };
         let module = device.module(suns.iter().map(caster).collect());
         let casters = suns.iter().map(|(sun, _, prefix)| caster_pipeline(device, &module, sun, prefix)).collect();
@@ -304,6 +322,7 @@ fn caster_pipeline(
 ) -> wgpu::RenderPipeline {
     let map = sun.map();
     let layout = device.layout(&[Some(map.caster_layout())]);
+    let (color, entry) = (map.color_target().map(Some), format!("fs_{prefix}"));
     let buffer =
         |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -321,7 +340,12 @@ fn caster_pipeline(
         primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
-        fragment: None,
+        fragment: color.as_ref().map(|color| wgpu::FragmentState {
+            module,
+            entry_point: Some(&entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: core::slice::from_ref(color),
+        }),
         multiview_mask: None,
         cache: None,
     })

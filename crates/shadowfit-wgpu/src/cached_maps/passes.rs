@@ -110,5 +110,4 @@ impl CachedMaps {
     pub(crate) fn pass(&self, index: usize) -> ShadowPass<'_> {
         ShadowPass { maps: self, pass: &self.plan.passes[index] }
     }
-
 }

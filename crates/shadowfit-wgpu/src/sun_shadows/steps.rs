@@ -116,9 +116,9 @@ impl StepState {
         self.stage != Stage::Held
     }
 
-    /// Ends a step with the next frame, and fades nothing in it.
+    /// Ends a step: the next frame has one set of maps, for what is the newest direction then.
     pub(super) fn cut(&mut self) {
-        self.is_cut = true;
+        (self.stage, self.is_cut) = (Stage::Held, true);
     }
 
     /// Forgets the light.
