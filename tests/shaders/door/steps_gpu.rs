@@ -2,8 +2,8 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::MapFormat;
-use shadowfit::{DepthConvention, Technique, ViewFrustum};
-use shadowfit_wgpu::{SunFrame, SunShadows, SunSteps, receiver_wgsl};
+use shadowfit::{Aabb, DepthConvention, Technique, ViewFrustum};
+use shadowfit_wgpu::{Casters, SunFrame, SunShadows, SunSteps, WgslOptions, receiver_wgsl};
 
 use super::engine::{BOXES, Device, EYE, Painter, Picture, Quiet, camera, frame_of};
 use super::technique;
@@ -55,11 +55,17 @@ impl Day {
 
     /// A frame of a sun that has turned by an angle. Every map that is read holds what it must.
     fn draw(&mut self, angle: f32) -> Picture {
-        let frame = frame_of(&self.views, sun_at(angle), &BOXES);
+        self.draw_boxes(angle, &BOXES, &[])
+    }
+
+    /// The same with other boxes, of which some move.
+    fn draw_boxes(&mut self, angle: f32, boxes: &[Aabb], moves: &[bool]) -> Picture {
+        let frame = frame_of(&self.views, sun_at(angle), boxes);
+        let frame = SunFrame { casters: Casters { moves, ..frame.casters }, ..frame };
         self.sun.update(&self.device.queue, &frame).expect("a good frame");
         let proof = self.sun.prove(&frame).expect("a good frame");
         assert!(proof.is_proven(), "{proof:?}");
-        self.painter.draw(&self.device, &[(&self.sun, &BOXES)])
+        self.painter.draw(&self.device, &[(&self.sun, boxes)])
     }
 
     /// Texels that the last frame drew.
@@ -111,7 +117,7 @@ fn gpu_a_step_without_a_fade_draws_all_maps_in_one_frame() {
     assert_eq!(picture, day.plain(&technique(), STEP).0);
     // There is one set of maps, and the look-up of a sun without steps.
     let plain = SunShadows::new(&day.device.device, &day.device.queue, &technique()).expect("maps");
-    let wgsl = |sun: &SunShadows| receiver_wgsl(sun.map().descriptor(), &shadowfit_wgpu::WgslOptions::group(1));
+    let wgsl = |sun: &SunShadows| receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
     assert_eq!(wgsl(&day.sun), wgsl(&plain));
     assert_eq!(day.sun.map().receiver_layout_entries(), plain.map().receiver_layout_entries());
     assert_eq!(day.sun.map().view().texture().depth_or_array_layers(), MAPS as u32);
@@ -173,6 +179,27 @@ fn gpu_every_kind_of_map_steps_in_every_format_and_is_that_of_the_new_direction_
         assert!(day.is_held_at(STEP), "{technique:?}");
         assert_eq!(last.as_ref(), Some(&day.plain(&technique, STEP).0), "{technique:?}");
         assert!(draws >= MAPS);
+    }
+}
+
+/// Beside the post, where it throws its shadow, and as far from where it goes.
+const BESIDE_POST: [f32; 2] = [-4.6, -3.5];
+const BESIDE_MOVED: [f32; 2] = [-4.6, 2.5];
+
+#[test]
+fn gpu_what_moves_has_its_shadow_where_it_is_in_every_frame_of_a_step() {
+    let moves = [false, false, true];
+    let mut moved = BOXES;
+    moved[2].min.z += 6.0;
+    moved[2].max.z += 6.0;
+    for frames in 0..MAPS + FADE as usize {
+        let mut day = Day::settled(&technique(), STEPS);
+        for _ in 0..frames {
+            day.draw_boxes(STEP, &BOXES, &moves);
+        }
+        let at = |picture: &Picture| [BESIDE_POST, BESIDE_MOVED].map(|place| picture.at(place)[0]);
+        assert_eq!(at(&day.draw_boxes(STEP, &BOXES, &moves)), [0, 255], "after {frames} frames of a step");
+        assert_eq!(at(&day.draw_boxes(STEP, &moved, &moves)), [255, 0], "after {frames} frames of a step");
     }
 }
 
