@@ -20,7 +20,7 @@ const FRAMES: usize = 15;
 const RATE: f64 = 60.0;
 
 /// Frames in which windows settle, after which a change is the sun's.
-const SETTLED: usize = 40;
+const SETTLED: usize = 120;
 
 /// The hour at which it begins, and by how much the sun turns in a second, in radians.
 const HOUR: f32 = 10.0;

@@ -1,4 +1,5 @@
-//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, rays.
+//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, a
+//! sun that moves, rays.
 //!
 //! ```sh
 //! cargo run --release --example gpu_cost                                   # the courtyard

@@ -46,12 +46,12 @@ impl SunSteps {
     }
 
     /// The settings of the core, for maps of a width in texels. Fades are counted here.
-    fn core(&self, side: u32) -> LightStepSettings {
+    fn core(self, side: u32) -> LightStepSettings {
         LightStepSettings::default().with_texels(self.texels).with_extent(side as f32)
     }
 
     /// Refuses numbers that make no sense.
-    pub(super) fn check(&self) -> Result<(), FitError> {
+    pub(super) fn check(self) -> Result<(), FitError> {
         self.core(1).angle().map(|_| ())
     }
 }
