@@ -51,12 +51,12 @@ struct Taken {
 }
 
 impl Bench {
-    fn technique(&self) -> Technique {
+    pub(crate) fn technique(&self) -> Technique {
         Technique::default().with_resolution(self.map, self.map)
     }
 
     /// Frames before those that are timed, in which windows settle.
-    fn warm_up(&self) -> usize {
+    pub(crate) fn warm_up(&self) -> usize {
         if self.gpu.is_software() { 3 } else { self.frames / 5 + 30 }
     }
 }
