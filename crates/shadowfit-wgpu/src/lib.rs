@@ -52,7 +52,7 @@
 //! | name | is |
 //! |---|---|
 //! | [`SunShadows`] | the shadows of one sun: one object for each |
-//! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, and which of them move |
+//! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, which of them move, and what stands |
 //! | [`ShadowPiece`] | one draw of a pass: casters by number, viewport, scissor rectangle |
 //! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
 //! | [`MapUpdate`], [`UpdateContent`] | a rectangle that a frame draws, for tools that show it |

@@ -267,7 +267,7 @@ impl SunShadows {
     pub fn set_technique_in(&mut self, technique: &Technique, texture: &MapTexture) -> Result<(), SunShadowsError> {
         let first_binding = self.map().descriptor().first_binding;
         let cross_fades = self.map().descriptor().cross_fades;
-        let descriptor = ShadowMapDescriptor { first_binding, cross_fades, ..ShadowMapDescriptor::from(technique) };
+        let descriptor = ShadowMapDescriptor { cross_fades, first_binding, ..ShadowMapDescriptor::from(technique) };
         self.recreate(&descriptor, Some(texture))?;
         self.fitter.set_technique(technique);
         self.other.iter_mut().for_each(|other| other.fitter.set_technique(technique));

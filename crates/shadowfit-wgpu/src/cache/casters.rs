@@ -153,7 +153,7 @@ impl KnownCasters {
             self.keys.clear();
             self.keys.extend(list.keys);
         }
-        let Differences { mut gone, mut come } = differ;
+        let Differences { mut gone, mut come, .. } = differ;
         gone.retain(|caster| !caster.aabb.is_empty());
         come.retain(|caster| !caster.aabb.is_empty());
         // One that is known by another number stays as it was drawn.
@@ -181,7 +181,7 @@ impl KnownCasters {
             if before.is_same(&now) {
                 continue;
             }
-            if shift(|ahead| self.before(number + ahead), |ahead| list.get(number + ahead)).is_some() {
+            if differ.shift(|ahead| self.before(number + ahead), |ahead| list.get(number + ahead)).is_some() {
                 return number;
             }
             differ.gone.push(before);
@@ -203,7 +203,7 @@ impl KnownCasters {
                 rest = &rest[1..];
                 continue;
             }
-            let found = shift(|ahead| rest.get(ahead).copied(), |ahead| list.get(number + ahead));
+            let found = differ.shift(|ahead| rest.get(ahead).copied(), |ahead| list.get(number + ahead));
             let [removed, inserted] = found.unwrap_or([1, 1]);
             let (gone, after) = rest.split_at(removed.min(rest.len()));
             differ.gone.extend(gone);
@@ -250,6 +250,24 @@ impl List<'_> {
 struct Differences {
     gone: Vec<Caster>,
     come: Vec<Caster>,
+    /// Times that nothing was found ahead.
+    missed: usize,
+}
+
+/// Times that nothing is found ahead, after which lists count as being in different orders.
+const MAX_MISSED: usize = 256;
+
+impl Differences {
+    /// As [`shift`], unless the lists are in different orders.
+    fn shift(
+        &mut self,
+        before: impl Fn(usize) -> Option<Caster>,
+        now: impl Fn(usize) -> Option<Caster>,
+    ) -> Option<[usize; 2]> {
+        let found = if self.missed < MAX_MISSED { shift(before, now) } else { None };
+        self.missed += usize::from(found.is_none());
+        found
+    }
 }
 
 /// Sorts casters by where they begin as seen from the light, the nearest first, and then by number. `to_light` is the
