@@ -1,0 +1,109 @@
+//! Curves over logarithmic axes, as SVG.
+
+use std::path::Path;
+
+use anyhow::{Result, anyhow};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+use shadowfit_truth::peers::readable;
+
+use crate::plotting::{
+    COLOURS, FAMILY, GRID, INK, LEGEND_LINE, LEGEND_TOP, PAPER, RULE, TEXT, TITLE, register, text_style,
+};
+
+/// Size, in pixels, and how much of its width the legend takes.
+const SIZE: (u32, u32) = (860, 400);
+const LEGEND: u32 = 265;
+/// Room around the curves, as a factor.
+const ROOM: f64 = 1.3;
+
+/// A line through what was measured.
+#[derive(Clone)]
+pub(crate) struct Curve {
+    name: String,
+    points: Vec<(f64, f64)>,
+}
+
+/// Curves that answer one question.
+pub(crate) struct Picture {
+    /// Name of the file, without its ending.
+    pub(crate) file: &'static str,
+    pub(crate) title: &'static str,
+    /// What the axes count.
+    pub(crate) axes: [&'static str; 2],
+    pub(crate) curves: Vec<Curve>,
+}
+
+impl Curve {
+    pub(crate) fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), points: Vec::new() }
+    }
+
+    /// Adds a value.
+    pub(crate) fn add(&mut self, count: usize, value: f64) {
+        self.points.push((count as f64, value));
+    }
+}
+
+impl Picture {
+    /// Writes it into a folder.
+    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
+        register();
+        let file = folder.join(self.file).with_extension("svg");
+        let area = SVGBackend::new(&file, SIZE).into_drawing_area();
+        self.draw(&area)
+            .and_then(|()| area.present())
+            .map_err(|error| anyhow!("{}: cannot be drawn: {error}", file.display()))
+    }
+
+    fn draw<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> Drawn {
+        area.fill(&PAPER)?;
+        let (left, right) = area.split_horizontally(SIZE.0 - LEGEND);
+        self.draw_legend(&right)?;
+        let mut chart = ChartBuilder::on(&left)
+            .margin(8)
+            .margin_top(44)
+            .margin_right(24)
+            .x_label_area_size(52)
+            .y_label_area_size(62)
+            .build_cartesian_2d(self.range(|point| point.0).log_scale(), self.range(|point| point.1).log_scale())?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID)
+            .axis_style(RULE)
+            .x_desc(self.axes[0])
+            .y_desc(self.axes[1])
+            .x_label_formatter(&|value| readable(*value))
+            .y_label_formatter(&|value| readable(*value))
+            .label_style((FAMILY, TEXT).into_font().color(&INK))
+            .draw()?;
+        area.draw(&Text::new(self.title, (10, 20), text_style(TITLE, HPos::Left)))?;
+        for (place, curve) in self.curves.iter().enumerate() {
+            let colour = COLOURS[place % COLOURS.len()];
+            chart.draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2)))?;
+            chart.draw_series(curve.points.iter().map(|point| Circle::new(*point, 3, colour.filled())))?;
+        }
+        Ok(())
+    }
+
+    fn draw_legend<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> Drawn {
+        for ((place, curve), line) in self.curves.iter().enumerate().zip(0..) {
+            let (colour, y) = (COLOURS[place % COLOURS.len()], LEGEND_TOP + LEGEND_LINE * line);
+            area.draw(&PathElement::new([(4, y), (24, y)], colour.stroke_width(2)))?;
+            area.draw(&Circle::new((14, y), 3, colour.filled()))?;
+            area.draw(&Text::new(curve.name.clone(), (32, y), text_style(TEXT, HPos::Left)))?;
+        }
+        Ok(())
+    }
+
+    /// From the least to the greatest of the points' values, with some room.
+    fn range(&self, value: impl Fn(&(f64, f64)) -> f64) -> core::ops::Range<f64> {
+        let values = self.curves.iter().flat_map(|curve| &curve.points).map(value);
+        let [low, high] = values.fold([f64::INFINITY, 0.0], |[low, high], v| [low.min(v), high.max(v)]);
+        low / ROOM..high * ROOM
+    }
+}
+
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
