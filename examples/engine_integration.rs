@@ -228,7 +228,7 @@ impl Engine {
         let views = [frustum_from_eye_from_clip(eye_from_clip, camera.eye, DepthConvention::Reversed, DISTANCE)?];
         let boxes: Vec<Aabb> = self.scene.bounds(cell).map(|[min, max]| Aabb::new(vec3(min), vec3(max))).collect();
         let boxes = Boxes { origin: dvec3(cell), boxes: &boxes };
-        let casters = Casters { boxes, moves: &self.scene.moves };
+        let casters = Casters { moves: &self.scene.moves, ..Casters::fixed(boxes) };
         let frame = SunFrame::new(&views, vec3(SUNLIGHT), boxes, casters).with_origin(dvec3(cell));
         self.sun.update(&self.gpu.queue, &frame)?;
         debug_assert!(self.sun.prove(&frame)?.is_proven(), "a map has a hole");

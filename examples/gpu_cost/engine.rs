@@ -127,7 +127,7 @@ impl<'a> Engine<'a> {
     /// The part of a frame that shadows take on the CPU before the passes.
     pub(crate) fn fit(&mut self, camera: &PerspectiveCamera) -> Result<()> {
         let boxes = Boxes { boxes: &self.boxes, ..Boxes::default() };
-        let casters = Casters { boxes, moves: &self.moves };
+        let casters = Casters { moves: &self.moves, ..Casters::fixed(boxes) };
         let views = [camera.frustum()?];
         self.sun.update(&self.gpu.queue, &SunFrame::new(&views, BenchScene::direction(), boxes, casters))?;
         Ok(())

@@ -10,7 +10,7 @@ use shadowfit::settings::{FitKind, MapFormat, Shape, Stabilise};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_wgpu::{SunShadows, UpdateSchedule};
 
-use town::{Engine, Town, Walk};
+use town::{Engine, Town, Walk, lit_otherwise};
 
 /// Greatest difference of depths that count as equal, and the least share of texels that must be.
 const DEPTH: f32 = 1e-5;
@@ -108,6 +108,97 @@ fn gpu_casters_that_change_are_drawn_where_they_were_and_where_they_are() {
             _ => {}
         }
     });
+}
+
+/// Lets blocks come, go and change their order, each frame in another way.
+fn stream(frame: u32, town: &mut Town) {
+    let number = frame as usize * 7 % town.blocks.len();
+    match frame % 8 {
+        0 => drop(town.blocks.splice(number..town.blocks.len().min(number + 3), [])),
+        1 => town.blocks.reverse(),
+        2 => {
+            // Streets come in at the front: copies of others, set elsewhere.
+            for i in 0..5 {
+                let mut block = town.blocks[(number + i * 31) % town.blocks.len()];
+                block.id = 1000 + u64::from(frame) * 10 + i as u64;
+                block.centre += DVec3::new(3.0 - i as f64, 0.0, 2.0 * i as f64 - 5.0);
+                town.blocks.insert(0, block);
+            }
+        }
+        3 => town.blocks.sort_by(|a, b| a.centre.x.total_cmp(&b.centre.x)),
+        4 => drop(town.blocks.remove(number)),
+        5 => town.blocks.rotate_left(number),
+        _ => {}
+    }
+}
+
+#[test]
+fn gpu_streams_in_any_order_hold_what_maps_drawn_anew_hold() {
+    let found = run(&technique("windows-4"), 96, |frame, town, walk, _| {
+        walk.go_on(frame / 2);
+        if frame == 0 {
+            *town = Town::still();
+        }
+        stream(frame, town);
+    });
+    assert!(found.kept_drawn * 4 < found.anew_drawn, "{found:?}");
+}
+
+#[test]
+fn gpu_streams_of_casters_with_keys_that_move_and_change_their_shapes_are_kept_too() {
+    run(&technique("windows-4"), 96, |frame, town, walk, _| {
+        walk.go_on(frame / 2);
+        stream(frame, town);
+        town.moves = (0..town.blocks.len()).map(|number| frame > 20 && number % 9 == 3).collect();
+        // Shapes change in the same box, which the key tells; without keys they stay.
+        town.has_keys = frame % 40 < 30;
+        if town.has_keys && frame % 40 > 0 {
+            for number in [frame as usize * 5, frame as usize * 11] {
+                let block = &mut town.blocks[number % 200];
+                block.fill = 1.5 - block.fill;
+            }
+        }
+    });
+}
+
+#[test]
+fn gpu_a_frame_in_which_all_changes_draws_what_maps_drawn_anew_draw() {
+    let technique = technique("windows-4");
+    let mut engine = Engine::new(&technique);
+    let (mut town, walk) = (Town::new(), Walk::new());
+    for frame in 0..40 {
+        town.bob(frame);
+        engine.anew.invalidate_all();
+        let [kept, anew] = engine.draw(&town, &walk);
+        if frame % 10 == 9 {
+            town.blocks.iter_mut().for_each(|block| block.centre.x += 0.3);
+        }
+        if frame > 9 && frame % 10 == 0 {
+            assert_eq!(kept.texels, anew.texels, "frame {frame}");
+            assert_eq!(kept.passes, 4, "frame {frame}");
+        }
+    }
+}
+
+#[test]
+fn gpu_what_is_removed_in_view_is_gone_at_once_whatever_the_schedule() {
+    let technique = technique("windows-4");
+    for schedule in [UpdateSchedule::Texels(1), UpdateSchedule::Every([60; 8])] {
+        let mut engine = Engine::new(&technique);
+        engine.kept.set_schedule(schedule);
+        let (mut town, walk) = (Town::still(), Walk::new());
+        for _ in 0..60 {
+            engine.draw(&town, &walk);
+        }
+        // All but the ground, some of it at a time.
+        for left in [200, 120, 60, 30, 1] {
+            town.blocks.truncate(left);
+            engine.anew.invalidate_all();
+            let drawn = engine.draw(&town, &walk);
+            let share = lit_otherwise(&drawn, &walk);
+            assert!(share < 1e-3, "{share} of the points with {left} blocks, {schedule:?}");
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,8 @@ mod engine;
 mod groups_gpu;
 #[path = "door/off_gpu.rs"]
 mod off_gpu;
+#[path = "door/texture_gpu.rs"]
+mod texture_gpu;
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind};
@@ -40,7 +42,8 @@ fn gpu_the_default_technique_runs_on_a_device_of_webgl2_limits_without_an_error(
         let views = [camera.frustum().expect("a camera")];
         let moves = [false, false, true];
         let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
-        let frame = SunFrame::new(&views, SUN, boxes, Casters { boxes, moves: &moves }).with_origin(DVec3::ZERO);
+        let frame = SunFrame::new(&views, SUN, boxes, Casters { moves: &moves, ..Casters::fixed(boxes) })
+            .with_origin(DVec3::ZERO);
         sun.update(&device.queue, &frame).expect("a good frame");
         assert!(sun.prove(&frame).expect("a good frame").is_proven());
         let picture = painter.draw(&device, &[(&sun, boxes.boxes)]);
@@ -158,7 +161,7 @@ fn gpu_scenes_without_casters_or_receivers_and_lists_of_other_lengths_are_drawn(
     let boxes = good.casters.boxes;
     let odd_boxes = [BOXES[0], BOXES[1], Aabb::new(Vec3::NAN, Vec3::ONE)];
     let empty_boxes = [BOXES[0], BOXES[1], Aabb::EMPTY];
-    let with = |moves| SunFrame { casters: Casters { boxes, moves }, ..good };
+    let with = |moves| SunFrame { casters: Casters { moves, ..Casters::fixed(boxes) }, ..good };
     let frames = [
         ("moves that are too short", with(&[true]), true),
         ("moves that are too long", with(&[false, true, false, true, true, true]), true),

@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use glam::{DVec3, Mat4, Vec3};
+use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes};
 use shadowfit_wgpu::Casters;
 
@@ -69,7 +69,7 @@ impl SceneCasters {
 
     /// The casters by number, in world space.
     pub(crate) fn by_number(&self) -> Casters<'_> {
-        Casters { boxes: Boxes { origin: DVec3::ZERO, boxes: &self.boxes }, moves: &self.moves }
+        Casters { moves: &self.moves, ..Casters::fixed(Boxes::world(&self.boxes)) }
     }
 
     /// Adds each caster's mask to that of its instance; `None` stays for instances that cast nothing.

@@ -5,40 +5,50 @@
 //! and casters.
 //!
 //! ```text
-//!   a frame's maps ──▶ 1. decide: kept, moved, or new? ──▶ 2. schedule: which of them now?
-//!   and casters              by Scroll, and what changed        ──▶ 3. plan: passes, pieces, casters
+//!   a frame's casters ──▶ 1. take: which of them changed, and where in each map?
+//!   and its maps      ──▶ 2. choose: kept, moved, or new? Which of them now?
+//!                     ──▶ 3. plan: passes, pieces, casters
 //! ```
 //!
 //! Static casters are drawn into rectangles that came into a map, or in which one of them changed. Where casters move,
 //! the static ones have separate layers. The shown layer is restored from them where something moved in the frame
-//! before; then moving casters are drawn over it.
+//! before; then moving casters are drawn over it. A map that is drawn as a whole is drawn once, all casters together,
+//! into the shown layer; the static casters' own layer follows in the next frame that keeps the map.
 
 mod casters;
+#[cfg(test)]
+mod fixtures;
+#[cfg(test)]
+mod histories;
+mod identity;
 mod plan;
+mod price;
 mod schedule;
+#[cfg(test)]
+mod streams;
+mod tiles;
 
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3};
 use shadowfit::scroll::{Scroll, TexelRect};
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{Aabb, CasterVolume, FittedMap};
+use shadowfit::{Aabb, BoxTree, CasterVolume, FittedMap};
 
-use casters::{KnownCasters, WorldBox};
+use casters::{Changes, KnownCasters, WorldBox};
+use price::Price;
 use schedule::Candidate;
+use tiles::ChangedTiles;
 
 pub use casters::Casters;
 pub use plan::PassContent;
-pub(crate) use plan::{FramePlan, Layer, PassPlan, PiecePlan};
+pub(crate) use plan::{FramePlan, Layer, PassPlan};
 pub use schedule::UpdateSchedule;
-
-/// Most rectangles of a map that are drawn separately in a frame; more are merged into one that holds them.
-const MAX_RECTS: usize = 8;
-
-/// Changed boxes that a map remembers while it waits; with more, all of it counts as changed.
-const MAX_CHANGES: usize = 64;
 
 /// A map that was new in this many frames in a row counts as one that cannot be kept: it is then drawn with the casters
 /// of one frame alone, which are fewer.
 const NEVER_KEPT: u8 = 2;
+
+/// Gone casters that a waiting map remembers; the last one is a box around all others.
+const MAX_GONE: usize = 64;
 
 /// Which casters are drawn into maps. Pictures are the same either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,27 +94,31 @@ pub(crate) struct MapCache {
     is_split: bool,
 }
 
-/// The content of a map's layer.
+/// The content of a map's layers.
 #[derive(Debug, Default)]
 struct KeptMap {
     /// The map that was fitted last: it decides which parts of the layer can be kept.
     fitted: Option<FittedMap>,
     /// The map as it was drawn.
     drawn: Option<FittedMap>,
-    /// Whether all static casters over it are in its layer.
+    /// Whether the shown layer holds all static casters over it.
     is_kept: bool,
+    /// Whether the static casters' own layer holds them too.
+    is_split: bool,
     /// Where its left top texel is stored.
     wrap: UVec2,
     /// Frame in which it was drawn.
     frame: u64,
     /// Number of frames in a row in which it was new.
     renewals: u8,
-    /// Where static casters changed since.
-    changed: Vec<WorldBox>,
+    /// Static casters over it when it was drawn as a whole.
+    over: usize,
+    /// Where static casters changed since, in the map as it was drawn.
+    changed: ChangedTiles,
+    /// Static casters that it shows and that are gone.
+    gone: Vec<WorldBox>,
     /// Moving casters that the shown layer holds.
     moving: Vec<WorldBox>,
-    /// Whether the shown layer holds the static casters too.
-    is_shown: bool,
 }
 
 /// What happens to a map in a frame.
@@ -114,7 +128,7 @@ enum Decision {
     Wait,
     /// Static casters are drawn into some rectangles.
     Keep { wrap: UVec2, rects: Vec<TexelRect> },
-    /// All static casters are drawn, to be kept.
+    /// All static casters are drawn, to be kept, together with what moves.
     Renew,
     /// The casters of this frame are drawn, without keeping them.
     DrawAnew,
@@ -126,6 +140,8 @@ pub(crate) struct CacheFrame<'a> {
     /// The fitted maps.
     pub(crate) fitted: &'a [FittedMap],
     pub(crate) casters: &'a Casters<'a>,
+    /// Static casters beside them.
+    pub(crate) standing: Option<&'a BoxTree>,
     /// The map that holds the points outside all others, by coverage.
     pub(crate) coarsest: Option<usize>,
     /// Direction in which the light travels.
@@ -151,32 +167,50 @@ impl MapCache {
 
     /// Redraws a part of the world, in metres relative to an origin, in all maps.
     pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
-        let changed = WorldBox { min: origin + aabb.min.as_dvec3(), max: origin + aabb.max.as_dvec3() };
-        for map in self.maps.iter_mut().filter(|map| map.changed.len() <= MAX_CHANGES) {
-            map.changed.push(changed);
+        let changed = WorldBox::new(aabb, origin);
+        if !changed.is_empty() {
+            self.change(&Changes { gone: vec![changed], ..Changes::default() });
         }
     }
 
-    /// Steps 1 and 2: which maps are drawn, and which are read as they are.
-    pub(crate) fn choose(&mut self, frame: &CacheFrame<'_>) -> Choice {
-        let mut changed = Vec::new();
-        self.known.update(frame.casters, frame.direction, &mut changed);
-        let splits = self.settings.can_mend && self.settings.caching && !self.known.moving.is_empty();
-        if splits && !self.is_split {
-            self.is_split = true;
-            // The layers of the static casters are empty.
-            self.maps.iter_mut().for_each(|map| map.is_kept = false);
-        }
+    /// Step 1: finds where static casters changed.
+    pub(crate) fn take(&mut self, frame: &CacheFrame<'_>) {
+        let changes = self.known.update(frame.casters, frame.standing);
+        self.change(&changes);
+        self.is_split |= self.settings.can_mend && self.settings.caching && !self.known.moving.is_empty();
         self.frame += 1;
+    }
+
+    fn change(&mut self, changes: &Changes) {
+        for map in &mut self.maps {
+            map.change(changes);
+        }
+    }
+
+    /// The maps that show a static caster that is gone, as they were drawn.
+    pub(crate) fn outdated(&self) -> impl Iterator<Item = (usize, &FittedMap)> {
+        let maps = self.maps.iter().enumerate().filter(|(_, map)| !map.gone.is_empty());
+        maps.filter_map(|(index, map)| Some((index, map.drawn.as_ref()?)))
+    }
+
+    /// Whether a map shows a static caster that is gone and lies in a volume.
+    pub(crate) fn shows_gone(&self, map: usize, volume: &CasterVolume) -> bool {
+        let mut gone = self.maps[map].gone.iter().map(|gone| gone.relative_to(volume.origin));
+        gone.any(|gone| volume.intersects_aabb(gone.min, gone.max))
+    }
+
+    /// Step 2: which maps are drawn, and which are read as they are. `is_due` says which must not wait.
+    pub(crate) fn choose(&mut self, frame: &CacheFrame<'_>, is_due: [bool; MAX_MAPS]) -> Choice {
         let has_moving = !self.known.moving.is_empty();
         let mut candidates = Vec::new();
         let mut decisions = Vec::new();
         for (index, (map, fitted)) in self.maps.iter_mut().zip(frame.fitted).enumerate() {
-            map.changed.extend(&changed);
-            let decision = map.decide(fitted, &self.settings, has_moving && !self.is_split);
-            let texels = decision.texels(fitted) + u64::from(has_moving);
+            let listed = frame.casters.boxes.boxes.len();
+            let decision = map.decide(fitted, &self.settings, listed, has_moving && !self.is_split);
+            let texels = map.texels(&decision, fitted) + u64::from(has_moving);
             if texels > 0 {
-                let is_due = !map.may_wait(fitted, self.settings.by_coverage && frame.coarsest != Some(index));
+                let serves_others = self.settings.by_coverage && frame.coarsest != Some(index);
+                let is_due = is_due[index] || !map.may_wait(fitted, serves_others);
                 candidates.push(Candidate { map: index, age: self.frame - map.frame, texels, is_due });
             }
             map.fitted = Some(*fitted);
@@ -217,7 +251,7 @@ impl MapCache {
 
     /// Whether the passes depend on the views: static casters alone do not.
     pub(crate) fn needs_volumes(&self, choice: &Choice) -> bool {
-        let has_moving = self.is_split && !self.known.moving.is_empty();
+        let has_moving = !self.known.moving.is_empty();
         choice.decisions.iter().any(|decision| match decision {
             Decision::Wait => false,
             Decision::DrawAnew => true,
@@ -242,10 +276,11 @@ impl MapCache {
                 fitted: &choice.maps[index],
                 known: &self.known,
                 casters: frame.casters,
+                standing: frame.standing,
+                to_light: -frame.direction.normalize_or_zero(),
                 origin: frame.origin,
                 in_view: volumes.get(index),
                 settings: &self.settings,
-                is_split: self.is_split,
             };
             drawing.plan(map, decision, plan);
             if *decision != Decision::Wait {
@@ -256,12 +291,37 @@ impl MapCache {
 }
 
 impl KeptMap {
-    /// What is drawn of a map that is fitted now. Where casters move and static ones have no separate layer, nothing is
-    /// kept.
-    fn decide(&mut self, now: &FittedMap, settings: &CacheSettings, has_moving: bool) -> Decision {
-        let fits_layer = now.projection.resolution == settings.layer;
+    /// Remembers where static casters changed.
+    fn change(&mut self, changes: &Changes) {
+        let Some(drawn) = &self.drawn else { return };
+        let (origin, size) = (drawn.projection.origin, drawn.projection.resolution);
+        if changes.is_all {
+            self.is_kept = false;
+            self.changed.add(TexelRect::all(size), size);
+        }
+        let rect = |changed: &WorldBox| TexelRect::of_box(&drawn.projection, &changed.relative_to(origin), origin);
+        for come in &changes.come {
+            self.changed.add(rect(come), size);
+        }
+        for gone in &changes.gone {
+            let rect = rect(gone);
+            self.changed.add(rect, size);
+            if rect.is_empty() {
+                continue;
+            }
+            match self.gone.get_mut(MAX_GONE - 1) {
+                Some(last) => *last = last.union(gone),
+                None => self.gone.push(*gone),
+            }
+        }
+    }
+
+    /// What is drawn of a map that is fitted now, with so many casters in the list. Where casters move and static ones
+    /// have no separate layer, nothing is kept.
+    fn decide(&mut self, now: &FittedMap, settings: &CacheSettings, casters: usize, has_moving: bool) -> Decision {
         let is_same_grid = self.fitted.is_some_and(|before| !Scroll::between(&before, now).is_new);
-        self.renewals = if is_same_grid { 0 } else { self.renewals.saturating_add(1) };
+        let kept = self.kept_part(now, settings, casters);
+        self.renewals = if is_same_grid && kept.is_some() { 0 } else { self.renewals.saturating_add(1) };
         if !settings.caching
             || now.anchor.is_none()
             || now.projection.is_empty
@@ -270,24 +330,22 @@ impl KeptMap {
         {
             return Decision::DrawAnew;
         }
-        let (Some(drawn), true) = (&self.drawn, self.is_kept) else { return Decision::Renew };
-        let scroll = Scroll::between(drawn, now);
+        kept.filter(|_| self.is_kept).unwrap_or(Decision::Renew)
+    }
+
+    /// What is drawn of a map if all the rest of it is kept; `None` if that costs no less than all of it.
+    fn kept_part(&self, now: &FittedMap, settings: &CacheSettings, casters: usize) -> Option<Decision> {
+        let drawn = self.drawn.as_ref()?;
+        let (scroll, size) = (Scroll::between(drawn, now), now.projection.resolution);
         let is_moved = scroll.shift != IVec2::ZERO;
-        if scroll.is_redraw() || (is_moved && !fits_layer) || self.changed.len() > MAX_CHANGES {
-            return Decision::Renew;
+        if scroll.is_redraw() || (is_moved && size != settings.layer) {
+            return None;
         }
-        let changes = self.changed.iter().map(|changed| {
-            let origin = now.projection.origin;
-            TexelRect::of_box(&now.projection, &changed.relative_to(origin), origin)
-        });
-        let mut rects: Vec<TexelRect> = scroll.exposed().chain(changes).filter(|rect| !rect.is_empty()).collect();
-        if rects.len() > MAX_RECTS {
-            rects = rects.into_iter().reduce(TexelRect::union).into_iter().collect();
-        }
-        if rects.iter().map(TexelRect::area).sum::<u64>() * 2 > TexelRect::all(now.projection.resolution).area() {
-            return Decision::Renew;
-        }
-        Decision::Keep { wrap: scroll.wrap(self.wrap, now.projection.resolution), rects }
+        let price = Price::new(casters, self.over, whole(now), self.is_split);
+        let changed = self.changed.rects(&price).into_iter().map(|rect| moved(rect, scroll.shift, size));
+        let rects: Vec<TexelRect> = scroll.exposed().chain(changed).filter(|rect| !rect.is_empty()).collect();
+        let is_worth = price.is_worth(&rects, whole(now));
+        is_worth.then(|| Decision::Keep { wrap: scroll.wrap(self.wrap, size), rects })
     }
 
     /// Whether points may read the map as it was drawn, without losing a shadow. `serves_others`: whether another map
@@ -303,6 +361,17 @@ impl KeptMap {
         self.is_kept && is_same_light && holds_depth && !is_empty && (serves_others || is_in_place)
     }
 
+    /// Number of texels in which a decision draws static casters.
+    fn texels(&self, decision: &Decision, now: &FittedMap) -> u64 {
+        match decision {
+            Decision::Wait => 0,
+            // Their own layer is made.
+            Decision::Keep { .. } if !self.is_split && !self.moving.is_empty() => whole(now),
+            Decision::Keep { rects, .. } => rects.iter().map(TexelRect::area).sum(),
+            Decision::Renew | Decision::DrawAnew => whole(now),
+        }
+    }
+
     /// The map that is read: the fitted one, or the one that was drawn.
     fn shown(&self, fitted: &FittedMap, decision: &Decision) -> FittedMap {
         match (&self.drawn, decision) {
@@ -314,13 +383,14 @@ impl KeptMap {
     }
 }
 
-impl Decision {
-    /// Number of texels in which static casters are drawn.
-    fn texels(&self, map: &FittedMap) -> u64 {
-        match self {
-            Self::Wait => 0,
-            Self::Keep { rects, .. } => rects.iter().map(TexelRect::area).sum(),
-            Self::Renew | Self::DrawAnew => TexelRect::all(map.projection.resolution).area(),
-        }
-    }
+/// Number of texels of a map.
+fn whole(map: &FittedMap) -> u64 {
+    TexelRect::all(map.projection.resolution).area()
+}
+
+/// Where a rectangle of a map lies in the same map after a shift.
+fn moved(rect: TexelRect, shift: IVec2, size: UVec2) -> TexelRect {
+    let [min, end] = [rect.min, rect.min + rect.size]
+        .map(|corner| (corner.as_ivec2() - shift).clamp(IVec2::ZERO, size.as_ivec2()).as_uvec2());
+    TexelRect { min, size: end - min }
 }

@@ -1,5 +1,6 @@
 //! Shadow maps that keep the parts where nothing moved: the drawing half of [`SunShadows`](crate::SunShadows).
 
+mod culling;
 mod passes;
 mod updates;
 
@@ -11,7 +12,9 @@ use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
 use crate::layers::Layers;
 use crate::map::stored_casters;
-use crate::{Culling, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
+use crate::{
+    Culling, MAX_MAPS, MapTexture, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule,
+};
 
 pub use passes::{ShadowPass, ShadowPiece};
 pub use updates::{MapUpdate, UpdateContent};
@@ -43,13 +46,20 @@ pub(crate) struct CachedMaps {
 }
 
 impl CachedMaps {
-    /// Makes the maps.
+    /// Makes the maps: in a texture of the engine's, if there is one.
     ///
     /// # Errors
     ///
-    /// As [`ShadowMap::new`].
-    pub(crate) fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
-        let map = ShadowMap::new(device, descriptor)?;
+    /// As [`ShadowMap::in_texture`].
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
+        texture: Option<&MapTexture>,
+    ) -> Result<Self, ShadowMapError> {
+        let map = match texture {
+            Some(texture) => ShadowMap::in_texture(device, descriptor, texture),
+            None => ShadowMap::new(device, descriptor),
+        }?;
         let layers = Layers::new(device, &map);
         Ok(Self {
             schedule: UpdateSchedule::default(),
@@ -126,13 +136,16 @@ impl CachedMaps {
         let cached = CacheFrame {
             fitted,
             casters: &frame.casters,
+            standing: frame.standing,
             coarsest: MapOrder::new(self.map.descriptor().selection, fitted.iter().map(|map| &map.projection))
                 .iter()
                 .last(),
             direction: frame.direction,
             origin: frame.origin,
         };
-        let choice = self.cache.choose(&cached);
+        self.cache.take(&cached);
+        let is_due = self.due(frame, &view).map_err(ShadowMapError::View)?;
+        let choice = self.cache.choose(&cached, is_due);
         if self.cache.is_split() && self.layers.split(&self.device, &self.map).is_err() {
             // Without memory for separate layers, static casters are drawn together with moving ones.
             (self.caching, self.cache) = (false, MapCache::default());
@@ -153,6 +166,27 @@ impl CachedMaps {
         self.is_off = false;
         self.layers.prepare(&self.device, queue, &self.plan);
         Ok(())
+    }
+
+    /// Which maps must be drawn now, whatever the schedule: those that show a static caster that is gone, in view.
+    fn due(&self, frame: &SunFrame<'_>, view: &MapView) -> Result<[bool; MAX_MAPS], FitError> {
+        let mut is_due = [false; MAX_MAPS];
+        if self.schedule == UpdateSchedule::EveryFrame {
+            return Ok(is_due);
+        }
+        for (index, drawn) in self.cache.outdated() {
+            // As if it were the only map: which others are read beside it is not known yet.
+            let mut volume = [CasterVolume::everywhere(drawn.projection.origin)];
+            caster_volumes(
+                core::slice::from_ref(drawn),
+                &self.map.descriptor().reading(),
+                &view.reader(),
+                frame.views,
+                &mut volume,
+            )?;
+            is_due[index] = self.cache.shows_gone(index, &volume[0]);
+        }
+        Ok(is_due)
     }
 
     /// Finds the casters of each map, relative to its origin: those that can shadow something in view, or all that it

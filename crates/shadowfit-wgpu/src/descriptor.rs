@@ -77,6 +77,26 @@ impl ShadowMapDescriptor {
         MapReading { selection: choice, filter, softness }
     }
 
+    /// Usages that the texture of the maps needs.
+    pub(crate) const USAGES: wgpu::TextureUsages =
+        wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
+
+    /// The texture of the maps, for engines that make it themselves ([`MapTexture`](crate::MapTexture)): as many layers
+    /// as there are maps, with the usages that they need. It may have more layers, usages and mip levels.
+    pub fn texture(&self) -> wgpu::TextureDescriptor<'static> {
+        let [width, height] = self.resolution;
+        wgpu::TextureDescriptor {
+            label: Some("shadowfit map"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: self.maps },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.texture_format(),
+            usage: Self::USAGES,
+            view_formats: &[],
+        }
+    }
+
     /// Refuses a descriptor that is impossible, in general or on this device.
     pub(crate) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowMapError> {
         let device_limit = device.limits().max_texture_dimension_2d;

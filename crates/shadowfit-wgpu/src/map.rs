@@ -9,7 +9,7 @@ use crate::bindings;
 use crate::caught::caught;
 use crate::map_view::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};
-use crate::{MapView, ShadowMapDescriptor, ShadowMapError};
+use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
@@ -24,6 +24,8 @@ pub struct ShadowMap {
     receiver_group: wgpu::BindGroup,
     receiver_uniform: wgpu::Buffer,
     volumes: Vec<CasterVolume>,
+    /// The engine's texture, where the maps lie in one.
+    texture: Option<MapTexture>,
 }
 
 /// One map of the array.
@@ -48,8 +50,32 @@ impl ShadowMap {
     /// [`ShadowMapError`] if the descriptor is not possible, or not on this device.
     pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
         descriptor.check(device)?;
-        let textures = Textures::new(device, descriptor)?;
-        caught(device, || Self::with_textures(device, descriptor, &textures))
+        Self::made(device, descriptor, &Textures::new(device, descriptor, None)?)
+    }
+
+    /// As [`Self::new`], with maps that lie in a texture that the engine made and owns, which
+    /// [`ShadowMapDescriptor::texture`] describes. Nothing but the layers from [`MapTexture::base_layer`] on is cleared,
+    /// written or read, one for each map. Colour formats have a depth buffer beside them, which is made here.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`], and [`ShadowMapError::Texture`] if the texture cannot hold the maps.
+    pub fn in_texture(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
+        texture: &MapTexture,
+    ) -> Result<Self, ShadowMapError> {
+        descriptor.check(device)?;
+        texture.check(device, descriptor)?;
+        Self::made(device, descriptor, &Textures::new(device, descriptor, Some(texture))?)
+    }
+
+    fn made(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
+        textures: &Textures,
+    ) -> Result<Self, ShadowMapError> {
+        caught(device, || Self::with_textures(device, descriptor, textures))
             .map_err(|error| ShadowMapError::Device(error.to_string()))
     }
 
@@ -59,11 +85,7 @@ impl ShadowMap {
         let receiver_layout = bindings::layout(device, "shadowfit receiver", RECEIVER_STAGES, types);
         let layers =
             (0..descriptor.maps).map(|index| Layer::new(device, descriptor, &caster_layout, textures, index)).collect();
-        let view = textures.read().create_view(&wgpu::TextureViewDescriptor {
-            label: Some("shadowfit map"),
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        });
+        let view = textures.read.view(wgpu::TextureViewDimension::D2Array, 0, descriptor.maps);
         let receiver_uniform = uniform_buffer(device, size_of::<ReceiverUniform>());
         let sampler = comparison_sampler(device, descriptor);
         let resources = receiver_resources(&receiver_uniform, &view, &sampler);
@@ -81,12 +103,18 @@ impl ShadowMap {
             receiver_group,
             receiver_uniform,
             volumes: Vec::new(),
+            texture: textures.is_handed_in.then(|| textures.read.clone()),
         }
     }
 
     /// The descriptor of the maps.
     pub fn descriptor(&self) -> &ShadowMapDescriptor {
         &self.descriptor
+    }
+
+    /// The engine's texture that the maps lie in, if it [handed one in](Self::in_texture).
+    pub fn texture(&self) -> Option<&MapTexture> {
+        self.texture.as_ref()
     }
 
     /// View of all maps as an array, for tools that show them.
@@ -317,7 +345,12 @@ pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, part: &StoredRect, size:
 
 /// The casters that a map can store.
 pub(crate) fn stored_casters(fit: &LightProjection, depth_clamp: bool) -> CasterVolume {
-    CasterVolume::of_map(fit, if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None })
+    CasterVolume::of_map(fit, caster_policy(depth_clamp))
+}
+
+/// Which casters before the near plane maps store: all, or none.
+pub(crate) fn caster_policy(depth_clamp: bool) -> CasterPolicy {
+    if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None }
 }
 
 impl Layer {
@@ -328,20 +361,13 @@ impl Layer {
         textures: &Textures,
         index: u32,
     ) -> Self {
-        let view = |texture: &wgpu::Texture| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })
-        };
+        let view = |texture: &MapTexture| texture.view(wgpu::TextureViewDimension::D2, index, 1);
         let caster_uniform = uniform_buffer(device, size_of::<CasterUniform>());
         let resources = [caster_uniform.as_entire_binding()];
         let caster_group = bindings::group(device, "shadowfit caster", layout, (descriptor.first_binding, &resources));
         Self {
-            depth: view(&textures.depth),
-            color: textures.color.as_ref().map(view),
+            depth: view(textures.beside.as_ref().unwrap_or(&textures.read)),
+            color: textures.beside.is_some().then(|| view(&textures.read)),
             caster_uniform,
             caster_group,
             used: descriptor.resolution.into(),
@@ -352,61 +378,51 @@ impl Layer {
 
 /// Textures of the maps.
 struct Textures {
-    depth: wgpu::Texture,
-    /// Colours of colour formats.
-    color: Option<wgpu::Texture>,
+    /// The one that shaders read.
+    read: MapTexture,
+    /// The depth buffers beside the colours of a colour format.
+    beside: Option<MapTexture>,
+    /// Whether the engine made what shaders read.
+    is_handed_in: bool,
 }
 
 impl Textures {
-    fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
+    /// Makes those that are not handed in.
+    fn new(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
+        handed_in: Option<&MapTexture>,
+    ) -> Result<Self, ShadowMapError> {
         let ShadowMapDescriptor { resolution, maps, format, .. } = *descriptor;
         let why = |why: String| ShadowMapError::Format { format, why };
         let features = descriptor.texture_format().guaranteed_format_features(device.features());
         let missing = USAGES - features.allowed_usages;
-        if !missing.is_empty() {
+        if handed_in.is_none() && !missing.is_empty() {
             return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
         }
+        let made = |format| MapTexture { texture: texture(device, descriptor, format), base_layer: 0 };
         // Devices below WebGPU's level may lack more than these flags say.
         caught(device, || Self {
-            depth: texture(device, descriptor, descriptor.depth_format()),
-            color: (!format.is_depth()).then(|| texture(device, descriptor, descriptor.texture_format())),
+            read: handed_in.cloned().unwrap_or_else(|| made(descriptor.texture_format())),
+            beside: (!format.is_depth()).then(|| made(descriptor.depth_format())),
+            is_handed_in: handed_in.is_some(),
         })
         .map_err(|error| match error {
             wgpu::Error::OutOfMemory { .. } => ShadowMapError::OutOfMemory { resolution, maps, format },
             error => why(error.to_string()),
         })
     }
-
-    /// The texture that shaders read.
-    fn read(&self) -> &wgpu::Texture {
-        self.color.as_ref().unwrap_or(&self.depth)
-    }
 }
 
-/// Usages of the textures.
-const USAGES: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT
-    .union(wgpu::TextureUsages::TEXTURE_BINDING)
-    .union(wgpu::TextureUsages::COPY_SRC);
+/// Usages of the textures that are made here; copies are for tools.
+const USAGES: wgpu::TextureUsages = ShadowMapDescriptor::USAGES.union(wgpu::TextureUsages::COPY_SRC);
 
 pub(crate) fn texture(
     device: &wgpu::Device,
     descriptor: &ShadowMapDescriptor,
     format: wgpu::TextureFormat,
 ) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadowfit map"),
-        size: wgpu::Extent3d {
-            width: descriptor.resolution[0],
-            height: descriptor.resolution[1],
-            depth_or_array_layers: descriptor.maps,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: USAGES,
-        view_formats: &[],
-    })
+    device.create_texture(&wgpu::TextureDescriptor { format, usage: USAGES, ..descriptor.texture() })
 }
 
 fn uniform_buffer(device: &wgpu::Device, size: usize) -> wgpu::Buffer {

@@ -1,10 +1,10 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
+use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
-use shadowfit::{CasterVolume, DepthConvention};
 
-use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
+use crate::{CullingPiece, MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
 
 /// Look-ups over the disc of [`FilterKind::Pcss`].
 const PCSS_TAPS: u32 = 16;
@@ -48,7 +48,7 @@ impl WgslOptions<'_> {
         let mut text = pieces
             .replace("GROUP", &self.group.to_string())
             .replace("MAX_MAPS", &MAX_MAPS.to_string())
-            .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string());
+            .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string());
         for binding in 0..3 {
             text = text.replace(&format!("BINDING_{binding}"), &first_binding.saturating_add(binding).to_string());
         }
@@ -83,11 +83,19 @@ pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) 
     options.fill(&[include_str!("shaders/caster.wgsl"), color].concat(), descriptor.first_binding)
 }
 
-/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may cast
-/// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
-/// [`shadowfit::culling::cull`] and of the tests of [`shadowfit::CasterVolume`].
+/// WGSL for shaders that cull casters:
 ///
-/// Reads a [`crate::CullingUniform`] at binding 0 of the group.
+/// | function | tells |
+/// |---|---|
+/// | `shadowfit_draws_box(piece, moves, min, max) -> bool` | whether a caster in a box must be drawn into a piece: `piece` is its number, `moves` whether the caster moves |
+/// | `shadowfit_draws_sphere(piece, moves, centre, radius) -> bool` | the same of a sphere |
+/// | `shadowfit_draws_oriented_box(piece, moves, centre, half_axes) -> bool` | the same of a turned box; `half_axes` are the three from its centre to the middles of its faces |
+///
+/// Shapes are in world axes, in metres, relative to the origin of the frame. They are the twins of the tests of
+/// [`shadowfit::CasterVolume`].
+///
+/// Reads a storage buffer of [`CullingPiece`]s at binding 0 of the group: those of
+/// [`SunShadows::culling_pieces`](crate::SunShadows::culling_pieces).
 pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
     options.fill(include_str!("shaders/culling.wgsl"), 0)
 }

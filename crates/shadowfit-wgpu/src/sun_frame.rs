@@ -2,7 +2,7 @@
 
 use shadowfit::NormalCone;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Boxes, FitError, FitInput, ViewFrustum};
+use shadowfit::{BoxTree, Boxes, FitError, FitInput, ViewFrustum};
 
 use crate::{Casters, MapView};
 
@@ -25,8 +25,13 @@ pub struct SunFrame<'a> {
     pub receivers: Option<Boxes<'a>>,
     /// Cones around the normals of each receiver's surfaces, or empty, as [`FitInput::receiver_cones`].
     pub receiver_cones: &'a [NormalCone],
-    /// Everything that casts shadows.
+    /// Everything that casts shadows, but for what is in [`Self::standing`].
     pub casters: Casters<'a>,
+    /// What stands, receives and casts shadows beside the two lists, handed over once and told its changes: a frame then
+    /// costs what changed and what is drawn, and not what there is. Static casters belong here from some thousand on;
+    /// what moves in each frame belongs in the list. For another shape in the same box call
+    /// [`invalidate`](crate::SunShadows::invalidate). Keep one tree: another one, or none, redraws all maps.
+    pub standing: Option<&'a BoxTree>,
     /// Number of the frame. Soft filters turn their pattern by it, for temporal anti-aliasing; 0 in every frame keeps
     /// the same pattern.
     pub number: u32,
@@ -45,6 +50,7 @@ impl<'a> SunFrame<'a> {
             receivers: Some(receivers),
             receiver_cones: &[],
             casters,
+            standing: None,
             number: 0,
         }
     }
@@ -72,13 +78,9 @@ impl<'a> SunFrame<'a> {
             receivers: self.receivers,
             receiver_cones: self.receiver_cones,
             casters: Some(self.casters.boxes),
+            standing: self.standing,
             ..FitInput::new(self.views, self.direction)
         }
-    }
-
-    /// Number of boxes that the fits work with: receivers or casters, whichever are more.
-    pub(crate) fn boxes(&self) -> usize {
-        self.casters.boxes.boxes.len().max(self.receivers.map_or(0, |receivers| receivers.boxes.len()))
     }
 
     pub(crate) fn map_view(&self) -> MapView {

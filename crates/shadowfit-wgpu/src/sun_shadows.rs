@@ -17,8 +17,8 @@ use shadowfit::{
 use crate::cached_maps::CachedMaps;
 use crate::demand::{DemandPass, DemandPassError, DemandView, supported};
 use crate::{
-    Casters, Culling, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, ShadowPiece,
-    SunFrame, UpdateSchedule,
+    Casters, Culling, CullingPiece, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError,
+    ShadowPass, ShadowPiece, SunFrame, UpdateSchedule,
 };
 
 pub use error::SunShadowsError;
@@ -95,11 +95,44 @@ impl SunShadows {
         queue: &wgpu::Queue,
         descriptor: &ShadowMapDescriptor,
     ) -> Result<Self, ShadowMapError> {
+        Self::made(device, queue, descriptor, None)
+    }
+
+    /// The shadows of a sun whose maps lie in a texture that the engine made and owns, so that a frame graph counts their
+    /// memory, or two suns share an array. [`ShadowMapDescriptor::texture`] says what the texture must be like;
+    /// `first_binding` is as in [`Self::with_first_binding`].
+    ///
+    /// Nothing but the layers from [`MapTexture::base_layer`] on is cleared, written or read, as many as the technique
+    /// has maps. They are kept from frame to frame: where something else writes them in between, [`Self::set_caching`]
+    /// has to be off. [`Self::set_technique`] stays in the texture.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`], and [`ShadowMapError::Texture`] if the texture cannot hold the maps.
+    pub fn in_texture(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        technique: &Technique,
+        first_binding: u32,
+        texture: &MapTexture,
+    ) -> Result<Self, SunShadowsError> {
+        let descriptor = ShadowMapDescriptor { first_binding, ..ShadowMapDescriptor::from(technique) };
+        let mut sun = Self::made(device, queue, &descriptor, Some(texture))?;
+        sun.fitter.set_technique(technique);
+        Ok(sun)
+    }
+
+    fn made(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        descriptor: &ShadowMapDescriptor,
+        texture: Option<&MapTexture>,
+    ) -> Result<Self, ShadowMapError> {
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
             fitter: ShadowFitter::default(),
-            maps: CachedMaps::new(device, descriptor)?,
+            maps: CachedMaps::new(device, descriptor, texture)?,
             demand: Demand::new(device),
             last: None,
         })
@@ -171,6 +204,20 @@ impl SunShadows {
         Ok(is_new)
     }
 
+    /// As [`Self::set_technique`], in another texture of the engine's: for a technique whose maps the present one cannot
+    /// hold. They are always recreated.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::in_texture`].
+    pub fn set_technique_in(&mut self, technique: &Technique, texture: &MapTexture) -> Result<(), SunShadowsError> {
+        let first_binding = self.map().descriptor().first_binding;
+        let descriptor = ShadowMapDescriptor { first_binding, ..ShadowMapDescriptor::from(technique) };
+        self.recreate(&descriptor, Some(texture))?;
+        self.fitter.set_technique(technique);
+        Ok(())
+    }
+
     /// Goes on with maps of another size or format, and returns whether they were recreated, as [`Self::set_technique`]
     /// does.
     ///
@@ -188,10 +235,21 @@ impl SunShadows {
             self.maps.set_fade(descriptor.fade);
             return Ok(false);
         }
-        let mut maps = CachedMaps::new(&self.device, descriptor)?;
+        let texture = self.map().texture().cloned();
+        self.recreate(descriptor, texture.as_ref())?;
+        Ok(true)
+    }
+
+    /// Makes the maps again.
+    fn recreate(
+        &mut self,
+        descriptor: &ShadowMapDescriptor,
+        texture: Option<&MapTexture>,
+    ) -> Result<(), ShadowMapError> {
+        let mut maps = CachedMaps::new(&self.device, descriptor, texture)?;
         (maps.schedule, maps.caching, maps.culling) = (self.maps.schedule, self.maps.caching, self.maps.culling);
         self.maps = maps;
-        Ok(true)
+        Ok(())
     }
 
     /// Forgets all earlier frames and redraws all maps in the next one: when a new level begins.
@@ -327,6 +385,13 @@ impl SunShadows {
         self.maps.render(encoder, group, draw);
     }
 
+    /// What a shader finds the casters of each piece by ([`culling_wgsl`](crate::culling_wgsl)), for engines that keep
+    /// their casters on the GPU: a record for each [`ShadowPiece`] of [`Self::passes`], by its
+    /// [number](ShadowPiece::number). Planes are relative to [`SunFrame::origin`].
+    pub fn culling_pieces(&self) -> impl Iterator<Item = CullingPiece> {
+        self.passes().flat_map(|pass| pass.culling_pieces())
+    }
+
     /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
     /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
     pub fn begin_pass<'encoder>(
@@ -366,7 +431,7 @@ impl SunShadows {
     /// is [off](Self::turn_off).
     pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
         let input = frame.input();
-        let mut storage = vec![DVec2::ZERO; Scratch::required(frame.boxes(), frame.views.len())];
+        let mut storage = vec![DVec2::ZERO; input.scratch()];
         let mut proof = Err(SunShadowsError::NoFrame);
         for (fitted, read) in self.fitted().iter().zip(self.maps()) {
             // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.

@@ -2,11 +2,10 @@
 //! shaders in the tests, so that the two cannot drift apart.
 
 use bytemuck::{Pod, Zeroable};
-use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
 use shadowfit::settings::Softness;
-use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
+use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
 use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
@@ -105,35 +104,6 @@ pub struct ReceiverUniform {
     pub padding_1: u32,
     /// The maps, in the order in which points try them: that of [`shadowfit::selection::MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
-}
-
-/// The uniform of [`crate::culling_wgsl`]: `shadowfit_Culling` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct CullingUniform {
-    /// Number of `volumes` that are in use.
-    pub volume_count: u32,
-    /// Puts the volumes at a multiple of 16 bytes.
-    pub padding_0: u32,
-    /// As above.
-    pub padding_1: u32,
-    /// As above.
-    pub padding_2: u32,
-    /// The volumes of the maps: `shadowfit_CasterPlanes` in WGSL.
-    pub volumes: [CasterPlanes; MAX_MAPS],
-}
-
-impl CullingUniform {
-    /// The uniform for volumes of the maps, with shapes relative to `origin` (world space, metres). Volumes past
-    /// [`MAX_MAPS`] are left out.
-    pub fn new(volumes: &[CasterVolume], origin: DVec3) -> Self {
-        let mut uniform = Self::zeroed();
-        for (planes, volume) in uniform.volumes.iter_mut().zip(volumes) {
-            *planes = CasterPlanes::from(&volume.relative_to(origin));
-        }
-        uniform.volume_count = volumes.len().min(MAX_MAPS) as u32;
-        uniform
-    }
 }
 
 impl CasterUniform {

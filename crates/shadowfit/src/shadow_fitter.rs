@@ -5,10 +5,10 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use crate::{FitError, FitInput, FitState, FittedMaps, Scratch, Seen, Technique};
+use crate::{FitError, FitInput, FitState, FittedMaps, Maps, Scratch, Seen, Technique};
 
-/// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
-const VIEWS_AHEAD: usize = 2;
+/// Elements of scratch memory for the outline of what a map must hold: that of most scenes has far fewer corners.
+const OUTLINE: usize = 4096;
 
 /// Fits a technique's maps frame by frame. One for each sun.
 ///
@@ -63,20 +63,51 @@ impl ShadowFitter {
     ///
     /// As [`FitState::fit`]. What is remembered stays as it was; there are no maps of this frame then.
     pub fn fit(&mut self, input: &FitInput) -> Result<&FittedMaps, FitError> {
-        let seen = self.seen.as_ref().filter(|_| input.demand.is_empty() && input.histogram.is_none());
+        let told = self.seen.take();
+        let seen = told.as_ref().filter(|_| input.demand.is_empty() && input.histogram.is_none());
         let grid = seen.map(Seen::demand);
-        let input = match seen {
+        let fitted = self.fit_growing(&match seen {
             Some(seen) => FitInput { demand: grid.as_slice(), histogram: Some(seen.histogram()), ..*input },
             None => *input,
-        };
-        self.scratch.resize(Scratch::required(input.boxes(), input.views.len() + VIEWS_AHEAD), DVec2::ZERO);
-        let scratch = &mut Scratch::new(&mut self.scratch);
-        let fitted = self.history.fit_into(&input, &self.technique, scratch, &mut self.fitted);
+        });
+        self.seen = told;
         if let Err(error) = fitted {
             self.fitted = FittedMaps::default();
             return Err(error);
         }
         Ok(&self.fitted)
+    }
+
+    /// Fits with the memory that there is, and with more where that is too little: what could be needed at most is
+    /// several times as much as ever is.
+    fn fit_growing(&mut self, input: &FitInput) -> Result<(), FitError> {
+        let least = self.usual_scratch(input);
+        if self.scratch.len() < least {
+            self.scratch.resize(least, DVec2::ZERO);
+        }
+        loop {
+            let scratch = &mut Scratch::new(&mut self.scratch);
+            let fitted = self.history.fit_into(input, &self.technique, scratch, &mut self.fitted);
+            let Err(FitError::ScratchTooSmall { required, .. }) = fitted else { return fitted };
+            let given = self.scratch.len();
+            if given >= input.scratch().saturating_mul(2) {
+                return fitted;
+            }
+            self.scratch.resize(given + required.max(given / 2), DVec2::ZERO);
+        }
+    }
+
+    /// Elements of scratch memory that fits of an input need, standing boxes in view and long outlines apart.
+    fn usual_scratch(&self, input: &FitInput) -> usize {
+        let [receivers, casters] =
+            [input.receivers, input.casters].map(|boxes| boxes.map_or(0, |list| list.boxes.len()));
+        // View depths of receivers, all boxes along the light's axes, and the bounds of runs.
+        let mut elements = receivers * input.views.len() + (receivers + casters) * 4;
+        if !matches!(self.technique.maps, Maps::Windows(_)) {
+            // The same for the views of frames ahead, to which maps that are held are fitted as well.
+            elements += receivers * (input.views.len() + 2) + receivers + casters;
+        }
+        elements + OUTLINE
     }
 
     /// The maps of the last frame; none after an error.

@@ -12,7 +12,8 @@ use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, MAX_MAPS, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitInput, FitState, PerspectiveCamera, Scratch, Slices, Technique, ViewFrustum, fit,
+    Aabb, BoxTree, Boxes, CasterVolume, FitInput, FitState, PRESETS, PerspectiveCamera, Scratch, ShadowFitter, Slices,
+    Technique, ViewFrustum, fit,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -131,6 +132,34 @@ fn no_fit_of_windows_allocates() {
             let (input, mut scratch) = (FitInput { demand, ..known }, Scratch::new(&mut storage));
             let maps = without_allocation(name, || fitter.fit(&input, &technique, &mut scratch));
             assert_eq!(maps.expect("a good scene").len(), technique.maps.count() as usize);
+        }
+    }
+}
+
+/// Boxes in a tree, some of which move, once what a view of them takes is known.
+#[test]
+fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
+    let (views, objects) = (views(), objects());
+    let mut tree = BoxTree::of(Boxes::world(&objects)).expect("good boxes");
+    for preset in PRESETS {
+        let mut fitter = ShadowFitter::new(&preset.technique());
+        for frame in 0..6_u16 {
+            let fallen = u32::from(frame) * 31;
+            let aabb = tree.get(fallen).expect("it is in use");
+            tree.set(fallen, Aabb::new(aabb.min + 0.1, aabb.max + 0.1)).expect("it is in use");
+            let fit = |fitter: &mut ShadowFitter| {
+                let input = FitInput { standing: Some(&tree), ..FitInput::new(&views, DIRECTION) };
+                let maps = *fitter.fit(&input).expect("maps");
+                let volumes = maps.caster_volumes(&views, &preset.technique()).expect("volumes");
+                let mut found = 0;
+                tree.cull(&volumes, |_, _| found += 1);
+                assert!(found > 0);
+            };
+            if frame < 2 {
+                fit(&mut fitter);
+            } else {
+                without_allocation(preset.name, || fit(&mut fitter));
+            }
         }
     }
 }

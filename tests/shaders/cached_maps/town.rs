@@ -28,6 +28,17 @@ pub(super) struct Block {
     pub(super) half: Vec3,
     /// Where it stands when it does not bob, in metres.
     height: f64,
+    /// Its own number, which stays the same in any order of the list.
+    pub(super) id: u64,
+    /// How much of its box it fills, along each axis.
+    pub(super) fill: f32,
+}
+
+impl Block {
+    /// Stands for its shape, wherever it is.
+    fn key(&self) -> u64 {
+        self.id << 32 | u64::from(self.fill.to_bits())
+    }
 }
 
 /// The casters.
@@ -35,6 +46,8 @@ pub(super) struct Block {
 pub(super) struct Town {
     pub(super) blocks: Vec<Block>,
     pub(super) moves: Vec<bool>,
+    /// Whether casters have keys.
+    pub(super) has_keys: bool,
 }
 
 impl Town {
@@ -51,15 +64,18 @@ impl Town {
             centre: PLACE + DVec3::new(x, y, z),
             half,
             height: PLACE.y + y,
+            id: 0,
+            fill: 1.0,
         };
         let mut blocks = vec![block(0.0, -0.5, 0.0, Vec3::new(80.0, 0.5, 80.0))];
         for i in 0..240_u32 {
             // Low-discrepancy places.
             let place = |base: f64| (f64::from(i) * base).fract() * 120.0 - 60.0;
             let half = Vec3::new(0.3 + (i % 7) as f32 * 0.25, 0.4 + (i % 11) as f32 * 0.3, 0.3 + (i % 5) as f32 * 0.35);
-            blocks.push(block(place(0.754_877_67), f64::from(half.y), place(0.569_840_3), half));
+            let block = block(place(0.754_877_67), f64::from(half.y), place(0.569_840_3), half);
+            blocks.push(Block { id: u64::from(i) + 1, ..block });
         }
-        Self { blocks, moves: Vec::new() }
+        Self { blocks, moves: Vec::new(), has_keys: false }
     }
 
     /// Moves what moves by half a metre, once a second.
@@ -70,6 +86,10 @@ impl Town {
                 block.centre.y = block.height + 0.5 * (phase * core::f64::consts::TAU).sin();
             }
         }
+    }
+
+    fn keys(&self) -> Vec<u64> {
+        self.blocks.iter().filter(|_| self.has_keys).map(Block::key).collect()
     }
 
     fn boxes(&self, origin: DVec3) -> Vec<Aabb> {
@@ -121,9 +141,48 @@ impl Walk {
 pub(super) struct Drawn {
     /// Depths of each map, as they are looked up.
     pub(super) maps: Vec<Vec<f32>>,
+    /// The maps that are read.
+    read: Vec<FittedMap>,
     pub(super) passes: usize,
     pub(super) cleared: usize,
     pub(super) texels: u64,
+}
+
+impl Drawn {
+    /// Whether a point of the ground is lit, by one look-up in the finest map that holds it with a border.
+    fn is_lit(&self, point: DVec3) -> bool {
+        let holds = |(_, map): &(usize, &FittedMap)| map.projection.free_texels(point).is_some_and(|free| free > 4.0);
+        let texel = |map: &FittedMap| map.projection.texel_size.x;
+        let maps = self.read.iter().enumerate().filter(holds);
+        let Some((index, map)) = maps.min_by(|a, b| texel(a.1).total_cmp(&texel(b.1))) else { return true };
+        let uvz = map.projection.uv_from_world.transform_point3((point - map.projection.origin).as_vec3());
+        let at = (uvz.truncate() * map.projection.resolution.as_vec2()).as_uvec2();
+        // The ground is the deepest of all: half a metre above it is a block.
+        uvz.z - 0.5 / map.projection.depth_range
+            < self.maps[index][(at.y * map.projection.resolution.x + at.x) as usize]
+    }
+}
+
+impl Walk {
+    /// Points of the ground in view.
+    pub(super) fn ground(&self) -> impl Iterator<Item = DVec3> {
+        let forward = self.forward.with_y(0.0).normalize().as_dvec3();
+        let right = forward.cross(DVec3::Y);
+        let eye = self.eye.with_y(PLACE.y);
+        let at = move |far: u32, across: u32| {
+            let far = 4.0 + f64::from(far) * 0.7;
+            eye + forward * far + right * (far * (f64::from(across) / 60.0 - 0.5) * 0.9)
+        };
+        (0..60).flat_map(move |far| (0..60).map(move |across| at(far, across)))
+    }
+}
+
+/// The share of points in view that one way of drawing lights and the other does not.
+pub(super) fn lit_otherwise([a, b]: &[Drawn; 2], walk: &Walk) -> f64 {
+    let [count, differ] = walk
+        .ground()
+        .fold([0, 0], |[count, differ], point| [count + 1, differ + u32::from(a.is_lit(point) != b.is_lit(point))]);
+    f64::from(differ) / f64::from(count)
 }
 
 /// Two sets of the same maps.
@@ -155,12 +214,13 @@ impl Engine {
         // Boxes relative to the moving eye, as engines have them: they round anew in each frame.
         let boxes = town.boxes(walk.eye);
         let boxes = Boxes { origin: walk.eye, boxes: &boxes };
-        let casters = Casters { boxes, moves: &town.moves };
+        let keys = town.keys();
+        let casters = Casters { boxes, moves: &town.moves, keys: &keys };
         let frame = SunFrame::new(&views, walk.direction, boxes, casters);
         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, walk.direction) };
         let maps = *self.kept.fit(&input).expect("maps");
         let centres: Vec<[Vec3; 2]> =
-            town.blocks.iter().map(|block| [(block.centre - walk.eye).as_vec3(), block.half]).collect();
+            town.blocks.iter().map(|block| [(block.centre - walk.eye).as_vec3(), block.half * block.fill]).collect();
         let instances = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
             contents: bytemuck::cast_slice(&centres),
@@ -181,6 +241,7 @@ impl Engine {
             gpu.queue.submit([encoder.finish()]);
             Drawn {
                 maps: unwrapped(gpu, target),
+                read: target.maps().to_vec(),
                 passes: target.passes().len(),
                 cleared: target.passes().filter(ShadowPass::is_cleared).count(),
                 texels: target
@@ -197,7 +258,8 @@ impl Engine {
         let views = [walk.camera().frustum().expect("a camera")];
         let boxes = town.boxes(walk.eye);
         let boxes = Boxes { origin: walk.eye, boxes: &boxes };
-        let frame = SunFrame::new(&views, walk.direction, boxes, Casters { boxes, moves: &town.moves });
+        let frame =
+            SunFrame::new(&views, walk.direction, boxes, Casters { moves: &town.moves, ..Casters::fixed(boxes) });
         let proof = self.kept.prove(&frame).expect("a good frame");
         assert!(proof.is_proven(), "{proof:?}");
     }

@@ -35,6 +35,13 @@ const CASTER: &str = "
 }
 ";
 
+/// What colour formats need beside it.
+const COLOR: &str = "
+@fragment fn fs_PREFIX(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    return PREFIX_caster_color(at.z);
+}
+";
+
 /// Factors at a pixel of the ground.
 const FACTORS_WGSL: &str = "
 fn factors(pixel: vec2<f32>) -> vec4<f32> {
@@ -223,7 +230,9 @@ impl Painter {
         layout: &wgpu::PipelineLayout,
     ) -> Self {
         let caster = |(sun, _, prefix): &(&SunShadows, u32, &str)| {
-            caster_wgsl(sun.map().descriptor(), &options(0, prefix)) + &CASTER.replace("PREFIX", prefix)
+            let color = if sun.map().color_target().is_some() { COLOR } else { "" };
+            caster_wgsl(sun.map().descriptor(), &options(0, prefix))
+                + &[CASTER, color].concat().replace("PREFIX", prefix)
         };
         let module = device.module(suns.iter().map(caster).collect());
         let casters = suns.iter().map(|(sun, _, prefix)| caster_pipeline(device, &module, sun, prefix)).collect();
@@ -275,18 +284,30 @@ impl Painter {
         encoder: &mut wgpu::CommandEncoder,
         suns: &[(&SunShadows, &[Aabb])],
     ) {
-        for ((sun, boxes), pipeline) in suns.iter().zip(&self.casters) {
-            let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
-            let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
-            sun.render(encoder, 0, |pass, piece| {
-                pass.set_pipeline(pipeline);
-                pass.set_vertex_buffer(0, self.cube.slice(..));
-                pass.set_vertex_buffer(1, instances.slice(..));
-                for number in piece.casters {
-                    pass.draw(0..36, *number..number + 1);
-                }
-            });
+        for index in 0..suns.len() {
+            self.draw_one(device, encoder, suns, index);
         }
+    }
+
+    /// Draws the casters of one of the suns.
+    pub(super) fn draw_one(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        suns: &[(&SunShadows, &[Aabb])],
+        index: usize,
+    ) {
+        let ((sun, boxes), pipeline) = (suns[index], &self.casters[index]);
+        let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
+        let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
+        sun.render(encoder, 0, |pass, piece| {
+            pass.set_pipeline(pipeline);
+            pass.set_vertex_buffer(0, self.cube.slice(..));
+            pass.set_vertex_buffer(1, instances.slice(..));
+            for number in piece.casters {
+                pass.draw(0..36, *number..number + 1);
+            }
+        });
     }
 }
 
@@ -306,6 +327,7 @@ fn caster_pipeline(
     let layout = device.layout(&[Some(map.caster_layout())]);
     let buffer =
         |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
+    let targets = [map.color_target()];
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: Some(&layout),
@@ -321,7 +343,12 @@ fn caster_pipeline(
         primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
-        fragment: None,
+        fragment: targets[0].is_some().then_some(wgpu::FragmentState {
+            module,
+            entry_point: Some(&format!("fs_{prefix}")),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets,
+        }),
         multiview_mask: None,
         cache: None,
     })

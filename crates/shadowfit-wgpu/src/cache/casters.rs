@@ -1,12 +1,25 @@
 //! The casters of a frame, by number, and what changed since the frame before.
 
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Aabb, Boxes};
+use shadowfit::{Aabb, BoxRevision, BoxTree, Boxes};
+
+use super::identity::{Caster, pair};
 
 /// Everything that casts shadows, by number: the index of its box.
 ///
-/// A number may mean another caster in another frame, as long as their boxes differ: a static caster whose box is
-/// elsewhere is redrawn where it was and where it is.
+/// A static caster that is kept is known by its key and its box, whatever its number is: lists may come in any order,
+/// sorted, culled, with casters put in or taken out anywhere. What is redrawn is where a caster came, went, or has
+/// another box or another key. Equal casters are told apart by nothing, so that only their count matters.
+///
+/// | a static caster that | needs |
+/// |---|---|
+/// | comes, goes, or has another box | nothing: it is redrawn where it was and where it is |
+/// | has another shape in the same box | another key, or [`invalidate`](crate::SunShadows::invalidate) |
+/// | has another number | nothing, and costs the least where most keep theirs |
+///
+/// A box may stand for many casters that an engine culls by itself, such as those in a cell of the world: then it holds
+/// all of them, and [`invalidate`](crate::SunShadows::invalidate) tells where those that stand still changed within it.
+/// Casters that move have boxes of their own, which may hold the same place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
     /// A box around each caster. Empty boxes cast nothing.
@@ -14,12 +27,17 @@ pub struct Casters<'a> {
     /// Whether each of them moves, is deformed or changes its shape in any other way; those past the end of the slice
     /// do not. Moving casters are drawn in every frame; static ones are drawn once and kept.
     pub moves: &'a [bool],
+    /// A key for each caster that stands for its shape: of the mesh, of its level of detail, of the entity, or a hash
+    /// of them; any number is a key. Those past the end of the slice have none, and are known by their boxes alone; keys
+    /// past the end of the boxes are ignored. Casters may share a key. Where a caster has a key in one frame and none in
+    /// the next, its box decides.
+    pub keys: &'a [u64],
 }
 
 impl<'a> Casters<'a> {
     /// Casters that all stand still.
     pub const fn fixed(boxes: Boxes<'a>) -> Self {
-        Self { boxes, moves: &[] }
+        Self { boxes, moves: &[], keys: &[] }
     }
 
     /// Whether a caster moves.
@@ -38,14 +56,12 @@ pub(crate) struct WorldBox {
 /// Rounding of a box's f32 coordinates, as a share of them, by which it may differ where its origin does.
 const ROUNDING: f32 = 1.0 / 4_194_304.0;
 
-/// Cosine of the greatest angle that the light turns by while the order along it is kept: a degree.
-const SAME_ORDER: f32 = 0.999_85;
-
 impl WorldBox {
-    const EMPTY: Self = Self { min: DVec3::MAX, max: DVec3::MIN };
+    pub(super) const EMPTY: Self = Self { min: DVec3::MAX, max: DVec3::MIN };
 
-    fn new(aabb: &Aabb, origin: DVec3) -> Self {
-        if aabb.is_empty() {
+    pub(super) fn new(aabb: &Aabb, origin: DVec3) -> Self {
+        // Also false for what is not a number.
+        if !aabb.min.cmple(aabb.max).all() {
             return Self::EMPTY;
         }
         Self { min: origin + aabb.min.as_dvec3(), max: origin + aabb.max.as_dvec3() }
@@ -63,101 +79,128 @@ impl WorldBox {
         Aabb::new((self.min - origin).as_vec3(), (self.max - origin).as_vec3())
     }
 
+    /// The least box around both, none of which is empty.
+    pub(super) fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     /// Whether it equals another one up to the rounding of that one's coordinates.
-    fn is_same(&self, other: &Self, rounding: f64) -> bool {
+    pub(super) fn is_same(&self, other: &Self, rounding: f64) -> bool {
         let near = |a: DVec3, b: DVec3| a == b || (a - b).abs().max_element() <= rounding;
         near(self.min, other.min) && near(self.max, other.max)
     }
 }
 
-/// The casters of the last frame, and their order along the light.
+/// Metres by which a box may differ from the same one relative to another origin.
+fn rounding(aabb: &Aabb) -> f64 {
+    f64::from(aabb.min.abs().max(aabb.max.abs()).max_element() * ROUNDING)
+}
+
+/// Where static casters changed in a frame, in world space. What has another box is in both.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Changes {
+    pub(super) gone: Vec<WorldBox>,
+    pub(super) come: Vec<WorldBox>,
+    /// Whether anything may have changed.
+    pub(super) is_all: bool,
+}
+
+/// The casters of the last frame.
 #[derive(Debug, Default)]
 pub(crate) struct KnownCasters {
     /// Where each static caster stood when it was drawn; empty for those that move.
     drawn: Vec<WorldBox>,
-    /// Static casters, and those that move, nearest to the light first.
-    pub(crate) fixed: Vec<u32>,
+    /// The keys of those that had one, from the first caster on.
+    keys: Vec<u64>,
+    /// Those that move, by number.
     pub(crate) moving: Vec<u32>,
-    /// Distance of each one's nearest point toward the light, in metres.
-    heights: Vec<f32>,
-    /// Direction toward the light by which they are ordered.
-    to_light: Vec3,
+    /// The state of the standing ones.
+    standing: Option<BoxRevision>,
 }
 
 impl KnownCasters {
-    /// Takes the casters of a frame, and adds the boxes in which static ones changed. `direction` is the light's
-    /// direction of travel.
-    pub(crate) fn update(&mut self, casters: &Casters<'_>, direction: Vec3, changed: &mut Vec<WorldBox>) {
-        let Boxes { origin, boxes } = casters.boxes;
-        let before = changed.len();
-        let count = boxes.len();
-        for gone in self.drawn.drain(count.min(self.drawn.len())..) {
-            changed.push(gone);
-        }
-        self.drawn.resize(count, WorldBox::EMPTY);
-        let mut is_reordered = false;
-        self.moving.clear();
-        for (number, (aabb, drawn)) in boxes.iter().zip(&mut self.drawn).enumerate() {
-            let mut now = WorldBox::EMPTY;
-            if casters.moves(number) {
-                self.moving.push(number as u32);
-            } else {
-                now = WorldBox::new(aabb, origin);
-            }
-            let coordinates = aabb.min.abs().max(aabb.max.abs()).max_element();
-            if !drawn.is_same(&now, f64::from(coordinates * ROUNDING)) {
-                changed.extend([*drawn, now]);
-                *drawn = now;
-                is_reordered = true;
-            }
-        }
-        changed.retain(|changed| !changed.is_empty());
-        let to_light = -direction.normalize_or_zero();
-        let is_turned = self.to_light.dot(to_light).is_nan() || self.to_light.dot(to_light) < SAME_ORDER;
-        if is_reordered || is_turned || changed.len() > before || self.heights.len() != count {
-            self.to_light = to_light;
-            self.heights.clear();
-            self.heights.extend(boxes.iter().map(|aabb| height(aabb, to_light)));
-            self.fixed.clear();
-            self.fixed.extend((0..count as u32).filter(|number| !self.drawn[*number as usize].is_empty()));
-            sort(&mut self.fixed, &self.heights);
-        }
-        for number in &self.moving {
-            self.heights[*number as usize] = height(&boxes[*number as usize], self.to_light);
-        }
-        sort(&mut self.moving, &self.heights);
+    /// Whether a caster stands still, and casts.
+    pub(crate) fn is_fixed(&self, number: u32) -> bool {
+        !self.drawn[number as usize].is_empty()
     }
 
-    /// All casters of two lists, each nearest to the light first, in that order.
-    pub(crate) fn merged<'a>(
-        &'a self,
-        fixed: impl Iterator<Item = u32> + 'a,
-        moving: impl Iterator<Item = u32> + 'a,
-    ) -> impl Iterator<Item = u32> + 'a {
-        let (mut fixed, mut moving) = (fixed.peekable(), moving.peekable());
-        let height = |number: u32| self.heights[number as usize];
-        core::iter::from_fn(move || match (fixed.peek(), moving.peek()) {
-            (Some(a), Some(b)) if height(*b) > height(*a) => moving.next(),
-            (Some(_), _) => fixed.next(),
-            (None, _) => moving.next(),
-        })
+    /// Takes the casters of a frame, and finds where static ones changed.
+    pub(super) fn update(&mut self, casters: &Casters<'_>, standing: Option<&BoxTree>) -> Changes {
+        let mut changes = self.update_listed(casters);
+        let before = core::mem::replace(&mut self.standing, standing.map(BoxTree::revision));
+        let Some((before, tree)) = before.zip(standing) else {
+            changes.is_all = before.is_some() || standing.is_some();
+            return changes;
+        };
+        let Some(changed) = tree.changes_since(before) else { return Changes { is_all: true, ..changes } };
+        for change in changed {
+            let [before, after] = [change.before, change.after].map(|aabb| WorldBox::new(&aabb, tree.origin()));
+            changes.gone.extend(Some(before).filter(|aabb| !aabb.is_empty()));
+            changes.come.extend(Some(after).filter(|aabb| !aabb.is_empty()));
+        }
+        changes
+    }
+
+    fn update_listed(&mut self, casters: &Casters<'_>) -> Changes {
+        let Boxes { origin, boxes } = casters.boxes;
+        let keys = &casters.keys[..casters.keys.len().min(boxes.len())];
+        let (mut gone, mut come) = (Vec::new(), Vec::new());
+        let key = |keys: &[u64], number: usize| keys.get(number).copied();
+        let beyond = self.drawn.drain(boxes.len().min(self.drawn.len())..).zip(boxes.len()..);
+        gone.extend(beyond.map(|(aabb, number)| Caster { key: key(&self.keys, number), aabb, rounding: 0.0, number }));
+        self.drawn.resize(boxes.len(), WorldBox::EMPTY);
+        self.moving.clear();
+        let has_same_keys = self.keys == keys;
+        for (number, (aabb, drawn)) in boxes.iter().zip(&mut self.drawn).enumerate() {
+            let moves = casters.moves(number);
+            let now = if moves { WorldBox::EMPTY } else { WorldBox::new(aabb, origin) };
+            if moves {
+                self.moving.push(number as u32);
+            }
+            let rounding = rounding(aabb);
+            let are_keys_same = || match (key(&self.keys, number), key(keys, number)) {
+                (Some(before), Some(now)) => before == now,
+                _ => true,
+            };
+            if drawn.is_same(&now, rounding) && (has_same_keys || are_keys_same()) {
+                continue;
+            }
+            gone.push(Caster { key: key(&self.keys, number), aabb: *drawn, rounding: 0.0, number });
+            come.push(Caster { key: key(keys, number), aabb: now, rounding, number });
+            *drawn = now;
+        }
+        if !has_same_keys {
+            self.keys.clear();
+            self.keys.extend(keys);
+        }
+        gone.retain(|caster| !caster.aabb.is_empty());
+        come.retain(|caster| !caster.aabb.is_empty());
+        // One that is known by another number stays as it was drawn.
+        pair(&mut gone, &mut come, |number, aabb| self.drawn[number] = aabb);
+        let boxes = |list: Vec<Caster>| list.into_iter().map(|caster| caster.aabb).collect();
+        Changes { gone: boxes(gone), come: boxes(come), is_all: false }
+    }
+}
+
+/// Sorts casters by where they begin as seen from the light, the nearest first, and then by number. `to_light` is the
+/// unit direction toward the light.
+pub(super) fn sort(numbers: &mut [u32], to_light: Vec3, order: &mut Vec<u64>, aabb: impl Fn(u32) -> Aabb) {
+    order.clear();
+    order.extend(numbers.iter().map(|number| {
+        // Descending floats as ascending integers.
+        let bits = height(&aabb(*number), to_light).to_bits();
+        let descending = if bits >> 31 == 0 { !bits & 0x7fff_ffff } else { bits };
+        u64::from(descending) << 32 | u64::from(*number)
+    }));
+    order.sort_unstable();
+    for (number, sorted) in numbers.iter_mut().zip(order) {
+        *number = *sorted as u32;
     }
 }
 
 /// Where a box begins as seen from the light, in metres along the direction toward it.
 fn height(aabb: &Aabb, to_light: Vec3) -> f32 {
-    if aabb.is_empty() {
-        f32::MIN
-    } else {
-        aabb.max.max(aabb.min).dot(to_light.max(Vec3::ZERO)) + aabb.min.dot(to_light.min(Vec3::ZERO))
-    }
-}
-
-fn sort(numbers: &mut [u32], heights: &[f32]) {
-    numbers.sort_unstable_by(|a, b| {
-        let [near, far] = [*a, *b].map(|number| heights[number as usize]);
-        far.total_cmp(&near).then(a.cmp(b))
-    });
+    aabb.max.dot(to_light.max(Vec3::ZERO)) + aabb.min.dot(to_light.min(Vec3::ZERO))
 }
 
 #[cfg(test)]
@@ -168,68 +211,142 @@ mod tests {
         Aabb::new(Vec3::new(x, y, 0.0), Vec3::new(x + 1.0, y + 1.0, 1.0))
     }
 
-    fn update(known: &mut KnownCasters, origin: DVec3, boxes: &[Aabb], moves: &[bool]) -> Vec<WorldBox> {
-        let mut changed = Vec::new();
-        known.update(&Casters { boxes: Boxes { origin, boxes }, moves }, Vec3::NEG_Y, &mut changed);
-        changed
+    fn row(count: usize) -> Vec<Aabb> {
+        (0..count).map(|i| cube(3.0 * i as f32, 0.0)).collect()
+    }
+
+    fn world(aabb: Aabb) -> WorldBox {
+        WorldBox::new(&aabb, DVec3::ZERO)
+    }
+
+    fn take(known: &mut KnownCasters, boxes: &[Aabb], moves: &[bool], keys: &[u64]) -> Changes {
+        known.update(&Casters { boxes: Boxes::world(boxes), moves, keys }, None)
+    }
+
+    fn changes(gone: &[Aabb], come: &[Aabb]) -> Changes {
+        let boxes = |list: &[Aabb]| list.iter().copied().map(world).collect();
+        Changes { gone: boxes(gone), come: boxes(come), is_all: false }
     }
 
     #[test]
     fn static_casters_change_where_they_appear_move_start_to_move_and_vanish() {
-        let mut known = KnownCasters::default();
-        let world = |aabb: Aabb| WorldBox::new(&aabb, DVec3::ZERO);
+        let known = &mut KnownCasters::default();
         let boxes = [cube(0.0, 0.0), cube(5.0, 2.0), cube(9.0, 1.0)];
-        assert_eq!(update(&mut known, DVec3::ZERO, &boxes, &[]), boxes.map(world));
-        assert_eq!(known.fixed, [1, 2, 0], "nearest to the light first");
-        assert_eq!(update(&mut known, DVec3::ZERO, &boxes, &[]), []);
+        assert_eq!(take(known, &boxes, &[], &[]), changes(&[], &boxes));
+        assert_eq!(take(known, &boxes, &[], &[]), Changes::default());
         // It starts to move: it is no longer where it was.
-        assert_eq!(update(&mut known, DVec3::ZERO, &boxes, &[false, true]), [world(boxes[1])]);
-        assert_eq!((known.fixed.as_slice(), known.moving.as_slice()), ([2, 0].as_slice(), [1].as_slice()));
+        assert_eq!(take(known, &boxes, &[false, true], &[]), changes(&[boxes[1]], &[]));
+        assert_eq!([0, 1, 2].map(|number| known.is_fixed(number)), [true, false, true]);
+        assert_eq!(known.moving, [1]);
         // Moving casters change nothing that is kept.
         let moved = [boxes[0], cube(5.0, 7.0), boxes[2]];
-        assert_eq!(update(&mut known, DVec3::ZERO, &moved, &[false, true]), []);
+        assert_eq!(take(known, &moved, &[false, true], &[]), Changes::default());
         // It comes to rest, elsewhere; a static one is set elsewhere; the last one is gone.
         let rest = [cube(0.5, 0.0), moved[1]];
-        assert_eq!(
-            update(&mut known, DVec3::ZERO, &rest, &[]),
-            [world(boxes[2]), world(boxes[0]), world(rest[0]), world(rest[1])]
-        );
-        assert_eq!(update(&mut known, DVec3::ZERO, &[], &[]), rest.map(world));
+        assert_eq!(take(known, &rest, &[], &[]), changes(&[boxes[2], boxes[0]], &rest));
+        assert_eq!(take(known, &[], &[], &[]), changes(&rest, &[]));
     }
 
     #[test]
-    fn boxes_relative_to_a_moving_origin_do_not_change_by_its_rounding() {
-        let mut known = KnownCasters::default();
+    fn lists_in_another_order_change_only_where_a_caster_came_or_went() {
+        let boxes = row(100);
+        let after = |change: &dyn Fn(&mut Vec<Aabb>)| -> Changes {
+            let known = &mut KnownCasters::default();
+            take(known, &boxes, &[], &[]);
+            let mut other = boxes.clone();
+            change(&mut other);
+            let found = take(known, &other, &[], &[]);
+            assert_eq!(take(known, &other, &[], &[]), Changes::default());
+            found
+        };
+        assert_eq!(after(&|list| list.reverse()), Changes::default());
+        assert_eq!(after(&|list| list.rotate_left(37)), Changes::default());
+        assert_eq!(after(&|list| list.retain(|aabb| *aabb != boxes[40])), changes(&[boxes[40]], &[]));
+        assert_eq!(after(&|list| list[40] = list.pop().unwrap_or(Aabb::EMPTY)), changes(&[boxes[40]], &[]));
+        assert_eq!(after(&|list| list.insert(0, cube(-9.0, 4.0))), changes(&[], &[cube(-9.0, 4.0)]));
+        let culled = after(&|list| list.retain(|aabb| aabb.min.x < 270.0));
+        assert_eq!(culled, changes(&boxes[90..], &[]));
+    }
+
+    #[test]
+    fn of_equal_casters_only_the_count_matters() {
+        let known = &mut KnownCasters::default();
+        let [a, b] = [cube(0.0, 0.0), cube(5.0, 0.0)];
+        take(known, &[a, a, b, a], &[], &[]);
+        assert_eq!(take(known, &[b, a, a, a], &[], &[]), Changes::default());
+        assert_eq!(take(known, &[a, b, a], &[], &[]), changes(&[a], &[]));
+        assert_eq!(take(known, &[b, a, a, b, b], &[], &[]), changes(&[], &[b, b]));
+        // The same key for all is as good as none.
+        assert_eq!(take(known, &[b, b, a, a, b], &[], &[7; 5]), Changes::default());
+        assert_eq!(take(known, &[b, a, b, a, b], &[], &[7; 5]), Changes::default());
+        assert_eq!(take(known, &[a, b, a], &[], &[7; 3]).gone, [world(b), world(b)]);
+    }
+
+    #[test]
+    fn another_key_redraws_the_same_box() {
+        let known = &mut KnownCasters::default();
+        let boxes = row(4);
+        take(known, &boxes, &[], &[1, 2, 3, 4]);
+        assert_eq!(take(known, &boxes, &[], &[1, 2, 30, 4]), changes(&[boxes[2]], &[boxes[2]]));
+        // Keys and boxes in another order are the same casters; keys in another order alone are not.
+        let turned = [boxes[3], boxes[2], boxes[1], boxes[0]];
+        assert_eq!(take(known, &turned, &[], &[4, 30, 2, 1]), Changes::default());
+        let swapped = take(known, &turned, &[], &[4, 30, 1, 2]);
+        assert_eq!(swapped, changes(&[boxes[1], boxes[0]], &[boxes[1], boxes[0]]));
+        // A key whose box moved.
+        let moved = [turned[0], turned[1], cube(3.0, 8.0), turned[3]];
+        assert_eq!(take(known, &moved, &[], &[4, 30, 1, 2]), changes(&[boxes[1]], &[moved[2]]));
+    }
+
+    #[test]
+    fn where_a_caster_has_no_key_its_box_decides() {
+        let known = &mut KnownCasters::default();
+        let boxes = row(4);
+        take(known, &boxes, &[], &[1, 2]);
+        assert_eq!(take(known, &boxes, &[], &[1, 2, 3, 4, 5, 6]), Changes::default(), "keys of no caster are ignored");
+        let turned = [boxes[3], boxes[2], boxes[1], boxes[0]];
+        assert_eq!(take(known, &turned, &[], &[]), Changes::default());
+        assert_eq!(take(known, &boxes, &[], &[9, 8]), Changes::default());
+        assert_eq!(take(known, &boxes, &[], &[9, 7]), changes(&[boxes[1]], &[boxes[1]]));
+    }
+
+    #[test]
+    fn boxes_relative_to_a_moving_origin_do_not_change_by_its_rounding_in_any_order() {
+        let known = &mut KnownCasters::default();
         let place = DVec3::new(51_234.567, 3.0, -20_000.1);
         let relative = |eye: DVec3| {
             let aabb = |x: f64| {
                 let min = (place + DVec3::new(x, 0.0, 0.0) - eye).as_vec3();
                 Aabb::new(min, min + 1.0)
             };
-            [aabb(0.0), aabb(80.0)]
+            [aabb(0.0), aabb(80.0), aabb(80.1)]
         };
         let eye = place + DVec3::new(30.0, 1.7, 50.0);
-        assert_eq!(update(&mut known, eye, &relative(eye), &[]).len(), 2);
+        let mut take = |origin, boxes: &[Aabb]| known.update(&Casters::fixed(Boxes { origin, boxes }), None);
+        assert_eq!(take(eye, &relative(eye)).come.len(), 3);
         for step in 1..200 {
             let eye = eye + DVec3::new(0.013, 0.001, -0.027) * f64::from(step);
-            assert_eq!(update(&mut known, eye, &relative(eye), &[]), [], "{step}");
+            let mut boxes = relative(eye);
+            boxes.rotate_left(step as usize % 3);
+            assert_eq!(take(eye, &boxes), Changes::default(), "{step}");
         }
     }
 
     #[test]
-    fn casters_of_both_kinds_are_merged_nearest_to_the_light_first() {
-        let mut known = KnownCasters::default();
-        let boxes = [cube(0.0, 4.0), cube(0.0, 3.0), cube(0.0, 9.0), cube(0.0, 1.0)];
-        update(&mut known, DVec3::ZERO, &boxes, &[false, true, true, false]);
-        let merged: Vec<u32> = known.merged(known.fixed.iter().copied(), known.moving.iter().copied()).collect();
-        assert_eq!(merged, [2, 0, 1, 3]);
+    fn casters_are_sorted_nearest_to_the_light_first() {
+        let boxes = [cube(0.0, 4.0), cube(0.0, -3.0), cube(0.0, 9.0), cube(0.0, -1.0), cube(5.0, 4.0)];
+        let mut numbers = [4, 0, 1, 2, 3];
+        sort(&mut numbers, Vec3::Y, &mut Vec::new(), |number| boxes[number as usize]);
+        assert_eq!(numbers, [2, 0, 4, 3, 1]);
+        sort(&mut numbers, Vec3::NEG_Y, &mut Vec::new(), |number| boxes[number as usize]);
+        assert_eq!(numbers, [1, 3, 0, 4, 2]);
     }
 
     #[test]
     fn boxes_that_are_not_numbers_cast_nothing_and_do_not_change() {
-        let mut known = KnownCasters::default();
+        let known = &mut KnownCasters::default();
         let boxes = [Aabb::new(Vec3::NAN, Vec3::ONE), Aabb::EMPTY];
-        assert_eq!(update(&mut known, DVec3::ZERO, &boxes, &[]), []);
-        assert_eq!(known.fixed, [] as [u32; 0]);
+        assert_eq!(take(known, &boxes, &[], &[]), Changes::default());
+        assert!(!known.is_fixed(0) && !known.is_fixed(1));
     }
 }

@@ -2,18 +2,25 @@
 //!
 //! Boxes of objects and clusters come in an order in which neighbours in the list are mostly neighbours in space. So
 //! the bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
+//! A tree of boxes is asked whenever something is asked of them: it looks at few of them.
 
 #[cfg(feature = "alloc")]
 pub(crate) mod clusters;
+mod groups;
 pub(crate) mod normal_cone;
+mod standing;
+#[cfg(feature = "alloc")]
+pub(crate) mod tree;
 
 use core::cell::OnceCell;
 
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::enclosing::{EnclosingSphere, HullBuilder, SymmetricFrustum, minimal};
-use crate::base::{Aabb, Boxes, FitError, checks, moved};
+use crate::base::{Boxes, FitError, checks, moved};
+use crate::content::groups::Groups;
 use crate::content::normal_cone::NormalCone;
+pub(crate) use crate::content::standing::BoxTree;
 use crate::light::LightAxes;
 use crate::view::{Range, Slice, View, ViewFrustum, slice_corners};
 
@@ -26,19 +33,24 @@ pub(crate) struct Scene<'a> {
     pub(crate) receivers: Option<Boxes<'a>>,
     pub(crate) receiver_cones: &'a [NormalCone],
     pub(crate) casters: Option<Boxes<'a>>,
+    /// Boxes that receive and cast beside those of the lists.
+    pub(crate) standing: Option<&'a BoxTree>,
 }
 
 /// The views and boxes of one frame, with the view depths of each box computed once.
 pub(crate) struct Content<'a> {
     pub(crate) views: &'a [ViewFrustum],
     pub(crate) origin: DVec3,
-    pub(crate) receivers: Option<Boxes<'a>>,
-    pub(crate) casters: Option<Boxes<'a>>,
-    /// Least and greatest view depth of each receiver, view by view; the least is above the
+    /// The list of receivers.
+    receivers: Option<Boxes<'a>>,
+    /// The list of casters.
+    casters: Option<Boxes<'a>>,
+    standing: Option<&'a BoxTree>,
+    /// Least and greatest view depth of each receiver of the list, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
     receiver_groups: Groups<'a>,
-    pub(crate) caster_groups: Groups<'a>,
+    caster_groups: Groups<'a>,
     symmetric: OnceCell<Option<SymmetricFrustum>>,
     across: OnceCell<Option<(DVec2, DVec2)>>,
 }
@@ -60,8 +72,7 @@ impl<'a> Content<'a> {
         'a: 'w,
     {
         let origin = input.views[0].origin;
-        let count_of = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
-        let (count, casters) = (count_of(input.receivers), count_of(input.casters));
+        let [count, casters] = [input.receivers, input.casters].map(|boxes| boxes.map_or(0, |boxes| boxes.boxes.len()));
         let needed = count.saturating_mul(input.views.len());
         let grouped = [Groups::required(count), Groups::required(casters)];
         let required = needed
@@ -93,6 +104,7 @@ impl<'a> Content<'a> {
             origin,
             receivers: input.receivers,
             casters: input.casters,
+            standing: input.standing,
             depths,
             receiver_groups,
             caster_groups,
@@ -110,6 +122,7 @@ impl<'a> Content<'a> {
             origin: input.views[0].origin,
             receivers: None,
             casters: None,
+            standing: None,
             depths: &[],
             receiver_groups: Groups::default(),
             caster_groups: Groups::default(),
@@ -167,24 +180,72 @@ impl<'a> Content<'a> {
         self.views.iter().map(|view| View::new(view, self.origin))
     }
 
+    /// Whether it is known what receives shadows.
+    pub(crate) fn knows_receivers(&self) -> bool {
+        self.receivers.is_some() || self.standing.is_some()
+    }
+
+    /// Whether anything is known to cast shadows.
+    pub(crate) fn has_casters(&self) -> bool {
+        self.standing.is_some() || self.casters.is_some_and(|casters| !casters.boxes.is_empty())
+    }
+
+    /// The list of receivers, and that of casters; `None` of the second one where it is the same in memory.
+    pub(crate) fn lists(&self) -> [Option<Boxes<'a>>; 2] {
+        [self.receivers, self.casters.filter(|_| !is_same(self.receivers, self.casters))]
+    }
+
+    /// Number of receivers of the list.
+    fn listed(&self) -> usize {
+        self.receivers.map_or(0, |receivers| receivers.boxes.len())
+    }
+
+    /// Depths of the listed receivers in each view.
+    fn depths(&self) -> impl Iterator<Item = &[DVec2]> {
+        let listed = self.listed();
+        (0..self.views.len()).map(move |view| self.depths.get(view * listed..(view + 1) * listed).unwrap_or_default())
+    }
+
+    /// A receiver's box: of the list by its index, and standing ones after these by their numbers.
+    #[inline]
+    pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
+        let listed = self.listed();
+        if let (Some(receivers), true) = (&self.receivers, index < listed) {
+            return Some(moved(&receivers.boxes[index], receivers.origin - self.origin));
+        }
+        let tree = self.standing?;
+        tree.get((index - listed) as u32).map(|aabb| moved(&aabb, tree.origin() - self.origin))
+    }
+
     /// Least and greatest view depth of what the views see of the receivers, `None` when nothing.
     pub(crate) fn depth_range(&self) -> Option<(f64, f64)> {
-        let receivers = self.receivers.as_ref()?;
-        let offset = receivers.origin - self.origin;
         let mut range = OUT_OF_VIEW;
-        for (view, depths) in self.views().zip(self.depths.chunks(receivers.boxes.len().max(1))) {
+        for (view, depths) in self.views().zip(self.depths()) {
             let whole = view.slice(view.near, view.far);
-            for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
-                range.y = range.y.max(depths.y.min(view.far));
+            let add = |range: &mut DVec2, depths: (f64, f64), min: DVec3, max: DVec3| {
+                range.y = range.y.max(depths.1.min(view.far));
                 // The part of a box that is in view may begin much farther out than the box.
-                if depths.x < range.x {
-                    let (min, max) = moved(aabb, offset);
+                if depths.0 < range.x {
                     let Ok(()) = whole.clip(min, max, &mut |p| {
                         range.x = range.x.min(view.depth.distance(p).max(view.near));
                         Ok::<(), core::convert::Infallible>(())
                     });
                 }
+            };
+            for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
+                if let Some((min, max)) = self.receiver(i) {
+                    add(&mut range, (depths.x, depths.y), min, max);
+                }
             }
+            let is_new = |range: &DVec2, (near, far): (f64, f64), _, _| near < range.x || far.min(view.far) > range.y;
+            self.each_standing_seen(
+                (&view, view.near, view.far),
+                &mut range,
+                is_new,
+                |range, depths, _, (min, max)| {
+                    add(range, depths, min, max);
+                },
+            );
         }
         if range.x < range.y { Some((range.x, range.y)) } else { None }
     }
@@ -192,24 +253,32 @@ impl<'a> Content<'a> {
     /// Greatest distance of any receiver from an eye, in view or not: no turn of the camera makes
     /// a view depth exceed it. `None` when no receiver is known.
     pub(crate) fn farthest(&self) -> Option<f64> {
-        let receivers = self.receivers.as_ref()?;
-        let mut squared = None;
+        let of_corner = |min: DVec3, max: DVec3| {
+            let corner = min.abs().max(max.abs());
+            corner.dot(corner)
+        };
+        let mut squared: Option<f64> = None;
         for view in self.views {
-            let (offset, to_eye) = (receivers.origin - view.origin, self.origin - view.origin);
-            let of_corner = |min: DVec3, max: DVec3| {
-                let corner = min.abs().max(max.abs());
-                corner.dot(corner)
-            };
-            for (run, min, max) in self.receiver_groups.runs() {
+            let to_eye = self.origin - view.origin;
+            let may_be_farther = |squared: &Option<f64>, min: DVec3, max: DVec3| {
                 let most = of_corner(min + to_eye, max + to_eye) * (1.0 + 1e-9);
-                if squared.is_some_and(|squared| most < squared) {
-                    continue;
-                }
-                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
-                    let (min, max) = moved(aabb, offset);
-                    squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                squared.is_none_or(|squared| most >= squared)
+            };
+            if let Some(receivers) = &self.receivers {
+                let offset = receivers.origin - view.origin;
+                for (run, min, max) in self.receiver_groups.runs() {
+                    if !may_be_farther(&squared, min, max) {
+                        continue;
+                    }
+                    for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                        let (min, max) = moved(aabb, offset);
+                        squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                    }
                 }
             }
+            self.each_standing(&mut squared, may_be_farther, |squared, min, max| {
+                *squared = Some(of_corner(min + to_eye, max + to_eye).max(squared.unwrap_or(0.0)));
+            });
         }
         squared.map(libm::sqrt)
     }
@@ -218,63 +287,80 @@ impl<'a> Content<'a> {
     /// known.
     pub(crate) fn receivers_across(&self, axes: &LightAxes) -> Option<(DVec2, DVec2)> {
         *self.across.get_or_init(|| {
-            let receivers = self.receivers.as_ref()?;
-            let offset = receivers.origin - self.origin;
-            let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
             let across = |min, max| {
                 let (centre, half) = axes.project_box(min, max);
                 ((centre - half).truncate(), (centre + half).truncate())
             };
-            for (run, min, max) in self.receiver_groups.runs() {
+            let is_new = |(low, high): &(DVec2, DVec2), min, max| {
                 let (a, b) = across(min, max);
-                if a.cmpge(low).all() && b.cmple(high).all() {
-                    continue;
-                }
-                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
-                    let (min, max) = moved(aabb, offset);
-                    let (a, b) = across(min, max);
-                    (low, high) = (low.min(a), high.max(b));
-                }
+                !(a.cmpge(*low).all() && b.cmple(*high).all())
+            };
+            let widen = |(low, high): &mut (DVec2, DVec2), min, max| {
+                let (a, b) = across(min, max);
+                (*low, *high) = (low.min(a), high.max(b));
+            };
+            let mut bounds = (DVec2::MAX, DVec2::MIN);
+            if let Some(receivers) = &self.receivers {
+                each_of_list(receivers, &self.receiver_groups, self.origin, &mut bounds, is_new, widen);
             }
-            (low.x <= high.x).then_some((low, high))
+            self.each_standing(&mut bounds, is_new, widen);
+            (bounds.0.x <= bounds.1.x).then_some(bounds)
         })
     }
 
     /// Passes on each receiver's box that may reach into a range of view depths, with the slice of
-    /// the view that it may intersect, in coordinates relative to the origin.
-    pub(crate) fn receivers_in<E>(
+    /// the view that it may intersect, in coordinates relative to the origin, with a state; those of the list by index.
+    /// Standing ones are passed on where `is_new` of them and of the boxes around them is true.
+    pub(crate) fn receivers_in<S, E>(
         &self,
         range: Range,
-        mut visit: impl FnMut(usize, &Slice, DVec3, DVec3) -> Result<(), E>,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, Option<usize>, &Slice, (DVec3, DVec3)) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Some(receivers) = &self.receivers else { return Ok(()) };
-        let offset = receivers.origin - self.origin;
-        let count = receivers.boxes.len().max(1);
-        for (view, depths) in self.views().zip(self.depths.chunks(count)) {
+        for (view, depths) in self.views().zip(self.depths()) {
             let slice = view.slice(f64::from(range.near), f64::from(range.far));
             if slice.near >= slice.far {
                 continue;
             }
-            for i in scattered(receivers.boxes.len()) {
-                let (aabb, depths) = (&receivers.boxes[i], depths[i]);
-                if depths.x <= slice.far && depths.y >= slice.near {
-                    let (min, max) = moved(aabb, offset);
-                    visit(i, &slice, min, max)?;
+            for i in scattered(depths.len()) {
+                let is_in = depths[i].x <= slice.far && depths[i].y >= slice.near;
+                if let Some(corners) = self.receiver(i).filter(|_| is_in) {
+                    visit(state, Some(i), &slice, corners)?;
                 }
             }
+            let mut all = (&mut *state, Ok(()));
+            let goes_on = |all: &(&mut S, Result<(), E>), _, min, max| all.1.is_ok() && is_new(all.0, min, max);
+            self.each_standing_seen((&view, slice.near, slice.far), &mut all, goes_on, |all, _, _, corners| {
+                if all.1.is_ok() {
+                    all.1 = visit(all.0, None, &slice, corners);
+                }
+            });
+            all.1?;
         }
         Ok(())
     }
 
     /// Passes on each receiver's box that reaches into one of the views, with its least and greatest view
-    /// depth.
-    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut((f64, f64), DVec3, DVec3)) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
-        let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
-        for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
-            let (min, max) = moved(aabb, offset);
-            visit((depths.x, depths.y), min, max);
+    /// depth and a state. Standing ones, about the nearest first, are passed on where `is_new` of them and of the boxes
+    /// around them is true.
+    pub(crate) fn each_receiver<S>(
+        &self,
+        view: usize,
+        state: &mut S,
+        is_new: impl Fn(&S, (f64, f64), DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, (f64, f64), DVec3, DVec3),
+    ) {
+        let depths = self.depths().nth(view).unwrap_or_default();
+        for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
+            if let Some((min, max)) = self.receiver(i) {
+                visit(state, (depths.x, depths.y), min, max);
+            }
+        }
+        if let Some(view) = self.views().nth(view) {
+            self.each_standing_seen((&view, view.near, view.far), state, is_new, |state, depths, _, (min, max)| {
+                visit(state, depths, min, max);
+            });
         }
     }
 
@@ -286,38 +372,69 @@ impl<'a> Content<'a> {
         is_new: impl Fn(&S, DVec3, DVec3) -> bool,
         mut visit: impl FnMut(&mut S, DVec3, DVec3),
     ) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
         for (run, min, max) in self.receiver_groups.runs() {
             if !is_new(state, min, max) {
                 continue;
             }
-            for i in run {
-                let is_seen = |depths: &[DVec2]| depths.get(i).is_some_and(|depths| depths.x <= depths.y);
-                if self.depths.chunks(receivers.boxes.len()).any(is_seen) {
-                    let (min, max) = moved(&receivers.boxes[i], offset);
+            for i in run.filter(|i| self.depths().any(|depths| depths[*i].x <= depths[*i].y)) {
+                if let Some((min, max)) = self.receiver(i) {
                     visit(state, min, max);
                 }
             }
         }
+        for view in self.views() {
+            let is_new = |state: &S, _, min, max| is_new(state, min, max);
+            self.each_standing_seen((&view, view.near, view.far), state, is_new, |state, _, _, (min, max)| {
+                visit(state, min, max);
+            });
+        }
     }
 
-    /// A receiver's box.
-    pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
-        let receivers = self.receivers.as_ref()?;
-        Some(moved(receivers.boxes.get(index)?, receivers.origin - self.origin))
-    }
-
-    /// Passes on each receiver's box that reaches into a view, whether it is dark or not, with its index.
-    pub(crate) fn each_in_view(&self, view: &View, mut visit: impl FnMut(usize, DVec3, DVec3)) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
-        for (i, aabb) in receivers.boxes.iter().enumerate().filter(|(_, aabb)| !aabb.is_empty()) {
-            let (min, max) = moved(aabb, offset);
-            if view.depths(min, max).is_some() {
-                visit(i, min, max);
+    /// Passes on each receiver's box that reaches into a view, whether it is dark or not, with its
+    /// [number](Self::receiver) and a state. Standing ones, about the nearest first, are passed on where `is_new` of
+    /// their least view depth, of them and of the boxes around them is true.
+    pub(crate) fn each_in_view<S>(
+        &self,
+        view: &View,
+        state: &mut S,
+        is_new: impl Fn(&S, f64, (DVec3, DVec3)) -> bool,
+        mut visit: impl FnMut(&mut S, usize, (DVec3, DVec3)),
+    ) {
+        let listed = self.listed();
+        let boxes = self.receivers.map_or(&[][..], |receivers| receivers.boxes);
+        for (i, _) in boxes.iter().enumerate().filter(|(_, aabb)| !aabb.is_empty()) {
+            if let Some(corners) = self.receiver(i).filter(|(min, max)| view.depths(*min, *max).is_some()) {
+                visit(state, i, corners);
             }
         }
+        let is_new = |state: &S, (near, _): (f64, f64), min, max| is_new(state, near, (min, max));
+        self.each_standing_seen((view, view.near, view.far), state, is_new, |state, _, number, corners| {
+            visit(state, listed + number as usize, corners);
+        });
+    }
+
+    /// Passes on each caster's box, in view or not, with a state: those for which, and for the bounds of those around
+    /// which, `is_new` is true.
+    pub(crate) fn each_caster<S>(
+        &self,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, DVec3, DVec3),
+    ) {
+        if let Some(casters) = &self.casters {
+            each_of_list(casters, &self.caster_groups, self.origin, state, &is_new, &mut visit);
+        }
+        self.each_standing(state, is_new, visit);
+    }
+
+    /// A box around all casters, in view or not, if there are any.
+    pub(crate) fn caster_bounds(&self) -> Option<(DVec3, DVec3)> {
+        let listed = self.caster_groups.runs().map(|(_, min, max)| (min, max));
+        let all = listed.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let mut bounds = all.unwrap_or((DVec3::MAX, DVec3::MIN));
+        let is_new = |all: &(DVec3, DVec3), min: DVec3, max: DVec3| !(min.cmpge(all.0).all() && max.cmple(all.1).all());
+        self.each_standing(&mut bounds, is_new, |all, min, max| *all = (all.0.min(min), all.1.max(max)));
+        (bounds.0.x <= bounds.1.x).then_some(bounds)
     }
 
     /// Corners of the views' slices.
@@ -328,6 +445,26 @@ impl<'a> Content<'a> {
     /// Corners of each view's slice that is not empty.
     pub(crate) fn slices(&self, range: Range) -> impl Iterator<Item = [DVec3; 8]> {
         self.views.iter().filter_map(move |view| slice_corners(view, self.origin, range.near, range.far))
+    }
+}
+
+/// Passes on the boxes of a list, relative to an origin, with a state, in the runs for whose bounds `is_new` is true.
+fn each_of_list<S>(
+    list: &Boxes,
+    groups: &Groups,
+    origin: DVec3,
+    state: &mut S,
+    is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+    mut visit: impl FnMut(&mut S, DVec3, DVec3),
+) {
+    for (run, min, max) in groups.runs() {
+        if !is_new(state, min, max) {
+            continue;
+        }
+        for aabb in list.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+            let (min, max) = moved(aabb, list.origin - origin);
+            visit(state, min, max);
+        }
     }
 }
 
@@ -397,49 +534,4 @@ fn check(boxes: &Boxes) -> Result<(), FitError> {
         }
     }
     Ok(())
-}
-
-/// Boxes in a run: few enough that runs stay small, enough that their tests cost little. 8 and 32 are both
-/// slower with 1,024 clusters of real scenes.
-const RUN: usize = 16;
-
-/// Elements of storage that the bounds of a run take.
-const ELEMENTS: usize = 3;
-
-/// Boxes in runs, with the bounds of each.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Groups<'a> {
-    boxes: &'a [Aabb],
-    bounds: &'a [DVec2],
-    /// From the origin that the boxes are seen from to their own.
-    offset: DVec3,
-}
-
-impl<'a> Groups<'a> {
-    /// Elements of storage for the runs of a number of boxes.
-    pub(crate) const fn required(boxes: usize) -> usize {
-        boxes.div_ceil(RUN) * ELEMENTS
-    }
-
-    /// The runs of boxes as seen from an origin; storage is as long as [`Self::required`] or longer.
-    pub(crate) fn new(boxes: &Boxes<'a>, origin: DVec3, storage: &'a mut [DVec2]) -> Self {
-        for (run, bounds) in boxes.boxes.chunks(RUN).zip(storage.chunks_exact_mut(ELEMENTS)) {
-            let all = run.iter().filter(|aabb| !aabb.is_empty()).fold(Aabb::EMPTY, |all, aabb| all.union(*aabb));
-            let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
-            bounds.copy_from_slice(&[min.truncate(), DVec2::new(min.z, max.x), DVec2::new(max.y, max.z)]);
-        }
-        Self { boxes: boxes.boxes, bounds: storage, offset: boxes.origin - origin }
-    }
-
-    /// The runs: indices of their boxes, and the corners of the bounds of those that are not empty, from the
-    /// origin. Runs of empty boxes are left out.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = (core::ops::Range<usize>, DVec3, DVec3)> + use<'a> {
-        let (offset, count) = (self.offset, self.boxes.len());
-        self.bounds.chunks_exact(ELEMENTS).enumerate().filter_map(move |(i, bounds)| {
-            let min = DVec3::new(bounds[0].x, bounds[0].y, bounds[1].x);
-            let max = DVec3::new(bounds[1].y, bounds[2].x, bounds[2].y);
-            let run = RUN * i..count.min(RUN * (i + 1));
-            (min.x <= max.x && !run.is_empty()).then_some((run, min + offset, max + offset))
-        })
-    }
 }

@@ -18,7 +18,7 @@ use super::shapes::{Bounds, LANES, Lane, Lanes};
 use super::volume::{CasterVolume, widened};
 
 /// Most volumes that one call tests: the bits of a mask.
-const MAX_VOLUMES: usize = 8;
+pub(super) const MAX_VOLUMES: usize = 8;
 
 /// Most planes of all volumes together.
 const MAX_PLANES: usize = MAX_VOLUMES * CasterVolume::MAX_PLANES;

@@ -8,6 +8,8 @@ mod batch;
 mod readers;
 mod shapes;
 mod sweep;
+#[cfg(feature = "alloc")]
+mod tree;
 mod volume;
 
 pub use batch::cull;

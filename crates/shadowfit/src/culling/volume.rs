@@ -168,7 +168,7 @@ impl CasterVolume {
         self.intersects(oriented)
     }
 
-    fn intersects<S: Bounds>(&self, shape: &S) -> bool {
+    pub(super) fn intersects<S: Bounds>(&self, shape: &S) -> bool {
         let slack = shape.slack();
         let is_behind = |plane: &Vec4| shape.support(plane.truncate()) + widened(plane.w) < -slack;
         slack != f32::NEG_INFINITY && !self.active_planes().iter().any(is_behind)

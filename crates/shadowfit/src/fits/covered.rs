@@ -155,7 +155,7 @@ const SAME_PLANE: f64 = 1e-5;
 
 /// What set each plane: the view where the plane lies at the view's own extent, else the receivers.
 fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [Constraint; 6] {
-    if content.receivers.is_none() || hull.is_empty {
+    if !content.knows_receivers() || hull.is_empty {
         return [Constraint::View; 6];
     }
     let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
@@ -256,11 +256,12 @@ impl<'a> LightHull<'a> {
         range: Range,
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
-        if content.receivers.is_none() {
+        if !content.knows_receivers() {
             return Self::of_views(content, axes, range, points);
         }
         let mut collector = Collector::new(axes, points);
-        content.receivers_in(range, |_, slice, min, max| {
+        let is_new = |collector: &Collector, min, max| !collector.holds(min, max);
+        content.receivers_in(range, &mut collector, is_new, |collector, _, slice, (min, max)| {
             if collector.holds(min, max) { Ok(()) } else { slice.clip(min, max, &mut |p| collector.push(p)) }
         })?;
         if collector.hull.is_empty() {

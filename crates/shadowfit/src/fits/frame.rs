@@ -4,7 +4,7 @@ use glam::{DVec2, Vec3};
 
 use crate::base::{Boxes, FitError};
 use crate::content::normal_cone::NormalCone;
-use crate::content::{Content, Scene};
+use crate::content::{BoxTree, Content, Scene};
 use crate::demand::grid::DemandGrid;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
 use crate::fits::{FitRule, Volume};
@@ -63,6 +63,11 @@ pub struct FitInput<'a> {
     /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension). An empty slice means
     /// that nothing casts.
     pub casters: Option<Boxes<'a>>,
+    /// Boxes that receive and cast shadows beside those of the two lists, handed over once in a hierarchy, so that a
+    /// frame costs what is in reach: for thousands of boxes that stand. With them the lists need not be known: what is
+    /// `None` adds nothing.
+    #[cfg(feature = "alloc")]
+    pub standing: Option<&'a BoxTree>,
     /// The depths that the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
@@ -84,6 +89,8 @@ impl<'a> FitInput<'a> {
             receivers: None,
             receiver_cones: &[],
             casters: None,
+            #[cfg(feature = "alloc")]
+            standing: None,
             histogram: None,
             demand: &[],
             depth_bounds: None,
@@ -94,18 +101,42 @@ impl<'a> FitInput<'a> {
     #[inline]
     pub(crate) fn scene(&self) -> Scene<'a> {
         let Self { views, direction, receivers, receiver_cones, casters, .. } = *self;
-        Scene { views, direction, receivers, receiver_cones, casters }
+        Scene { views, direction, receivers, receiver_cones, casters, standing: self.tree() }
+    }
+
+    /// Whether it is known what casts shadows.
+    pub(crate) fn knows_casters(&self) -> bool {
+        self.casters.is_some() || self.tree().is_some()
+    }
+
+    #[cfg(feature = "alloc")]
+    fn tree(&self) -> Option<&'a BoxTree> {
+        self.standing
+    }
+
+    #[cfg(not(feature = "alloc"))]
+    #[expect(clippy::unused_self, reason = "as with an allocator")]
+    fn tree(&self) -> Option<&'a BoxTree> {
+        None
+    }
+
+    /// Number of elements of [`Scratch`] that is enough for any fit of this input: that of
+    /// [`Scratch::required`] for its lists, and room for the outline of standing boxes. Maps that are
+    /// [held](crate::settings::Stabilise::Hysteresis) look at the views of two frames ahead, for which two more views
+    /// count.
+    pub fn scratch(&self) -> usize {
+        let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
+        let outline = if self.tree().is_some() { STANDING_OUTLINE } else { 0 };
+        let boxes = count(self.receivers).max(count(self.casters)) + outline;
+        Scratch::required(boxes, self.views.len() + VIEWS_AHEAD)
     }
 }
 
-#[cfg(feature = "alloc")]
-impl FitInput<'_> {
-    /// Boxes that fits work with: receivers or casters, whichever are more.
-    pub(crate) fn boxes(&self) -> usize {
-        let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
-        count(self.receivers).max(count(self.casters))
-    }
-}
+/// Boxes that make up the outline of standing ones: far more than it has corners in any scene that was tried.
+const STANDING_OUTLINE: usize = 128;
+
+/// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
+const VIEWS_AHEAD: usize = 2;
 
 /// Storage that fits work in, owned by the caller, so that nothing allocates.
 #[derive(Debug)]

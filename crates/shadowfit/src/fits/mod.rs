@@ -118,7 +118,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
     for view in input.views {
         view.check()?;
     }
-    let rule = FitRule::new(settings, border, input.casters.is_some())?;
+    let rule = FitRule::new(settings, border, input.knows_casters())?;
     let direction = checks::unit("the light's direction", input.direction)?;
     let up = checks::unit("the up direction", settings.map.up)?;
     let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);

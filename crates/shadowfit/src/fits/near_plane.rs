@@ -14,7 +14,6 @@
 use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::base::checks::ROUNDING;
-use crate::base::{Boxes, moved};
 use crate::content::Content;
 use crate::fits::covered::Shadowed;
 use crate::fits::{Constraint, Depth, FitRule, Volume};
@@ -77,22 +76,19 @@ pub(crate) fn find(
     depth: Depth,
     reach: f64,
 ) -> NearPlane {
-    let casters = content.casters.unwrap_or_default();
     let (z, set_by) = match depth {
         Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, set_by: None },
         Depth::Extended(metres) => (covered + metres, Constraint::CasterExtension),
         Depth::AtCasterBounds => {
-            let all = content.caster_groups.runs().map(|(_, min, max)| (min, max));
-            let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
             let mut highest = Highest::new(axes, outline, reach, covered);
-            if let Some((min, max)) = all {
+            if let Some((min, max)) = content.caster_bounds() {
                 highest.add(min, max);
             }
             (highest.z, Constraint::Casters)
         }
         Depth::AtCasters => {
             let mut highest = Highest::new(axes, outline, reach, covered);
-            highest.add_all(&casters, content);
+            content.each_caster(&mut highest, Highest::may_rise, Highest::add);
             (highest.z, Constraint::Casters)
         }
     };
@@ -143,19 +139,6 @@ struct Highest<'a> {
 impl<'a> Highest<'a> {
     fn new(axes: &LightAxes, outline: &'a [DVec2], reach: f64, covered: f64) -> Self {
         Self { over: Outline::new(axes, outline, reach), scratch: OutlineScratch::new(), z: covered }
-    }
-
-    fn add_all(&mut self, casters: &Boxes, content: &Content) {
-        let offset = casters.origin - content.origin;
-        for (run, min, max) in content.caster_groups.runs() {
-            if !self.may_rise(min, max) {
-                continue;
-            }
-            for aabb in casters.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
-                let (min, max) = moved(aabb, offset);
-                self.add(min, max);
-            }
-        }
     }
 
     /// Whether a part of a box may lie higher than all so far.

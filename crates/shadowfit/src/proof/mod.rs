@@ -20,7 +20,7 @@ mod half_space;
 use glam::{DVec2, DVec3};
 
 use crate::base::checks::UNIT;
-use crate::base::{FitError, box_corners, checks, moved};
+use crate::base::{FitError, box_corners, checks};
 use crate::bias::{HARDWARE_SNAP, Reach};
 use crate::content::Content;
 use crate::fits::covered::LightHull;
@@ -204,9 +204,8 @@ pub fn prove(
         return Ok(proof);
     }
     let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
-    let has_casters = content.casters.is_some_and(|casters| !casters.boxes.is_empty());
     let is_read = if query.is_shared { !fit.is_empty } else { receivers.any.is_some() };
-    if is_read && has_casters && query.casters != CasterPolicy::DepthClamp {
+    if is_read && content.has_casters() && query.casters != CasterPolicy::DepthClamp {
         let nearest = |over: Outline| nearest_caster(&content, &over, &half_spaces, offset);
         let (by, point) = if query.is_shared {
             let (corners, distance) = whole_map(fit, &axes, offset);
@@ -263,19 +262,18 @@ const SHIFT_ROUNDINGS: f64 = 32.0;
 
 /// The casters' least distance behind the near plane, in metres, and where.
 fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
-    let casters = content.casters.unwrap_or_default();
-    let (moved_by, mut scratch) = (casters.origin - content.origin, OutlineScratch::new());
+    let mut scratch = OutlineScratch::new();
     let mut least = (f64::INFINITY, DVec3::ZERO);
-    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
-        let (min, max) = moved(aabb, moved_by);
+    let is_over = |_: &(f64, DVec3), min, max| over.may_hold(min, max, f64::MIN);
+    content.each_caster(&mut least, is_over, |least, min, max| {
         over.parts_over(min, max, f64::MIN, &mut scratch, |corner| {
             let p = over.axes.unproject(corner) + offset;
             let margin = half_spaces.near().into_iter().map(|near| near.margin(p)).fold(f64::INFINITY, f64::min);
             if margin < least.0 {
-                least = (margin, p);
+                *least = (margin, p);
             }
         });
-    }
+    });
     least
 }
 
@@ -296,25 +294,30 @@ impl<'a> Worst<'a> {
 
     /// Adds everything that the views see between two depths.
     fn add_all(&mut self, content: &Content, range: Range) {
-        if content.receivers.is_none() {
+        if !content.knows_receivers() {
             content.corners(range).for_each(|corner| self.add(corner));
             return;
         }
-        let all = content.receivers_in(range, |_, slice, min, max| self.add_box(slice, min, max));
+        let add = |worst: &mut Self, _, slice: &Slice, (min, max)| worst.add_box(slice, min, max);
+        let all = content.receivers_in(range, self, Self::may_be_worse, add);
         let Ok(()): Result<(), core::convert::Infallible> = all;
     }
 
     /// Adds a receiver's box clipped to a slice.
     fn add_box(&mut self, slice: &Slice, min: DVec3, max: DVec3) -> Result<(), core::convert::Infallible> {
-        // No part of a box is less inside than its corners.
-        let corners = box_corners(min, max);
-        if self.any.is_some() && corners.into_iter().all(|corner| !self.is_worse(corner)) {
+        if !self.may_be_worse(min, max) {
             return Ok(());
         }
         slice.clip(min, max, &mut |p| {
             self.add(p);
             Ok(())
         })
+    }
+
+    /// Whether a point of a box may have less margin at some plane than all before it: none is less inside than the
+    /// corners.
+    fn may_be_worse(&self, min: DVec3, max: DVec3) -> bool {
+        self.any.is_none() || box_corners(min, max).into_iter().any(|corner| self.is_worse(corner))
     }
 
     /// Whether a point has less margin at some plane than all before it.

@@ -108,7 +108,7 @@ impl Sizes {
     fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
         let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
-        if maps.rule.form.covers == Covers::Receivers && maps.content.receivers.is_some() {
+        if maps.rule.form.covers == Covers::Receivers && maps.content.knows_receivers() {
             collect_receivers(&mut extents, maps.content, &directions, bins);
         } else {
             for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
@@ -133,7 +133,14 @@ impl Sizes {
 fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
     for (index, view) in content.views().enumerate() {
         let slabs = Slabs::new(&view, bins);
-        content.each_receiver(index, |depths, min, max| collect_box(extents, &slabs, directions, depths, min, max));
+        content.each_receiver(
+            index,
+            extents,
+            |_, _, _, _| true,
+            |extents, depths, min, max| {
+                collect_box(extents, &slabs, directions, depths, min, max);
+            },
+        );
     }
 }
 

@@ -154,37 +154,48 @@ impl Holder<'_, '_> {
     }
 
     /// What will be covered some frames on, as many as the settings' growth allows; `None` where nothing moves, or
-    /// for lack of storage or views: a map without room is still valid for this frame.
-    fn look_ahead(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Option<Volume> {
+    /// for lack of views: a map without room is still valid for this frame.
+    fn look_ahead(
+        &self,
+        fresh: &Volume,
+        rule: &FitRule,
+        slice: Range,
+        points: &mut [DVec2],
+    ) -> Result<Option<Volume>, FitError> {
         let view = &self.frame.input.views[0];
-        let motion = self.motion.filter(|motion| !motion.is_still(view))?;
+        let Some(motion) = self.motion.filter(|motion| !motion.is_still(view)) else { return Ok(None) };
         let plain = trial(&FitRule { border: 0.0, ..*rule });
         let (old, growth) = (fresh.max - fresh.min, f64::from(self.settings.max_growth));
         let mut within_growth = |frames: u32| {
             let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
-            let larger = self.fit_ahead(&ahead, &plain, slice, points).ok()?;
+            let larger = match self.fit_ahead(&ahead, &plain, slice, points) {
+                Ok(larger) => larger,
+                Err(error @ FitError::ScratchTooSmall { .. }) => return Err(error),
+                Err(_) => return Ok(None),
+            };
             let size = larger.max - larger.min;
-            Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth)
+            Ok(Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth))
         };
         if !rule.serves_all {
-            return steps_ahead(self.settings.look_ahead).find_map(within_growth);
+            let found = steps_ahead(self.settings.look_ahead).find_map(|frames| within_growth(frames).transpose());
+            return found.transpose();
         }
         // The more frames the larger: the greatest of a few numbers is found by halves.
         let steps = || core::iter::successors(Some(self.settings.look_ahead), |n| Some(n / 2)).take_while(|n| *n > 0);
         let (mut low, mut high, mut found) = (0, steps().count(), None);
         while low < high {
             let middle = usize::midpoint(low, high);
-            match steps().nth(middle).and_then(&mut within_growth) {
+            match steps().nth(middle).map_or(Ok(None), &mut within_growth)? {
                 Some(volume) => (high, found) = (middle, Some(volume)),
                 None => low = middle + 1,
             }
         }
-        found
+        Ok(found)
     }
 
     /// A new map with room for the motion to come.
     fn make(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
-        let mut volume = self.look_ahead(fresh, rule, slice, points).unwrap_or(*fresh);
+        let mut volume = self.look_ahead(fresh, rule, slice, points)?.unwrap_or(*fresh);
         let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.settings.margin));
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);

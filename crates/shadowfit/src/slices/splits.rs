@@ -245,7 +245,7 @@ impl Chooser<'_, '_> {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
                 let (seen, guess) =
                     (weights_of_histogram(histogram, bins), weights_of_boxes(self.frame.content, bins, rays));
-                let share = if self.frame.content.receivers.is_some() { GUESS } else { BLIND_GUESS };
+                let share = if self.frame.content.knows_receivers() { GUESS } else { BLIND_GUESS };
                 mixed(&seen, &guess, share)
             }
             _ => weights_of_boxes(self.frame.content, bins, rays),

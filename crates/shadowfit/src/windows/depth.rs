@@ -11,10 +11,12 @@ use crate::fits::{Constraint, Depth, FitRule};
 use crate::light::LightAxes;
 use crate::view::Range;
 
-/// Boxes as the light sees them, three elements each: least and greatest x and y, and z.
-pub(super) struct Shadows<'a> {
-    receivers: Option<&'a [DVec2]>,
-    casters: Option<&'a [DVec2]>,
+/// Boxes as the light sees them, those of the lists three elements each: least and greatest x and y, and z.
+pub(super) struct Shadows<'a, 'b> {
+    content: &'a Content<'b>,
+    axes: LightAxes,
+    receivers: &'a [DVec2],
+    casters: &'a [DVec2],
     /// Least and greatest corner of what is in view, along the light's axes.
     min: DVec3,
     max: DVec3,
@@ -24,58 +26,64 @@ pub(super) struct Shadows<'a> {
 /// Elements of storage for a box.
 const PER_BOX: usize = 3;
 
-impl<'a> Shadows<'a> {
+impl<'a, 'b> Shadows<'a, 'b> {
     pub(super) fn new(
-        content: &Content,
+        content: &'a Content<'b>,
         axes: LightAxes,
         range: Range,
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
         let count = |boxes: &Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len() * PER_BOX);
-        let (r, c) = (count(&content.receivers), count(&content.casters));
+        let lists = content.lists();
+        let [r, c] = [count(&lists[0]), count(&lists[1])];
         if points.len() < r + c {
             return Err(FitError::ScratchTooSmall { given: points.len(), required: r + c });
         }
         let (for_receivers, rest) = points.split_at_mut(r);
         let for_casters = &mut rest[..c];
-        if let Some(boxes) = &content.receivers {
-            project(boxes, content.origin, &axes, for_receivers);
-        }
-        if let Some(boxes) = &content.casters {
-            project(boxes, content.origin, &axes, for_casters);
+        for (boxes, out) in lists.iter().zip([&mut *for_receivers, &mut *for_casters]) {
+            if let Some(boxes) = boxes {
+                project(boxes, content.origin, &axes, out);
+            }
         }
         let mut shadows = Self {
-            receivers: content.receivers.map(|_| &*for_receivers),
-            casters: content.casters.map(|_| &*for_casters),
+            content,
+            axes,
+            receivers: for_receivers,
+            casters: if lists[1].is_some() { for_casters } else { for_receivers },
             min: DVec3::MAX,
             max: DVec3::MIN,
             is_empty: false,
         };
-        shadows.find_bounds(content, &axes, range);
+        shadows.find_bounds(range);
         Ok(shadows)
     }
 
     /// Finds what is in view.
-    fn find_bounds(&mut self, content: &Content, axes: &LightAxes, range: Range) {
-        let receivers = self.receivers;
-        if let Some(boxes) = receivers {
-            let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
-            let _ = content.receivers_in(range, |i, slice, low, high| {
-                let b = &boxes[i * PER_BOX..][..PER_BOX];
+    fn find_bounds(&mut self, range: Range) {
+        let (content, axes) = (self.content, &self.axes);
+        if content.knows_receivers() {
+            let mut bounds = (DVec3::MAX, DVec3::MIN);
+            let widens = |(min, max): &(DVec3, DVec3), b: &[DVec2; PER_BOX]| {
                 let (b_min, b_max) = (b[0].extend(b[2].x), b[1].extend(b[2].y));
-                if b_min.cmpge(min).all() && b_max.cmple(max).all() {
+                !(b_min.cmpge(*min).all() && b_max.cmple(*max).all())
+            };
+            let is_new = |bounds: &(DVec3, DVec3), low, high| widens(bounds, &projected(low, high, axes));
+            let receivers = self.receivers.as_chunks().0;
+            let Ok(()) = content.receivers_in(range, &mut bounds, is_new, |bounds, i, slice, (low, high)| {
+                if i.is_some_and(|i| !widens(bounds, &receivers[i])) {
                     return Ok::<(), core::convert::Infallible>(());
                 }
                 slice.clip(low, high, &mut |p| {
                     let p = axes.project(p);
-                    (min, max) = (min.min(p), max.max(p));
+                    *bounds = (bounds.0.min(p), bounds.1.max(p));
                     Ok(())
                 })
             });
-            (self.min, self.max) = (min, max);
+            (self.min, self.max) = bounds;
         }
-        self.is_empty = receivers.is_some() && self.min.cmpgt(self.max).any();
-        if receivers.is_none() || self.is_empty {
+        self.is_empty = content.knows_receivers() && self.min.cmpgt(self.max).any();
+        if !content.knows_receivers() || self.is_empty {
             for p in content.corners(range) {
                 let p = axes.project(p);
                 (self.min, self.max) = (self.min.min(p), self.max.max(p));
@@ -95,8 +103,9 @@ impl<'a> Shadows<'a> {
     /// The depths of everything over a rectangle.
     pub(super) fn depth(&self, (min, max): (DVec2, DVec2), rule: &FitRule) -> WindowDepth {
         let (mut low, mut high) = (f64::MAX, f64::MIN);
-        if let Some(boxes) = self.receivers.filter(|_| !self.is_empty) {
-            over(boxes, min, max, |z| (low, high) = (low.min(z.x), high.max(z.y)));
+        if !self.is_empty {
+            over(self.receivers, min, max, |z| (low, high) = (low.min(z.x), high.max(z.y)));
+            (low, high) = self.standing((min, max), (low, high));
         }
         let (mut far_by, mut near_by) = (Constraint::Receivers, Constraint::Receivers);
         if low > high {
@@ -108,13 +117,27 @@ impl<'a> Shadows<'a> {
             Depth::AtCovered | Depth::Doubled => {}
             Depth::Extended(metres) => (high, near_by) = (high + metres, Constraint::CasterExtension),
             Depth::AtCasterBounds | Depth::AtCasters => {
-                over(self.casters.unwrap_or_default(), min, max, |z| high = high.max(z.y));
+                over(self.casters, min, max, |z| high = high.max(z.y));
+                high = self.standing((min, max), (f64::MIN, high)).1;
                 near_by = if high > covered { Constraint::Casters } else { near_by };
             }
         }
         let farthest = min.abs().max(max.abs()).max_element() + low.abs().max(high.abs());
         let pad = ROUNDING * (farthest + high - low) + rule.margin + farthest * THINNEST;
         WindowDepth { low: low - pad, high: high + pad, far_by, near_by }
+    }
+
+    /// A range of depths, widened by those of standing boxes over a rectangle.
+    fn standing(&self, (min, max): (DVec2, DVec2), mut depths: (f64, f64)) -> (f64, f64) {
+        let is_new = |(low, high): &(f64, f64), b_min, b_max| {
+            let b = projected(b_min, b_max, &self.axes);
+            is_over(&b, min, max) && (b[2].x < *low || b[2].y > *high)
+        };
+        self.content.each_standing(&mut depths, is_new, |(low, high), b_min, b_max| {
+            let [_, _, z] = projected(b_min, b_max, &self.axes);
+            (*low, *high) = (low.min(z.x), high.max(z.y));
+        });
+        depths
     }
 }
 
@@ -132,28 +155,39 @@ const WIDENING: f64 = 4.0;
 
 /// Passes on the z range of each box that lies over a rectangle.
 fn over(boxes: &[DVec2], min: DVec2, max: DVec2, mut visit: impl FnMut(DVec2)) {
-    for b in boxes.chunks_exact(PER_BOX) {
-        if b[0].x <= max.x && b[0].y <= max.y && b[1].x >= min.x && b[1].y >= min.y {
+    for b in boxes.as_chunks::<PER_BOX>().0 {
+        if is_over(b, min, max) {
             visit(b[2]);
         }
     }
 }
 
+/// Whether a box lies over a rectangle.
+fn is_over(b: &[DVec2; PER_BOX], min: DVec2, max: DVec2) -> bool {
+    b[0].x <= max.x && b[0].y <= max.y && b[1].x >= min.x && b[1].y >= min.y
+}
+
 /// Boxes along the light's axes; an empty one lies over nothing.
 fn project(boxes: &Boxes, origin: DVec3, axes: &LightAxes, out: &mut [DVec2]) {
     let offset = boxes.origin - origin;
-    let (x, y, z) = (axes.x.as_dvec3().abs(), axes.y.as_dvec3().abs(), axes.z.as_dvec3().abs());
     for (aabb, out) in boxes.boxes.iter().zip(out.chunks_exact_mut(PER_BOX)) {
         if aabb.is_empty() {
             out.copy_from_slice(&[DVec2::MAX, DVec2::MIN, DVec2::ZERO]);
             continue;
         }
         let (min, max) = moved(aabb, offset);
-        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let rounding = (centre.abs().element_sum() + half.element_sum()) * 2.0 * ROUNDING;
-        let middle = axes.project(centre);
-        let reach = DVec3::new(x.dot(half), y.dot(half), z.dot(half)) + rounding;
-        let (low, high) = (middle - reach, middle + reach);
-        out.copy_from_slice(&[low.truncate(), high.truncate(), DVec2::new(low.z, high.z)]);
+        out.copy_from_slice(&projected(min, max, axes));
     }
+}
+
+/// A box along the light's axes.
+#[inline]
+fn projected(min: DVec3, max: DVec3, axes: &LightAxes) -> [DVec2; PER_BOX] {
+    let (x, y, z) = (axes.x.as_dvec3().abs(), axes.y.as_dvec3().abs(), axes.z.as_dvec3().abs());
+    let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+    let rounding = (centre.abs().element_sum() + half.element_sum()) * 2.0 * ROUNDING;
+    let middle = axes.project(centre);
+    let reach = DVec3::new(x.dot(half), y.dot(half), z.dot(half)) + rounding;
+    let (low, high) = (middle - reach, middle + reach);
+    [low.truncate(), high.truncate(), DVec2::new(low.z, high.z)]
 }

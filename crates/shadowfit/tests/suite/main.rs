@@ -42,6 +42,7 @@ mod spot;
 mod spot_bad_input;
 mod spot_bias;
 mod spot_self_shadowing;
+mod standing;
 mod support;
 mod sweep;
 mod texel_phase;

@@ -1,0 +1,266 @@
+//! What a change of the casters redraws: texels and casters of a plan, in a town of 10,000 boxes.
+
+use shadowfit::glam::Vec3;
+use shadowfit::{Boxes, FittedMaps};
+
+use super::fixtures::{SIDE, fitted};
+use super::*;
+
+const LIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
+
+/// Boxes along each side of the town, 3 m apart.
+const ROW: usize = 100;
+
+/// Texels of a map.
+const WHOLE: u64 = SIDE as u64 * SIDE as u64;
+
+fn town() -> Vec<Aabb> {
+    let block = |i: usize| {
+        let corner = Vec3::new((i % ROW) as f32 - 50.0, 0.0, (i / ROW) as f32 - 80.0) * 3.0;
+        Aabb::new(corner, corner + Vec3::new(1.5, 1.0 + (i % 7) as f32, 1.5))
+    };
+    (0..ROW * ROW).map(block).collect()
+}
+
+/// The cache, whose maps have drawn the town.
+struct Drawn {
+    cache: MapCache,
+    maps: FittedMaps,
+    plan: FramePlan,
+}
+
+/// What a frame drew of a map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Redrawn {
+    texels: u64,
+    casters: usize,
+    rects: usize,
+    /// Texels that are restored from the static casters' layer.
+    mended: u64,
+}
+
+impl Drawn {
+    fn new(boxes: &[Aabb], keys: &[u64]) -> Self {
+        let maps = fitted(LIGHT, 150.0, boxes);
+        let layer = UVec2::splat(SIDE);
+        let settings = CacheSettings { caching: true, can_mend: true, by_coverage: true, layer, ..Default::default() };
+        let mut drawn = Self { cache: MapCache { settings, ..MapCache::default() }, maps, plan: FramePlan::default() };
+        drawn.draw(boxes, &[], keys);
+        drawn
+    }
+
+    fn draw(&mut self, boxes: &[Aabb], moves: &[bool], keys: &[u64]) -> Vec<Redrawn> {
+        self.frame(&Casters { moves, keys, ..Casters::fixed(Boxes::world(boxes)) }, None)
+    }
+
+    fn frame(&mut self, casters: &Casters<'_>, standing: Option<&BoxTree>) -> Vec<Redrawn> {
+        let frame = CacheFrame {
+            fitted: &self.maps,
+            casters,
+            standing,
+            coarsest: Some(self.maps.len() - 1),
+            direction: LIGHT,
+            origin: DVec3::ZERO,
+        };
+        self.cache.take(&frame);
+        let everywhere = CasterVolume::everywhere(DVec3::ZERO);
+        let is_due = core::array::from_fn(|map| self.cache.shows_gone(map, &everywhere));
+        let choice = self.cache.choose(&frame, is_due);
+        self.cache.plan(&choice, &frame, &[], &mut self.plan);
+        let mut redrawn = vec![Redrawn::default(); self.maps.len()];
+        for pass in &self.plan.passes {
+            let map = &mut redrawn[pass.map];
+            map.mended += self.plan.rects[pass.mended.clone()].iter().map(TexelRect::area).sum::<u64>();
+            for piece in self.plan.pieces[pass.pieces.clone()].iter().filter(|_| pass.content != PassContent::Moving) {
+                map.texels += piece.part.stored.area();
+                map.casters += piece.casters.len() + piece.standing.len();
+                map.rects += 1;
+            }
+        }
+        redrawn
+    }
+}
+
+fn nothing(redrawn: &[Redrawn]) -> bool {
+    redrawn.iter().all(|map| *map == Redrawn::default())
+}
+
+/// The boxes of the town with other heights for those that are chosen.
+fn raised(boxes: &[Aabb], is_raised: impl Fn(usize) -> bool) -> Vec<Aabb> {
+    let raise = |(number, aabb): (usize, &Aabb)| {
+        let by = if is_raised(number) { 0.5 } else { 0.0 };
+        Aabb::new(aabb.min, aabb.max + Vec3::Y * by)
+    };
+    boxes.iter().enumerate().map(raise).collect()
+}
+
+/// Texels of the least rectangles around some boxes, in each map.
+fn around(maps: &[FittedMap], boxes: impl Iterator<Item = Aabb> + Clone) -> Vec<u64> {
+    let rect = |map: &FittedMap| {
+        let rects = boxes.clone().map(|aabb| TexelRect::of_box(&map.projection, &aabb, DVec3::ZERO));
+        rects.filter(|rect| !rect.is_empty()).reduce(TexelRect::union).unwrap_or_default().area()
+    };
+    maps.iter().map(rect).collect()
+}
+
+#[test]
+fn any_permutation_redraws_nothing() {
+    let boxes = town();
+    let keys: Vec<u64> = (0..boxes.len() as u64).map(|key| key * 7919 % 4001).collect();
+    for keys in [&keys[..], &[]] {
+        let mut drawn = Drawn::new(&boxes, keys);
+        let mut order: Vec<usize> = (0..boxes.len()).collect();
+        let orders: [&dyn Fn(&mut Vec<usize>); 4] = [
+            &|order| order.reverse(),
+            &|order| order.rotate_left(4321),
+            &|order| order.sort_by(|a, b| boxes[*a].min.x.total_cmp(&boxes[*b].min.x)),
+            &|order| order.sort_by_key(|number| number * 7919 % 10_007),
+        ];
+        for change in orders {
+            change(&mut order);
+            let turned: Vec<Aabb> = order.iter().map(|number| boxes[*number]).collect();
+            let keys: Vec<u64> = order.iter().filter_map(|number| keys.get(*number).copied()).collect();
+            assert!(nothing(&drawn.draw(&turned, &[], &keys)));
+        }
+    }
+}
+
+#[test]
+fn what_is_put_in_or_taken_out_anywhere_redraws_its_own_place() {
+    let boxes = town();
+    let near = 70 * ROW + 50;
+    let changes: [&dyn Fn(&mut Vec<Aabb>) -> Aabb; 3] = [
+        &|list| list.remove(near),
+        &|list| {
+            let came = Aabb::new(Vec3::new(1.0, 0.0, -37.0), Vec3::new(2.0, 1.0, -36.0));
+            list.insert(0, came);
+            came
+        },
+        &|list| list.swap_remove(near),
+    ];
+    for change in changes {
+        let mut drawn = Drawn::new(&boxes, &[]);
+        let mut list = boxes.clone();
+        let changed = change(&mut list);
+        let touched = around(&drawn.maps, [changed].into_iter());
+        let redrawn = drawn.draw(&list, &[], &[]);
+        for (map, touched) in redrawn.iter().zip(touched) {
+            assert_eq!(map.rects, usize::from(touched > 0), "{redrawn:?}");
+            assert!(map.texels <= touched + touched / 2 + 1000, "{redrawn:?}");
+        }
+        assert!(redrawn.iter().map(|map| map.casters).sum::<usize>() < 400, "{redrawn:?}");
+    }
+}
+
+#[test]
+fn a_thousand_of_ten_thousand_boxes_in_one_corner_redraw_that_corner() {
+    let boxes = town();
+    let is_corner = |number: usize| number % ROW < 32 && number / ROW >= 60 && number / ROW < 92;
+    let mut drawn = Drawn::new(&boxes, &[]);
+    let changed = raised(&boxes, is_corner);
+    let redrawn = drawn.draw(&changed, &[], &[]);
+    let corner = changed.iter().enumerate().filter(|(number, _)| is_corner(*number)).map(|(_, aabb)| *aabb);
+    let corner = around(&drawn.maps, corner);
+    assert!(corner.iter().any(|texels| *texels > 0 && *texels < WHOLE / 2), "{corner:?}");
+    for (map, corner) in redrawn.iter().zip(corner) {
+        assert!(map.texels <= corner + corner / 10, "{redrawn:?}");
+        assert!(map.casters < 4000, "{redrawn:?}");
+    }
+}
+
+#[test]
+fn scattered_changes_are_drawn_each_for_itself_however_many_they_are() {
+    let boxes = town();
+    for count in [8, 32, 33, 60] {
+        let mut drawn = Drawn::new(&boxes, &[]);
+        // Low-discrepancy numbers.
+        let chosen: Vec<usize> =
+            (0..count).map(|i| 1000 * 6 + ((f64::from(i) * 0.754_877_67).fract() * 3900.0) as usize).collect();
+        let redrawn = drawn.draw(&raised(&boxes, |number| chosen.contains(&number)), &[], &[]);
+        println!("{count} scattered: {redrawn:?}");
+        let texels: u64 = redrawn.iter().map(|map| map.texels).sum();
+        assert!(texels < WHOLE / 2, "{count}: {redrawn:?}");
+        assert!(redrawn.iter().all(|map| map.rects <= 2 * count as usize), "{count}: {redrawn:?}");
+    }
+}
+
+#[test]
+fn maps_that_no_change_touches_redraw_nothing() {
+    let boxes = town();
+    let mut drawn = Drawn::new(&boxes, &[]);
+    // Half of all boxes, behind the eye: beside the finest maps.
+    let is_behind = |number: usize| number / ROW >= 92 || number / ROW < 30;
+    let redrawn = drawn.draw(&raised(&boxes, is_behind), &[], &[]);
+    let touched =
+        around(&drawn.maps, boxes.iter().enumerate().filter(|(number, _)| is_behind(*number)).map(|(_, aabb)| *aabb));
+    println!("{redrawn:?} {touched:?}");
+    assert!(touched.contains(&0) && touched.iter().any(|texels| *texels > 0), "{touched:?}");
+    for (map, touched) in redrawn.iter().zip(touched) {
+        assert_eq!(map.texels > 0, touched > 0);
+    }
+}
+
+#[test]
+fn a_frame_in_which_all_changes_draws_each_map_once() {
+    let boxes = town();
+    let mut moves = vec![false; boxes.len()];
+    let mut drawn = Drawn::new(&boxes, &[]);
+    for moving in [false, true] {
+        moves[78 * ROW + 50] = moving;
+        (0..3).for_each(|_| drop(drawn.draw(&boxes, &moves, &[])));
+        let redrawn = drawn.draw(&raised(&boxes, |_| true), &moves, &[]);
+        assert!(redrawn.iter().all(|map| map.texels == WHOLE && map.mended == 0), "{redrawn:?}");
+        // The static casters' layers follow, and then all is at rest.
+        let layers = drawn.draw(&raised(&boxes, |_| true), &moves, &[]);
+        assert!(layers.iter().all(|map| map.texels <= WHOLE && map.mended == 0), "{layers:?}");
+        assert!(nothing(&drawn.draw(&raised(&boxes, |_| true), &moves, &[])));
+        (0..3).for_each(|_| drop(drawn.draw(&boxes, &moves, &[])));
+    }
+}
+
+#[test]
+fn what_is_removed_in_view_is_never_late() {
+    let boxes = town();
+    for schedule in [UpdateSchedule::Texels(1), UpdateSchedule::Every([100; MAX_MAPS])] {
+        let mut drawn = Drawn::new(&boxes, &[]);
+        drawn.cache.schedule = schedule;
+        let near = 78 * ROW + 50;
+        // What comes may be late; what goes, or moves away, is not.
+        let mut list = boxes.clone();
+        list.push(Aabb::new(Vec3::new(1.0, 0.0, -7.0), Vec3::new(2.0, 9.0, -6.0)));
+        let came = drawn.draw(&list, &[], &[]);
+        list.remove(near);
+        let went = drawn.draw(&list, &[], &[]);
+        let touched = around(&drawn.maps, [boxes[near]].into_iter());
+        for map in 0..drawn.maps.len() {
+            assert_eq!(went[map].texels > 0, touched[map] > 0, "{schedule:?}: {went:?}");
+        }
+        assert!(came.iter().filter(|map| map.texels > 0).count() <= 1, "{schedule:?}: {came:?}");
+    }
+}
+
+#[test]
+fn standing_casters_are_drawn_where_their_tree_changes() {
+    let boxes = town();
+    let mut tree = BoxTree::of(Boxes::world(&boxes)).expect("good boxes");
+    let mut drawn = Drawn::new(&boxes, &[]);
+    let none = Casters::default();
+    let first = drawn.frame(&none, Some(&tree));
+    assert!(first.iter().all(|map| map.texels == WHOLE && map.casters > 0), "{first:?}");
+    assert!(nothing(&drawn.frame(&none, Some(&tree))));
+    let near = 78 * ROW as u32 + 50;
+    tree.remove(near);
+    let removed = drawn.frame(&none, Some(&tree));
+    let touched = around(&drawn.maps, [boxes[near as usize]].into_iter());
+    for (map, touched) in removed.iter().zip(touched) {
+        assert!(map.rects == usize::from(touched > 0) && map.texels <= 2 * touched, "{removed:?}");
+    }
+    // Both ways of giving the same casters draw the same number of them.
+    let listed = Drawn::new(&boxes, &[]).draw(&raised(&boxes, |_| true), &[], &[]);
+    tree.insert(boxes[near as usize]).expect("a box");
+    let other = BoxTree::of(Boxes::world(&raised(&boxes, |_| true))).expect("good boxes");
+    let standing = drawn.frame(&none, Some(&other));
+    assert_eq!(standing, listed);
+    assert!(nothing(&drawn.frame(&none, Some(&other))));
+    assert!(drawn.frame(&none, None).iter().all(|map| map.texels == WHOLE && map.casters == 0));
+}
