@@ -14,7 +14,7 @@ use crate::plotting::{
 
 /// Size, in pixels, and how much of its width the legend takes.
 const SIZE: (u32, u32) = (860, 400);
-const LEGEND: u32 = 265;
+const LEGEND: u32 = 270;
 /// Room around the curves, as a factor.
 const ROOM: f64 = 1.3;
 
@@ -22,6 +22,9 @@ const ROOM: f64 = 1.3;
 #[derive(Clone)]
 pub(crate) struct Curve {
     name: String,
+    /// Place of its colour, and whether it is drawn as one to compare with: thin, with hollow marks.
+    colour: usize,
+    is_thin: bool,
     points: Vec<(f64, f64)>,
 }
 
@@ -36,13 +39,29 @@ pub(crate) struct Picture {
 }
 
 impl Curve {
-    pub(crate) fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), points: Vec::new() }
+    /// A line in the colour of a place.
+    pub(crate) fn new(name: impl Into<String>, colour: usize) -> Self {
+        Self { name: name.into(), colour, is_thin: false, points: Vec::new() }
+    }
+
+    /// A thin line with hollow marks in the colour of a place, to compare others with.
+    pub(crate) fn thin(name: impl Into<String>, colour: usize) -> Self {
+        Self { is_thin: true, ..Self::new(name, colour) }
     }
 
     /// Adds a value.
     pub(crate) fn add(&mut self, count: usize, value: f64) {
         self.points.push((count as f64, value));
+    }
+
+    /// Styles of the line and of its marks.
+    fn styles(&self) -> [ShapeStyle; 2] {
+        let colour = COLOURS[self.colour % COLOURS.len()];
+        if self.is_thin {
+            [colour.stroke_width(1), colour.stroke_width(1)]
+        } else {
+            [colour.stroke_width(2), colour.filled()]
+        }
     }
 }
 
@@ -75,24 +94,24 @@ impl Picture {
             .axis_style(RULE)
             .x_desc(self.axes[0])
             .y_desc(self.axes[1])
-            .x_label_formatter(&|value| readable(*value))
+            .x_label_formatter(&|value| grouped(value.round() as usize))
             .y_label_formatter(&|value| readable(*value))
             .label_style((FAMILY, TEXT).into_font().color(&INK))
             .draw()?;
         area.draw(&Text::new(self.title, (10, 20), text_style(TITLE, HPos::Left)))?;
-        for (place, curve) in self.curves.iter().enumerate() {
-            let colour = COLOURS[place % COLOURS.len()];
-            chart.draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2)))?;
-            chart.draw_series(curve.points.iter().map(|point| Circle::new(*point, 3, colour.filled())))?;
+        for curve in &self.curves {
+            let [line, mark] = curve.styles();
+            chart.draw_series(LineSeries::new(curve.points.iter().copied(), line))?;
+            chart.draw_series(curve.points.iter().map(|point| Circle::new(*point, 3, mark)))?;
         }
         Ok(())
     }
 
     fn draw_legend<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> Drawn {
-        for ((place, curve), line) in self.curves.iter().enumerate().zip(0..) {
-            let (colour, y) = (COLOURS[place % COLOURS.len()], LEGEND_TOP + LEGEND_LINE * line);
-            area.draw(&PathElement::new([(4, y), (24, y)], colour.stroke_width(2)))?;
-            area.draw(&Circle::new((14, y), 3, colour.filled()))?;
+        for (curve, number) in self.curves.iter().zip(0..) {
+            let ([line, mark], y) = (curve.styles(), LEGEND_TOP + LEGEND_LINE * number);
+            area.draw(&PathElement::new([(4, y), (24, y)], line))?;
+            area.draw(&Circle::new((14, y), 3, mark))?;
             area.draw(&Text::new(curve.name.clone(), (32, y), text_style(TEXT, HPos::Left)))?;
         }
         Ok(())
@@ -107,3 +126,10 @@ impl Picture {
 }
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// A number with its thousands set apart.
+pub(crate) fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let (first, rest) = digits.split_at((digits.len() - 1) % 3 + 1);
+    rest.as_bytes().chunks(3).fold(first.to_owned(), |text, group| text + "," + &String::from_utf8_lossy(group))
+}

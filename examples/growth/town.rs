@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use shadowfit::{Aabb, PerspectiveCamera, Seen, Technique};
+use shadowfit::{Aabb, BoxTree, Boxes, FitInput, PerspectiveCamera, Seen, Technique, ViewFrustum};
 use shadowfit_study::see_by_rays;
 use shadowfit_truth::Tracer;
 
@@ -70,5 +70,25 @@ impl Town {
         let tracer = Tracer::new(self.boxes.iter().take(1).chain(in_reach.skip(1)).flat_map(triangles));
         let see = |frame| Ok(see_by_rays(&tracer, &Self::camera(frame), Self::direction(), technique)?);
         (0..frames).map(see).collect()
+    }
+}
+
+/// How boxes are handed over.
+#[derive(Clone, Copy)]
+pub(crate) enum World<'a> {
+    /// In each frame.
+    List(Boxes<'a>),
+    /// Once.
+    Tree(&'a BoxTree),
+}
+
+impl<'a> World<'a> {
+    /// The input of a fit.
+    pub(crate) fn input(self, views: &'a [ViewFrustum]) -> FitInput<'a> {
+        let input = FitInput::new(views, Town::direction());
+        match self {
+            Self::List(boxes) => FitInput { receivers: Some(boxes), casters: Some(boxes), ..input },
+            Self::Tree(tree) => FitInput { standing: Some(tree), ..input },
+        }
     }
 }
