@@ -156,7 +156,7 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
             title: "Number and size of the maps",
             note: format!(
                 "`windows-4` and others, told what was seen, in a hierarchy of {} casters.",
-                town.boxes.len()
+                grouped(town.boxes.len())
             ),
             columns: columns.map(str::to_owned).to_vec(),
             rows,

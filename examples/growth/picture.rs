@@ -76,7 +76,7 @@ impl Picture {
             .map_err(|error| anyhow!("{}: cannot be drawn: {error}", file.display()))
     }
 
-    fn draw<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> Drawn {
+    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {
         area.fill(&PAPER)?;
         let (left, right) = area.split_horizontally(SIZE.0 - LEGEND);
         self.draw_legend(&right)?;
@@ -107,7 +107,7 @@ impl Picture {
         Ok(())
     }
 
-    fn draw_legend<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> Drawn {
+    fn draw_legend(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {
         for (curve, number) in self.curves.iter().zip(0..) {
             let ([line, mark], y) = (curve.styles(), LEGEND_TOP + LEGEND_LINE * number);
             area.draw(&PathElement::new([(4, y), (24, y)], line))?;
