@@ -48,6 +48,8 @@ pub(crate) struct Engine<'a> {
     pub(crate) depth: wgpu::TextureView,
     /// Direction of travel of the light.
     pub(crate) direction: Vec3,
+    /// Casters of the scene in the order in which they are told, their boxes, and which of them move.
+    shown: Vec<u32>,
     boxes: Vec<Aabb>,
     moves: Vec<bool>,
 }
@@ -75,6 +77,7 @@ impl<'a> Engine<'a> {
                 usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
+            shown: (0..scene.casters.len() as u32).collect(),
             boxes: Vec::new(),
             moves: scene.casters.iter().map(|caster| caster.moves).collect(),
             gpu,
@@ -100,6 +103,14 @@ impl<'a> Engine<'a> {
         self.moves.fill(false);
     }
 
+    /// Tells these casters of the scene alone, in this order.
+    pub(crate) fn show(&mut self, numbers: &[u32]) {
+        self.shown.clear();
+        self.shown.extend(numbers);
+        self.moves.clear();
+        self.moves.extend(numbers.iter().map(|number| self.scene.casters[*number as usize].moves));
+    }
+
     /// The camera of a frame.
     pub(crate) fn camera(&self, frame: usize) -> PerspectiveCamera {
         self.scene.camera(frame, SIZE[0] as f32 / SIZE[1] as f32)
@@ -115,17 +126,16 @@ impl<'a> Engine<'a> {
     pub(crate) fn move_casters(&mut self, frame: usize) {
         let camera = self.camera(frame);
         let (scene, queue) = (self.scene, &self.gpu.queue);
-        let bob = |number: usize| if self.moves[number] { BenchScene::bob(frame, number) } else { Vec3::ZERO };
-        let numbers = 0..scene.casters.len();
+        let bob = |number: usize| if scene.casters[number].moves { BenchScene::bob(frame, number) } else { Vec3::ZERO };
         let eye = camera.eye.as_vec3();
-        let offsets: Vec<Vec3> = numbers.clone().map(|number| bob(number) - eye).collect();
+        let offsets: Vec<Vec3> = (0..scene.casters.len()).map(|number| bob(number) - eye).collect();
         queue.write_buffer(&self.offsets, 0, bytemuck::cast_slice(&offsets));
         let moved = |number: usize| {
             let (aabb, by) = (scene.casters[number].bounds, bob(number));
             Aabb::new(aabb.min + by, aabb.max + by)
         };
         self.boxes.clear();
-        self.boxes.extend(numbers.map(moved));
+        self.boxes.extend(self.shown.iter().map(|number| moved(*number as usize)));
         let clip_from_world = camera.clip_from_world(DepthConvention::Reversed).to_cols_array();
         queue.write_buffer(&self.camera_uniform, 0, bytemuck::cast_slice(&clip_from_world));
     }
@@ -166,9 +176,7 @@ impl<'a> Engine<'a> {
         pass.set_bind_group(0, &self.camera_group, &[]);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_vertex_buffer(1, self.offsets.slice(..));
-        for (number, caster) in (0..).zip(&self.scene.casters) {
-            pass.draw(caster.vertices.clone(), number..number + 1);
-        }
+        self.draw_shown(&mut pass, self.shown.iter().copied());
         drop(pass);
         let convention = DepthConvention::Reversed;
         self.sun.record_demand(encoder, &self.depth, camera.clip_from_world(convention), convention)?;
@@ -180,9 +188,13 @@ impl<'a> Engine<'a> {
         pass.set_pipeline(&self.caster_pipeline);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_vertex_buffer(1, self.offsets.slice(..));
-        for number in casters {
-            let vertices: Range<u32> = self.scene.casters[*number as usize].vertices.clone();
-            pass.draw(vertices, *number..number + 1);
+        self.draw_shown(pass, casters.iter().map(|number| self.shown[*number as usize]));
+    }
+
+    fn draw_shown(&self, pass: &mut wgpu::RenderPass<'_>, numbers: impl Iterator<Item = u32>) {
+        for number in numbers {
+            let vertices: Range<u32> = self.scene.casters[number as usize].vertices.clone();
+            pass.draw(vertices, number..number + 1);
         }
     }
 

@@ -11,6 +11,8 @@
 //! 1.5 m/s and turns by 10° a second, 60 frames a second, and every tenth node bobs by half a metre once a second. Times
 //! are medians by the GPU's clock, from the begin of a frame's first shadow pass to the end of the last one.
 
+#[path = "../shared/cuboid.rs"]
+mod cuboid;
 mod day;
 mod edges;
 mod engine;
@@ -20,6 +22,8 @@ mod fullscreen;
 mod passes;
 mod rays;
 mod scene;
+mod streaming;
+#[path = "../shared/table.rs"]
 mod table;
 mod timer;
 
@@ -65,6 +69,8 @@ enum Part {
     Filters,
     /// Culling of 10,000 instances
     Culling,
+    /// A walk on which casters come and go
+    Streaming,
     /// The pass over the depth buffer
     Demand,
     /// A minute of a sun that moves
@@ -119,6 +125,9 @@ fn main() -> Result<()> {
     }
     if wants(Part::Culling) {
         add(field::time(&bench)?);
+    }
+    if wants(Part::Streaming) {
+        add(streaming::time(&bench)?);
     }
     if wants(Part::Filters) {
         add(filters::time(&bench, &scenes[0])?);
