@@ -11,17 +11,22 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use shadowfit_render::{AdapterChoice, Gpu, RenderTarget};
+use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::load_gltf;
 use shadowfit_study::PreparedScene;
 use shadowfit_viewer::Stage;
 
 /// Width and height of the picture, in pixels.
 const SIZE: [u32; 2] = [1280, 720];
+/// Samples per pixel.
+const SAMPLES: u32 = 4;
 /// Frames at rest and under way, of which the median is told.
 const FRAMES: usize = 9;
 
 fn main() -> Result<()> {
-    println!("| scene | triangles | nodes | load s | ready s | rays s | first frame ms | frame ms | moving ms | peak MiB |");
+    println!(
+        "| scene | triangles | nodes | load s | ready s | rays s | first frame ms | frame ms | moving ms | peak MiB |"
+    );
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     for file in std::env::args().skip(1) {
         measure(Path::new(&file)).with_context(|| file.clone())?;
@@ -33,17 +38,13 @@ fn measure(file: &Path) -> Result<()> {
     // From here on, the most memory is counted anew.
     let _ = fs::write("/proc/self/clear_refs", "5");
     let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software))?;
+    let mut stage = Stage::new(gpu.clone(), default_scene(), SAMPLES)?;
     let (load, scene) = timed(|| load_gltf(file));
     let scene = scene?;
     let nodes = scene.nodes.len();
-    let mut stage = Stage::new(gpu, shadowfit_scene::builtin::default_scene(), 4)?;
-    let layout = stage.material_layout().clone();
-    let gpu = stage.gpu().clone();
-    let (ready, prepared) = timed(|| PreparedScene::new(&gpu, &layout, scene));
+    let (ready, prepared) = timed(|| PreparedScene::new(&gpu, stage.material_layout(), scene));
     stage.set_prepared(prepared?);
-    eprintln!("ready: peak {}", peak());
-    let (rays, _) = timed(|| stage.prepared_scene().rays().tracer.len());
-    eprintln!("rays: peak {}", peak());
+    let (rays, _) = timed(|| stage.prepared_scene().shared_rays());
     stage.read_depths();
     let target = stage.target(SIZE);
     let first = frame(&mut stage, &target);

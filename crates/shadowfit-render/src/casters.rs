@@ -126,7 +126,8 @@ pub fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32
         let whole = Cluster { indices: 0..triangles.len() as u32 * 3, bounds: bounds(positions, triangles.iter()) };
         return (triangles.as_flattened().to_vec(), vec![whole]);
     }
-    let mut faces: Vec<Face> = indices.as_chunks::<3>().0.iter().map(|corners| Face::new(positions, *corners)).collect();
+    let mut faces: Vec<Face> =
+        indices.as_chunks::<3>().0.iter().map(|corners| Face::new(positions, *corners)).collect();
     let clusters = split(positions, &mut faces, 0);
     (faces.iter().flat_map(|face| face.corners).collect(), clusters)
 }
@@ -156,10 +157,8 @@ fn split(positions: &[Vec3], faces: &mut [Face], first: u32) -> Vec<Cluster> {
     let half = faces.len() / 2;
     faces.select_nth_unstable_by(half, |a, b| a.middle[axis].total_cmp(&b.middle[axis]));
     let (low, high) = faces.split_at_mut(half);
-    let (mut clusters, others) = rayon::join(
-        || split(positions, low, first),
-        || split(positions, high, first + half as u32 * 3),
-    );
+    let (mut clusters, others) =
+        rayon::join(|| split(positions, low, first), || split(positions, high, first + half as u32 * 3));
     clusters.extend(others);
     clusters
 }

@@ -307,7 +307,7 @@ impl Part {
         let Primitive { positions, normals, tangents, indices, .. } = primitive;
         let has = Streams {
             tangents: !tangents.is_empty(),
-            surface: !primitive.colors.is_empty() || primitive.uvs.iter().any(|uv| *uv != Vec2::ZERO),
+            surface: !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
         };
         let buffer = |usage, bytes: &[u8]| filled_buffer(gpu, usage, bytes);
         let vertex = |bytes: &[u8]| buffer(wgpu::BufferUsages::VERTEX, bytes);

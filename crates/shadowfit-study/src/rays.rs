@@ -94,7 +94,9 @@ impl<'a> Casters<'a> {
                 let is_masked = matches!(self.scene.materials[primitive.material].alpha, AlphaMode::Mask { .. });
                 let corners = if is_masked { corners } else { &[] };
                 let cut_out = move |corners: &[u32; 3]| cut_out(self.scene, primitive, *corners);
-                (self.firsts[index]..).zip(corners).filter_map(move |(number, corners)| Some((number, cut_out(corners)?)))
+                (self.firsts[index]..)
+                    .zip(corners)
+                    .filter_map(move |(number, corners)| Some((number, cut_out(corners)?)))
             })
             .collect();
         let images = if masked.is_empty() { Vec::new() } else { self.scene.images.iter().map(alpha_image).collect() };
@@ -189,7 +191,10 @@ mod tests {
         let casting: Vec<_> = all.iter().filter(|triangle| casts(triangle)).collect();
         assert!(casting.len() < all.len() && casting.len() == rays.tracer.len());
         for (number, triangle) in (0..).zip(casting) {
-            assert_eq!((rays.tracer.corners(number), rays.instance(number)), (triangle.vertices, Some(triangle.instance)));
+            assert_eq!(
+                (rays.tracer.corners(number), rays.instance(number)),
+                (triangle.vertices, Some(triangle.instance))
+            );
         }
         assert_eq!(rays.instance(rays.tracer.len() as u32), None);
     }

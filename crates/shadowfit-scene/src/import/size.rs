@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use gltf::json::{Index, Root, image, mesh};
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
+use gltf::json::{Index, Root, image, mesh};
 
 use super::nodes::Tree;
 use super::uri::{file_size, uri_size};
