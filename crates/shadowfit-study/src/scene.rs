@@ -83,10 +83,8 @@ impl PreparedScene {
         let Some(bounds) = scene.bounds(&pose) else {
             return Err(NothingToDraw(scene.name));
         };
-        // Both take about as long, and neither needs the other.
-        let (gpu_scene, mut clusters) =
-            rayon::join(|| GpuScene::new(gpu, layout, &scene, &pose), || SceneBoxes::new(&scene, &pose));
-        let mut objects = SceneBoxes::of_instances(&scene);
+        let gpu_scene = GpuScene::new(gpu, layout, &scene, &pose);
+        let [mut clusters, mut objects] = [SceneBoxes::new(&scene, &pose), SceneBoxes::of_instances(&scene)];
         for boxes in [&mut clusters, &mut objects] {
             boxes.set_pose(|index| gpu_scene.instance_bounds(index));
         }

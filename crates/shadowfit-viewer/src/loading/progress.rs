@@ -33,12 +33,12 @@ pub(super) fn weights(size: &SceneSize) -> [f64; PHASES] {
         [guessed.file, guessed.json, guessed.nodes, guessed.triangles, guessed.drawn, guessed.images]
             .map(|amount| amount as f64 * 1e-9);
     let halvings = (CUT_INTO / guessed.nodes.max(1) as f64).log2().max(0.0);
-    let cut = if guessed.drawn > UNCUT { 150.0 } else { 52.0 * halvings };
+    let cut = if guessed.drawn > UNCUT { 150.0 } else { 50.0 * halvings };
     [
         0.6 * file + 1e-4,
         12.0 * json + 1e-4,
-        250.0 * nodes + 190.0 * triangles + 40.0 * images + 1e-4,
-        1300.0 * nodes + (110.0 + cut) * drawn + 40.0 * images + 5e-3,
+        250.0 * nodes + 140.0 * triangles + 40.0 * images + 1e-4,
+        1200.0 * nodes + (170.0 + cut) * drawn + 40.0 * images + 5e-3,
     ]
 }
 
