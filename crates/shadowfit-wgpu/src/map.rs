@@ -445,14 +445,7 @@ impl Layer {
         let beside = textures.beside.as_ref().map(|texture| view(texture, index % descriptor.maps));
         let read = view(&textures.read, index);
         let (depth, color) = beside.map_or_else(|| (read.clone(), None), |beside| (beside, Some(read.clone())));
-        Self {
-            depth,
-            color,
-            caster_uniform,
-            caster_group,
-            used: descriptor.resolution.into(),
-            wrap: UVec2::ZERO,
-        }
+        Self { depth, color, caster_uniform, caster_group, used: descriptor.resolution.into(), wrap: UVec2::ZERO }
     }
 }
 
