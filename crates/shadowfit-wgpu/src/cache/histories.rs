@@ -1,6 +1,6 @@
 //! The plan as data: random histories of a small world, drawn into simulated maps.
 //!
-//! A simulated map has a sample every 64 texels of its layer, which holds the set of casters that were drawn there. Each
+//! A simulated map has a sample every 128 texels of its layer, which holds the set of casters that were drawn there. Each
 //! frame's plan is carried out on it: clears, restored parts, pieces. Maps that do not wait must then hold what is there
 //! now, and maps that wait nothing static that is gone.
 
@@ -19,7 +19,7 @@ use super::*;
 const MAPS: usize = 3;
 
 /// Samples along a side of a map.
-const SAMPLES: u32 = 24;
+const SAMPLES: u32 = 16;
 
 /// Where the world lies.
 const PLACE: DVec3 = DVec3::new(3000.0, 10.0, -2000.0);
