@@ -7,6 +7,7 @@ mod artefacts;
 mod conventions;
 mod fits;
 mod golden;
+mod growth_gpu;
 mod integration;
 mod peers;
 mod recipes;

@@ -14,6 +14,7 @@ mod exact_counts_gpu;
 mod fade_gpu;
 mod formats_gpu;
 mod frames_gpu;
+mod gpu_casters_gpu;
 mod harness;
 mod heat_map_gpu;
 mod judged_gpu;
@@ -36,14 +37,15 @@ use std::path::PathBuf;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
+use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat, MapSelection};
-use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_classics::mapped::SampleFrame;
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
 use shadowfit_render::{Overlay, shaders};
 use shadowfit_wgpu::demand::demand_wgsl;
 use shadowfit_wgpu::{
-    MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl, stored_wgsl,
+    CullingPiece, MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl,
+    stored_wgsl,
 };
 
 use crate::support::workspace;
@@ -58,6 +60,7 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
                     all.push(ShadowMapDescriptor { format, filter, depth, selection: choice, ..Default::default() });
                 }
             }
+            all.push(ShadowMapDescriptor { format, filter, cross_fades: true, ..Default::default() });
         }
     }
     all
@@ -95,7 +98,8 @@ fn modules() -> Vec<(String, String)> {
     }
     all.extend(sample_modules());
     for map in descriptors() {
-        let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.selection);
+        let sets = if map.cross_fades { "two sets" } else { "one set" };
+        let kind = format!("{:?} {:?} {:?} {:?} {sets}", map.format, map.filter, map.depth, map.selection);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));
@@ -180,7 +184,7 @@ fn filled(text: &str) -> Vec<String> {
                 text.replace("MATERIAL_GROUP", group)
                     .replace("GROUP", group)
                     .replace("MAX_MAPS", &MAX_MAPS.to_string())
-                    .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
+                    .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string())
                     .replace("COMPARE", closer)
                     .replace("FAR", if closer == ">=" { "0.0" } else { "1.0" })
                     .replace("BINDING_", ""),

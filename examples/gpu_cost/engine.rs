@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, FittedMap, PerspectiveCamera, Technique};
 use shadowfit_render::passes::{DEPTH_FORMAT, Maker, Shape, depth};
 use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
-use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
+use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, SunSteps, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::scene::BenchScene;
@@ -46,6 +46,10 @@ pub(crate) struct Engine<'a> {
     camera_uniform: wgpu::Buffer,
     camera_group: wgpu::BindGroup,
     pub(crate) depth: wgpu::TextureView,
+    /// Direction of travel of the light.
+    pub(crate) direction: Vec3,
+    /// Casters of the scene in the order in which they are told, their boxes, and which of them move.
+    shown: Vec<u32>,
     boxes: Vec<Aabb>,
     moves: Vec<bool>,
 }
@@ -73,6 +77,7 @@ impl<'a> Engine<'a> {
                 usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
+            shown: (0..scene.casters.len() as u32).collect(),
             boxes: Vec::new(),
             moves: scene.casters.iter().map(|caster| caster.moves).collect(),
             gpu,
@@ -81,7 +86,29 @@ impl<'a> Engine<'a> {
             camera_uniform,
             camera_group,
             depth,
+            direction: BenchScene::direction(),
         })
+    }
+
+    /// Holds the maps of a sun that moves.
+    pub(crate) fn set_light_steps(&mut self, steps: Option<SunSteps>) -> Result<()> {
+        if self.sun.set_light_steps(steps)? {
+            self.caster_pipeline = caster_pipeline(&Maker { device: &self.gpu.device, samples: 1 }, self.sun.map());
+        }
+        Ok(())
+    }
+
+    /// Lets all casters stand still.
+    pub(crate) fn stand_still(&mut self) {
+        self.moves.fill(false);
+    }
+
+    /// Tells these casters of the scene alone, in this order.
+    pub(crate) fn show(&mut self, numbers: &[u32]) {
+        self.shown.clear();
+        self.shown.extend(numbers);
+        self.moves.clear();
+        self.moves.extend(numbers.iter().map(|number| self.scene.casters[*number as usize].moves));
     }
 
     /// The camera of a frame.
@@ -99,17 +126,16 @@ impl<'a> Engine<'a> {
     pub(crate) fn move_casters(&mut self, frame: usize) {
         let camera = self.camera(frame);
         let (scene, queue) = (self.scene, &self.gpu.queue);
-        let bob = |number: usize| if self.moves[number] { BenchScene::bob(frame, number) } else { Vec3::ZERO };
-        let numbers = 0..scene.casters.len();
+        let bob = |number: usize| if scene.casters[number].moves { BenchScene::bob(frame, number) } else { Vec3::ZERO };
         let eye = camera.eye.as_vec3();
-        let offsets: Vec<Vec3> = numbers.clone().map(|number| bob(number) - eye).collect();
+        let offsets: Vec<Vec3> = (0..scene.casters.len()).map(|number| bob(number) - eye).collect();
         queue.write_buffer(&self.offsets, 0, bytemuck::cast_slice(&offsets));
         let moved = |number: usize| {
             let (aabb, by) = (scene.casters[number].bounds, bob(number));
             Aabb::new(aabb.min + by, aabb.max + by)
         };
         self.boxes.clear();
-        self.boxes.extend(numbers.map(moved));
+        self.boxes.extend(self.shown.iter().map(|number| moved(*number as usize)));
         let clip_from_world = camera.clip_from_world(DepthConvention::Reversed).to_cols_array();
         queue.write_buffer(&self.camera_uniform, 0, bytemuck::cast_slice(&clip_from_world));
     }
@@ -119,7 +145,7 @@ impl<'a> Engine<'a> {
         let boxes = Boxes { boxes: &self.boxes, ..Boxes::default() };
         let casters = Casters { moves: &self.moves, ..Casters::fixed(boxes) };
         let views = [camera.frustum()?];
-        self.sun.update(&self.gpu.queue, &SunFrame::new(&views, BenchScene::direction(), boxes, casters))?;
+        self.sun.update(&self.gpu.queue, &SunFrame::new(&views, self.direction, boxes, casters))?;
         Ok(())
     }
 
@@ -150,9 +176,7 @@ impl<'a> Engine<'a> {
         pass.set_bind_group(0, &self.camera_group, &[]);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_vertex_buffer(1, self.offsets.slice(..));
-        for (number, caster) in (0..).zip(&self.scene.casters) {
-            pass.draw(caster.vertices.clone(), number..number + 1);
-        }
+        self.draw_shown(&mut pass, self.shown.iter().copied());
         drop(pass);
         let convention = DepthConvention::Reversed;
         self.sun.record_demand(encoder, &self.depth, camera.clip_from_world(convention), convention)?;
@@ -164,9 +188,13 @@ impl<'a> Engine<'a> {
         pass.set_pipeline(&self.caster_pipeline);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_vertex_buffer(1, self.offsets.slice(..));
-        for number in casters {
-            let vertices: Range<u32> = self.scene.casters[*number as usize].vertices.clone();
-            pass.draw(vertices, *number..number + 1);
+        self.draw_shown(pass, casters.iter().map(|number| self.shown[*number as usize]));
+    }
+
+    fn draw_shown(&self, pass: &mut wgpu::RenderPass<'_>, numbers: impl Iterator<Item = u32>) {
+        for number in numbers {
+            let vertices: Range<u32> = self.scene.casters[number as usize].vertices.clone();
+            pass.draw(vertices, number..number + 1);
         }
     }
 
@@ -180,7 +208,8 @@ impl<'a> Engine<'a> {
 
 /// What a pass draws a picture into.
 pub(crate) fn target(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let usage =
+        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
     bindings::plain_texture(device, "picture", SIZE, format, usage).create_view(&Default::default())
 }
 

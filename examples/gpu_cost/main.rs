@@ -1,4 +1,5 @@
-//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, rays.
+//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, a
+//! sun that moves, rays.
 //!
 //! ```sh
 //! cargo run --release --example gpu_cost                                   # the courtyard
@@ -10,6 +11,10 @@
 //! 1.5 m/s and turns by 10° a second, 60 frames a second, and every tenth node bobs by half a metre once a second. Times
 //! are medians by the GPU's clock, from the begin of a frame's first shadow pass to the end of the last one.
 
+#[path = "../shared/cuboid.rs"]
+mod cuboid;
+mod day;
+mod edges;
 mod engine;
 mod field;
 mod filters;
@@ -17,6 +22,8 @@ mod fullscreen;
 mod passes;
 mod rays;
 mod scene;
+mod streaming;
+#[path = "../shared/table.rs"]
 mod table;
 mod timer;
 
@@ -62,8 +69,12 @@ enum Part {
     Filters,
     /// Culling of 10,000 instances
     Culling,
+    /// A walk on which casters come and go
+    Streaming,
     /// The pass over the depth buffer
     Demand,
+    /// A minute of a sun that moves
+    Day,
     /// Rays and classes on the GPU
     Rays,
 }
@@ -115,11 +126,17 @@ fn main() -> Result<()> {
     if wants(Part::Culling) {
         add(field::time(&bench)?);
     }
+    if wants(Part::Streaming) {
+        add(streaming::time(&bench)?);
+    }
     if wants(Part::Filters) {
         add(filters::time(&bench, &scenes[0])?);
     }
     if wants(Part::Demand) {
         add(passes::time_demand(&bench, &scenes)?);
+    }
+    if wants(Part::Day) {
+        add(day::time(&bench, &scenes[0])?);
     }
     if wants(Part::Rays) {
         add(rays::time(&bench, &args.scenes)?);

@@ -8,7 +8,7 @@ use shadowfit::settings::MapFormat;
 use shadowfit::{Aabb, Seen, Technique, demand};
 use shadowfit_render::GpuProfilerQuery;
 use shadowfit_wgpu::demand::{DemandPass, DemandView};
-use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
+use shadowfit_wgpu::{Culling, MapUpdate, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
 
 use crate::Bench;
 use crate::engine::{Engine, SIZE};
@@ -18,7 +18,7 @@ use crate::timer::{Timer, median};
 
 /// A way of drawing the maps.
 #[derive(Clone, Copy, PartialEq)]
-struct Way {
+pub(crate) struct Way {
     name: &'static str,
     keeps: bool,
     culling: Culling,
@@ -36,33 +36,40 @@ const WAYS: [Way; 5] = [
     Way { schedule: FAR_MAPS_LATER, ..way("kept, far maps later", true, Culling::Swept) },
 ];
 
-const fn way(name: &'static str, keeps: bool, culling: Culling) -> Way {
+pub(crate) const fn way(name: &'static str, keeps: bool, culling: Culling) -> Way {
     Way { name, keeps, culling, schedule: UpdateSchedule::EveryFrame }
 }
 
 /// What a way of drawing took.
 #[derive(Default)]
-struct Taken {
-    gpu: Vec<f64>,
-    cpu: Vec<f64>,
-    draws: Vec<f64>,
+pub(crate) struct Taken {
+    pub(crate) gpu: Vec<f64>,
+    pub(crate) cpu: Vec<f64>,
+    pub(crate) draws: Vec<f64>,
+    /// Texels of the rectangles that are drawn.
+    pub(crate) texels: Vec<f64>,
     /// Frames in which a whole layer was cleared.
     cleared: usize,
 }
 
 impl Bench {
-    fn technique(&self) -> Technique {
+    pub(crate) fn technique(&self) -> Technique {
         Technique::default().with_resolution(self.map, self.map)
     }
 
     /// Frames before those that are timed, in which windows settle.
-    fn warm_up(&self) -> usize {
+    pub(crate) fn warm_up(&self) -> usize {
         if self.gpu.is_software() { 3 } else { self.frames / 5 + 30 }
     }
 }
 
-/// Frames of a scene along its walk, drawn in one way.
-fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
+/// Frames of a scene along its walk, drawn in one way; what comes and goes in a frame is told by `stream`.
+pub(crate) fn walk(
+    bench: &Bench,
+    scene: &BenchScene,
+    way: Way,
+    mut stream: impl FnMut(&mut Engine, usize),
+) -> Result<Taken> {
     let gpu = &bench.gpu;
     let mut engine = Engine::new(gpu, scene, &bench.technique())?;
     engine.sun.set_caching(way.keeps);
@@ -72,6 +79,7 @@ fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
     let mut taken = Taken::default();
     for frame in 0..bench.frames + bench.warm_up() {
         let camera = engine.camera(frame);
+        stream(&mut engine, frame);
         engine.move_casters(frame);
         let begin = Instant::now();
         engine.fit(&camera)?;
@@ -91,6 +99,8 @@ fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
             taken.gpu.push(time);
             taken.cpu.push(cpu);
             taken.draws.push(pieces().map(|piece| piece.casters.len()).sum::<usize>() as f64);
+            let texels = |update: MapUpdate| f64::from(update.rect.size.x) * f64::from(update.rect.size.y);
+            taken.texels.push(engine.sun.updates().into_iter().map(texels).sum());
             taken.cleared += usize::from(engine.sun.passes().any(|pass| pass.is_cleared()));
         }
     }
@@ -103,7 +113,7 @@ pub(crate) fn time(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     for scene in scenes {
         let mut unit = 0.0;
         for way in WAYS {
-            let taken = walk(bench, scene, way)?;
+            let taken = walk(bench, scene, way, |_, _| {})?;
             let mean = taken.gpu.iter().sum::<f64>() / taken.gpu.len() as f64;
             let (cleared, frames) = (taken.cleared, taken.gpu.len());
             let gpu = median(taken.gpu);
@@ -305,6 +315,6 @@ fn counts(seen: &Seen) -> [f64; 3] {
 
 /// Frames of a scene, redrawn with one kind of culling: times on the GPU and on the CPU.
 pub(crate) fn with_culling(bench: &Bench, scene: &BenchScene, culling: Culling) -> Result<[f64; 3]> {
-    let taken = walk(bench, scene, way("", false, culling))?;
+    let taken = walk(bench, scene, way("", false, culling), |_, _| {})?;
     Ok([taken.gpu, taken.cpu, taken.draws].map(median))
 }

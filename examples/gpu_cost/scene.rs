@@ -10,6 +10,8 @@ use shadowfit_render::{Cluster, clustered};
 use shadowfit_scene::{AlphaMode, Scene, builtin, load_gltf};
 use shadowfit_truth::Tracer;
 
+use crate::cuboid::triangles;
+
 /// Frames a second, speed in metres a second, and turn in radians a second.
 const RATE: f64 = 60.0;
 const SPEED: f64 = 1.5;
@@ -86,22 +88,25 @@ impl BenchScene {
 
     /// A field of instances. Half of them cannot cast a shadow into view: they stand behind the eye, away from the sun.
     pub(crate) fn field(instances: u16) -> Self {
-        let corners = Aabb::new(Vec3::new(-0.2, 0.0, -0.2), Vec3::new(0.2, 1.4, 0.2)).corners();
-        let faces = [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [0, 3, 7, 4], [1, 2, 6, 5]];
-        let (mut vertices, mut casters) = (Vec::new(), Vec::new());
-        for index in 0..instances {
+        let instance = |index: u16| {
             let place = |base: f64, size: f64| ((f64::from(index) * base).fract() * size) as f32;
             let (x, z) = (place(0.754_877_67, 120.0) - 60.0, place(0.569_840_3, 60.0));
-            let behind = index % 2 == 0;
+            let behind = index.is_multiple_of(2);
             let offset = Vec3::new(x, 0.0, if behind { 60.0 + z } else { -z - 2.0 });
+            Aabb::new(offset + Vec3::new(-0.2, 0.0, -0.2), offset + Vec3::new(0.2, 1.4, 0.2))
+        };
+        Self::of_boxes("field", DVec3::new(0.0, 1.7, 0.0), (0..instances).map(instance))
+    }
+
+    /// Boxes that stand, a caster each, and an eye that begins its walk along -z.
+    pub(crate) fn of_boxes(name: &str, eye: DVec3, boxes: impl Iterator<Item = Aabb>) -> Self {
+        let (mut vertices, mut casters) = (Vec::new(), Vec::new());
+        for bounds in boxes {
             let first = vertices.len() as u32;
-            for [a, b, c, d] in faces {
-                vertices.extend([a, b, c, a, c, d].map(|corner: usize| corners[corner] + offset));
-            }
-            let bounds = Aabb::new(corners[0] + offset, corners[6] + offset);
+            vertices.extend(triangles(&bounds).flatten());
             casters.push(Caster { vertices: first..vertices.len() as u32, bounds, moves: false });
         }
-        Self { name: "field".to_owned(), vertices, casters, eye: DVec3::new(0.0, 1.7, 0.0), yaw: 0.0 }
+        Self { name: name.to_owned(), vertices, casters, eye, yaw: 0.0 }
     }
 
     /// The camera of a frame.

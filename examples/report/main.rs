@@ -33,6 +33,8 @@ mod page;
 mod path;
 mod peers;
 mod plots;
+#[path = "../shared/plotting.rs"]
+mod plotting;
 mod png;
 mod scene;
 mod tables;

@@ -6,10 +6,12 @@ use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::HPos;
 
 use crate::data::{Run, TechniqueRun, value};
-use crate::text::{FAMILY, register};
+use crate::plotting::{
+    COLOURS, FAMILY, GRID, INK, LEGEND_LINE, LEGEND_TOP, PAPER, RULE, TEXT, TITLE, register, text_style,
+};
 use shadowfit_truth::peers::readable;
 
 /// Columns that are plotted where the run has them.
@@ -19,32 +21,10 @@ const SIZE: (u32, u32) = (780, 300);
 /// Width of the legend beside the plot, in pixels, and how many characters of a name fit in it.
 const LEGEND: u32 = 215;
 const NAME_LENGTH: usize = 23;
-/// Sizes of text and titles, in plotters' units of 0.8 pixels.
-const TEXT: u32 = 16;
-const TITLE: u32 = 20;
-/// Height of a line of the legend, in pixels.
-const LEGEND_LINE: i32 = 20;
-/// Middle of its first line, in pixels.
-const LEGEND_TOP: i32 = 50;
 /// Names of groups stand this far below the axis, under its numbers, in pixels.
 const BELOW_AXIS: i32 = 35;
 /// Greatest ratio of values that an even axis shows well.
 const EVEN_RATIO: f64 = 100.0;
-/// Colours that the page's style recognises, so that it can turn them dark.
-const PAPER: RGBColor = RGBColor(255, 255, 255);
-const INK: RGBColor = RGBColor(51, 54, 59);
-const GRID: RGBColor = RGBColor(226, 228, 232);
-const RULE: RGBColor = RGBColor(150, 154, 162);
-/// Colours of techniques that the colour-blind tell apart, on light and dark ground (Paul Tol's bright scheme, 2018).
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0x44, 0x77, 0xaa),
-    RGBColor(0xee, 0x66, 0x77),
-    RGBColor(0x22, 0x88, 0x33),
-    RGBColor(0xcc, 0xbb, 0x44),
-    RGBColor(0x66, 0xcc, 0xee),
-    RGBColor(0xaa, 0x33, 0x77),
-    RGBColor(0x99, 0x99, 0x99),
-];
 
 /// A plot of one column.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,10 +157,6 @@ fn lines(technique: &TechniqueRun, column: &str, group: &Group) -> Vec<Vec<(f64,
 fn mark(place: usize) -> ShapeStyle {
     let colour = COLOURS[place % COLOURS.len()];
     if place < COLOURS.len() { colour.filled() } else { colour.stroke_width(1) }
-}
-
-fn text_style(size: u32, align: HPos) -> TextStyle<'static> {
-    TextStyle::from((FAMILY, size).into_font()).color(&INK).pos(Pos::new(align, VPos::Center))
 }
 
 fn legend<'a>(run: &Run, area: &Area<'a>) -> Drawn<'a> {

@@ -2,16 +2,13 @@
 //!
 //! Pictures get a strip below with their legend, so that they can be read wherever they end up.
 
-use std::sync::Once;
-
 use anyhow::{Result, anyhow};
 use image::{Rgba, RgbaImage, imageops};
-use plotters::prelude::{BitMapBackend, DrawingBackend, FontStyle, IntoFont, RGBColor, TextStyle};
-use plotters::style::register_font;
+use plotters::prelude::{BitMapBackend, DrawingBackend, IntoFont, RGBColor, TextStyle};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// The family that the font is known by; SVG files name it too, and browsers have one of that kind.
-pub(crate) const FAMILY: &str = "sans-serif";
+use crate::plotting::{FAMILY, register};
+
 /// Colour of the legends' ground.
 const GROUND: RGBColor = RGBColor(24, 26, 30);
 /// Colour of the legends' text.
@@ -31,15 +28,6 @@ pub(crate) struct Strip {
     size: [u32; 2],
     /// Size of its text against that of a picture of [`WIDTH`] pixels.
     pub(crate) scale: f32,
-}
-
-/// Makes the font known to plotters, once.
-pub(crate) fn register() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        // The font is known to be one: a test draws with it.
-        let _ = register_font(FAMILY, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
-    });
 }
 
 /// Size of legends for a picture of a width in pixels: never so small that its text cannot be read.

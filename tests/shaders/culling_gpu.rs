@@ -5,7 +5,7 @@ use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
 use shadowfit::{Aabb, CasterVolume, FitInput, FitState, PerspectiveCamera, Scratch, Technique};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{CullingUniform, WgslOptions, culling_wgsl};
+use shadowfit_wgpu::{CullingPiece, WgslOptions, culling_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::support::software_gpu;
@@ -41,11 +41,15 @@ struct Shape {
     let axes = mat3x3<f32>(shape.half_axes[0].xyz, shape.half_axes[1].xyz, shape.half_axes[2].xyz);
     var spheres = 0u;
     var boxes = 0u;
-    for (var map = 0u; map < shadowfit_culling.volume_count; map += 1u) {
-        spheres |= select(0u, 1u << map, shadowfit_touches_sphere(map, shape.centre.xyz, shape.half_axes[0].w));
-        boxes |= select(0u, 1u << map, shadowfit_touches_oriented_box(map, shape.centre.xyz, axes));
+    var upright = 0u;
+    for (var piece = 0u; piece < arrayLength(&shadowfit_pieces); piece += 1u) {
+        let bit = 1u << piece;
+        let moves = (id.x & 1u) == 1u;
+        upright |= select(0u, bit, shadowfit_draws_box(piece, moves, shape.low.xyz, shape.high.xyz));
+        spheres |= select(0u, bit, shadowfit_draws_sphere(piece, moves, shape.centre.xyz, shape.half_axes[0].w));
+        boxes |= select(0u, bit, shadowfit_draws_oriented_box(piece, moves, shape.centre.xyz, axes));
     }
-    masks[id.x] = vec4<u32>(shadowfit_cull_box(shape.low.xyz, shape.high.xyz), spheres, boxes, 0u);
+    masks[id.x] = vec4<u32>(upright, spheres, boxes, 0u);
 }
 ";
 
@@ -99,7 +103,7 @@ fn shapes() -> Vec<Shape> {
 }
 
 /// The three masks of each shape, as the shader finds them.
-fn ask(gpu: &Gpu, uniform: &CullingUniform, shapes: &[Shape]) -> Vec<[u32; 4]> {
+fn ask(gpu: &Gpu, pieces: &[CullingPiece], shapes: &[Shape]) -> Vec<[u32; 4]> {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
@@ -116,7 +120,7 @@ fn ask(gpu: &Gpu, uniform: &CullingUniform, shapes: &[Shape]) -> Vec<[u32; 4]> {
     let filled = |contents: &[u8], usage| {
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
     };
-    let uniform = filled(bytemuck::bytes_of(uniform), wgpu::BufferUsages::UNIFORM);
+    let pieces = filled(bytemuck::cast_slice(pieces), wgpu::BufferUsages::STORAGE);
     let shapes_buffer = filled(bytemuck::cast_slice(shapes), wgpu::BufferUsages::STORAGE);
     let size = size_of::<[u32; 4]>() * shapes.len();
     let empty = vec![0; size];
@@ -130,7 +134,7 @@ fn ask(gpu: &Gpu, uniform: &CullingUniform, shapes: &[Shape]) -> Vec<[u32; 4]> {
         let layout = &pipeline.get_bind_group_layout(index);
         device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     };
-    let groups = [group(0, &[&uniform]), group(1, &[&shapes_buffer, &masks])];
+    let groups = [group(0, &[&pieces]), group(1, &[&shapes_buffer, &masks])];
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -167,7 +171,8 @@ fn resized(shape: &Shape, by: f32) -> (Aabb, Sphere, OrientedBox) {
 fn wgsl_culls_what_rust_culls() {
     let (gpu, volumes, shapes) = (software_gpu(), volumes(), shapes());
     let origin = EYE + DVec3::new(4.0, -2.0, -2.0);
-    let answers = ask(&gpu, &CullingUniform::new(&volumes, origin), &shapes);
+    let pieces: Vec<_> = volumes.iter().map(|volume| CullingPiece::new([*volume], origin)).collect();
+    let answers = ask(&gpu, &pieces, &shapes);
     let masks_of = |by: f32| {
         let mut masks = [vec![0_u8; SHAPES], vec![0_u8; SHAPES], vec![0_u8; SHAPES]];
         let resized: Vec<_> = shapes.iter().map(|shape| resized(shape, by)).collect();
@@ -190,4 +195,38 @@ fn wgsl_culls_what_rust_culls() {
         println!("kind {kind}: {same} of {SHAPES} masks are the same, {kept} bits are set");
         assert!(same + 8 >= SHAPES && kept > 200 && (kept as usize) < SHAPES * 2, "kind {kind}: {same}, {kept}");
     }
+}
+
+#[test]
+fn a_piece_takes_what_stands_still_or_moves_and_all_of_its_volumes() {
+    let (gpu, volumes, shapes) = (software_gpu(), volumes(), shapes());
+    let both = CullingPiece::new([volumes[1], volumes[2]], EYE);
+    let planes = [volumes[1].count, volumes[1].count + volumes[2].count];
+    assert_eq!([both.fixed_planes, both.moving_planes], [planes[1]; 2]);
+    let single = |volume: usize| CullingPiece::new([volumes[volume]], EYE);
+    let pieces = [
+        single(1),
+        single(2),
+        both,
+        CullingPiece { moving: 0, ..both },
+        CullingPiece { fixed: 0, ..both },
+        CullingPiece { fixed_planes: planes[0], ..both },
+    ];
+    let mut found = [0; 6];
+    for (number, masks) in ask(&gpu, &pieces, &shapes).iter().enumerate() {
+        for mask in &masks[..3] {
+            let is_in = |piece: u32| mask >> piece & 1 == 1;
+            let moves = number % 2 == 1;
+            assert_eq!(is_in(2), is_in(0) && is_in(1));
+            assert_eq!([is_in(3), is_in(4)], [is_in(2) && !moves, is_in(2) && moves]);
+            assert_eq!(is_in(5), if moves { is_in(2) } else { is_in(0) });
+            for (piece, count) in (0..).zip(&mut found) {
+                *count += u32::from(is_in(piece));
+            }
+        }
+    }
+    assert!(
+        found[2] < found[0] && found[2] < found[1] && found[3] > 5 && found[4] > 5 && found[5] > found[2],
+        "{found:?}"
+    );
 }

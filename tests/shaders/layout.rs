@@ -3,7 +3,6 @@
 use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
-use shadowfit::culling::CasterPlanes;
 use shadowfit_classics::mapped::SampleUniform;
 use shadowfit_classics::occlusion::OcclusionUniform;
 use shadowfit_classics::sky_box::SkyBoxUniform;
@@ -14,8 +13,8 @@ use shadowfit_render::{
 };
 use shadowfit_wgpu::demand::{DemandUniform, demand_wgsl};
 use shadowfit_wgpu::{
-    CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions,
-    culling_wgsl,
+    CasterUniform, CullingPiece, FadingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor,
+    WgslOptions, culling_wgsl,
 };
 
 use super::parse;
@@ -172,13 +171,39 @@ fn what_the_look_up_reads_has_the_size_and_offsets_of_its_wgsl_structs() {
 }
 
 #[test]
-fn the_volumes_of_the_culling_uniform_lie_as_in_wgsl() {
+fn what_a_look_up_into_two_sets_of_maps_reads_lies_as_in_wgsl() {
+    let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor { cross_fades: true, ..Default::default() }));
+    let fading = layout!("shadowfit_Fading" = FadingUniform { now, before, share, first_layer, padding_0, padding_1 });
+    assert_same(&scene, &fading);
+    // The sets themselves are what the only one is elsewhere.
+    assert_eq!(reflected(&scene, "shadowfit_Receiver").1 as usize, size_of::<ReceiverUniform>());
+    assert_eq!(reflected(&scene, "shadowfit_Map").1 as usize, size_of::<MapUniform>());
+}
+
+#[test]
+fn the_pieces_that_casters_are_culled_by_lie_as_in_wgsl() {
     let culling = parse("culling", &culling_wgsl(&WgslOptions::group(0)));
-    assert_same(&culling, &layout!("shadowfit_CasterPlanes" = CasterPlanes { planes, count, padding }));
     assert_same(
         &culling,
-        &layout!("shadowfit_Culling" = CullingUniform { volume_count, padding_0, padding_1, padding_2, volumes }),
+        &layout!(
+            "shadowfit_CullingPiece" = CullingPiece {
+                planes,
+                viewport,
+                scissor,
+                map,
+                fixed,
+                moving,
+                fixed_planes,
+                moving_planes,
+                padding_0,
+                padding_1,
+                padding_2,
+            }
+        ),
     );
+    let (_, global) = culling.global_variables.iter().next().expect("the pieces");
+    let TypeInner::Array { stride, .. } = culling.types[global.ty].inner else { panic!("pieces are an array") };
+    assert_eq!(stride as usize, size_of::<CullingPiece>());
 }
 
 #[test]
@@ -221,8 +246,8 @@ fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languag
 fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
     let compared = [
         "shadowfit_Caster",
-        "shadowfit_Culling",
         "shadowfit_Receiver",
+        "shadowfit_Fading",
         "Frame",
         "Material",
         "Judged",

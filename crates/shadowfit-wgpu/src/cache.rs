@@ -40,7 +40,7 @@ use tiles::ChangedTiles;
 
 pub use casters::Casters;
 pub use plan::PassContent;
-pub(crate) use plan::{FramePlan, Layer, PassPlan, PiecePlan};
+pub(crate) use plan::{FramePlan, Layer, PassPlan};
 pub use schedule::UpdateSchedule;
 
 /// A map that was new in this many frames in a row counts as one that cannot be kept: it is then drawn with the casters

@@ -1,5 +1,6 @@
 //! Shadow maps that keep the parts where nothing moved: the drawing half of [`SunShadows`](crate::SunShadows).
 
+mod culling;
 mod passes;
 mod updates;
 
@@ -11,7 +12,9 @@ use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
 use crate::layers::Layers;
 use crate::map::stored_casters;
-use crate::{Culling, MAX_MAPS, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
+use crate::{
+    Culling, MAX_MAPS, MapTexture, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule,
+};
 
 pub use passes::{ShadowPass, ShadowPiece};
 pub use updates::{MapUpdate, UpdateContent};
@@ -26,6 +29,8 @@ pub(crate) struct CachedMaps {
     pub(crate) caching: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
+    /// Whether the look-up reads these maps first. Maps that are faded out, or not read yet, leave it as it is.
+    pub(crate) is_present: bool,
     device: wgpu::Device,
     map: ShadowMap,
     layers: Layers,
@@ -43,28 +48,45 @@ pub(crate) struct CachedMaps {
 }
 
 impl CachedMaps {
-    /// Makes the maps.
+    /// Makes the maps: in a texture of the engine's, if there is one.
     ///
     /// # Errors
     ///
-    /// As [`ShadowMap::new`].
-    pub(crate) fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
-        let map = ShadowMap::new(device, descriptor)?;
-        let layers = Layers::new(device, &map);
-        Ok(Self {
+    /// As [`ShadowMap::in_texture`].
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
+        texture: Option<&MapTexture>,
+    ) -> Result<Self, ShadowMapError> {
+        let map = match texture {
+            Some(texture) => ShadowMap::in_texture(device, descriptor, texture),
+            None => ShadowMap::new(device, descriptor),
+        }?;
+        Ok(Self::of(device, map))
+    }
+
+    /// The second set of maps of a descriptor that cross-fades, drawn by the same rules. The look-up does not read it.
+    pub(crate) fn second(&self) -> Self {
+        let (schedule, caching, culling) = (self.schedule, self.caching, self.culling);
+        Self { schedule, caching, culling, is_present: false, ..Self::of(&self.device, self.map.second(&self.device)) }
+    }
+
+    fn of(device: &wgpu::Device, map: ShadowMap) -> Self {
+        Self {
             schedule: UpdateSchedule::default(),
             caching: true,
             culling: Culling::default(),
+            is_present: true,
             device: device.clone(),
+            layers: Layers::new(device, &map),
             map,
-            layers,
             cache: MapCache::default(),
             plan: FramePlan::default(),
             maps: Vec::new(),
             volumes: Vec::new(),
             origin: DVec3::ZERO,
             is_off: false,
-        })
+        }
     }
 
     /// Moves the view depths between which shadows fade, in metres.
@@ -152,7 +174,7 @@ impl CachedMaps {
         for (index, map) in self.maps.iter_mut().enumerate() {
             map.wrap = self.cache.wrap(index);
         }
-        self.map.prepare(queue, &view, &self.maps)?;
+        self.write_uniforms(queue, &view)?;
         self.is_off = false;
         self.layers.prepare(&self.device, queue, &self.plan);
         Ok(())
@@ -177,6 +199,19 @@ impl CachedMaps {
             is_due[index] = self.cache.shows_gone(index, &volume[0]);
         }
         Ok(is_due)
+    }
+
+    fn write_uniforms(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+        if self.is_present {
+            self.map.prepare(queue, view, &self.maps)
+        } else {
+            self.map.prepare_casters(queue, view, &self.maps)
+        }
+    }
+
+    /// Lets the look-up mix another set of maps into these, after [`Self::update`] of both. `share`: that of these.
+    pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, view: &MapView, share: f32) {
+        self.map.fade_from(queue, (&before.map, &before.maps), view, share);
     }
 
     /// Finds the casters of each map, relative to its origin: those that can shadow something in view, or all that it

@@ -8,6 +8,7 @@ use shadowfit::settings::{MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, FitError};
 
 use crate::limits::RESOLUTIONS;
+use crate::map_texture::MapTextureError;
 
 /// Why a [`ShadowMap`](crate::ShadowMap) could not be made or prepared.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +57,8 @@ pub enum ShadowMapError {
         /// Their format.
         format: MapFormat,
     },
+    /// The texture that was handed in cannot hold the maps.
+    Texture(MapTextureError),
     /// The device refused to make a resource, with its own words.
     Device(String),
     /// A prefix that no name in WGSL can begin with.
@@ -138,6 +141,7 @@ impl fmt::Display for ShadowMapError {
                 write!(f, "this device cannot use {format:?} for shadow maps: {why}; take Depth32Float, which all have")
             }
             Self::OutOfMemory { resolution, maps, format } => write_out_of_memory(f, *resolution, *maps, *format),
+            Self::Texture(error) => write!(f, "the texture for the shadow maps: {error}"),
             Self::Device(error) => write!(f, "the device cannot make the shadow map: {error}"),
             Self::Prefix(prefix) => write_prefix(f, prefix),
             Self::Wrap { index, wrap, fit, map } => write_wrap(f, *index, *wrap, [*fit, *map]),

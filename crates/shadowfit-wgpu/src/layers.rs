@@ -9,7 +9,7 @@ use shadowfit::{Aabb, DepthConvention};
 use crate::bindings;
 use crate::cache::{FramePlan, Layer, PassPlan};
 use crate::caught::caught;
-use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
+use crate::{MapTexture, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
 
 /// Draws into parts of depth maps.
 #[derive(Debug)]
@@ -127,16 +127,12 @@ impl StaticLayers {
     fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let descriptor = map.descriptor();
         let format = map.depth_stencil_state().format;
-        let texture = crate::map::texture(device, descriptor, format);
+        let texture = crate::map::texture(device, descriptor, (format, descriptor.maps));
+        let texture = MapTexture { texture, base_layer: 0 };
         let types = [bindings::depths(wgpu::TextureViewDimension::D2, false)];
         let layout = bindings::layout(device, "shadowfit static casters", wgpu::ShaderStages::FRAGMENT, (0, &types));
         let layer = |index: u32| {
-            let view = texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            });
+            let view = texture.view(wgpu::TextureViewDimension::D2, index, 1);
             let resources = [wgpu::BindingResource::TextureView(&view)];
             let group = bindings::group(device, "shadowfit static casters", &layout, (0, &resources));
             (view, group)

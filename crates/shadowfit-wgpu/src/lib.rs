@@ -57,6 +57,7 @@
 //! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
 //! | [`MapUpdate`], [`UpdateContent`] | a rectangle that a frame draws, for tools that show it |
 //! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
+//! | [`SunSteps`] | how the maps of a sun that moves are held still, and cross-faded |
 //! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
 //! | [`SunShadowsError`] | why a technique or a frame is refused; earlier maps stay as they are |
 //!
@@ -71,19 +72,23 @@
 //!   map that redraws it. [`ShadowMapDescriptor`] says how large and of which format they are, and [`MapView`] from
 //!   where they are read.
 //! - [`demand`] counts the visible points of a depth buffer.
-//! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
-//!   [`MapUniform`] are the uniforms of the other WGSL, for engines that bind them themselves.
+//! - [`SunShadows::culling_pieces`] and [`culling_wgsl`] cull casters on the GPU, for engines that keep them there.
+//! - [`MapTexture`] puts the maps into a texture of the engine's: one that a frame graph owns, or that suns share.
+//! - [`CasterUniform`], [`ReceiverUniform`] and [`MapUniform`] are the uniforms of the WGSL, for engines that bind them
+//!   themselves.
 
 mod bindings;
 mod cache;
 mod cached_maps;
 mod caught;
+mod culling;
 pub mod demand;
 mod descriptor;
 mod error;
 mod layers;
 mod limits;
 mod map;
+mod map_texture;
 mod map_view;
 mod shader;
 mod sun_frame;
@@ -92,14 +97,16 @@ mod uniform;
 
 pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use cached_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
+pub use culling::CullingPiece;
 pub use descriptor::ShadowMapDescriptor;
 pub use error::ShadowMapError;
 pub use layers::layers_wgsl;
 pub use limits::RESOLUTIONS;
 pub use map::ShadowMap;
+pub use map_texture::{MapTexture, MapTextureError};
 pub use map_view::MapView;
 pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
 pub use shadowfit::settings::MAX_MAPS;
 pub use sun_frame::SunFrame;
-pub use sun_shadows::{SunShadows, SunShadowsError};
-pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform};
+pub use sun_shadows::{SunShadows, SunShadowsError, SunSteps};
+pub use uniform::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};

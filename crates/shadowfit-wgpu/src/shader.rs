@@ -1,10 +1,12 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
-use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
-use shadowfit::{CasterVolume, DepthConvention};
+mod fading;
 
-use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
+use shadowfit::DepthConvention;
+use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
+
+use crate::{CullingPiece, MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
 
 /// Look-ups over the disc of [`FilterKind::Pcss`].
 const PCSS_TAPS: u32 = 16;
@@ -48,7 +50,7 @@ impl WgslOptions<'_> {
         let mut text = pieces
             .replace("GROUP", &self.group.to_string())
             .replace("MAX_MAPS", &MAX_MAPS.to_string())
-            .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string());
+            .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string());
         for binding in 0..3 {
             text = text.replace(&format!("BINDING_{binding}"), &first_binding.saturating_add(binding).to_string());
         }
@@ -83,11 +85,19 @@ pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) 
     options.fill(&[include_str!("shaders/caster.wgsl"), color].concat(), descriptor.first_binding)
 }
 
-/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may cast
-/// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
-/// [`shadowfit::culling::cull`] and of the tests of [`shadowfit::CasterVolume`].
+/// WGSL for shaders that cull casters:
 ///
-/// Reads a [`crate::CullingUniform`] at binding 0 of the group.
+/// | function | tells |
+/// |---|---|
+/// | `shadowfit_draws_box(piece, moves, min, max) -> bool` | whether a caster in a box must be drawn into a piece: `piece` is its number, `moves` whether the caster moves |
+/// | `shadowfit_draws_sphere(piece, moves, centre, radius) -> bool` | the same of a sphere |
+/// | `shadowfit_draws_oriented_box(piece, moves, centre, half_axes) -> bool` | the same of a turned box; `half_axes` are the three from its centre to the middles of its faces |
+///
+/// Shapes are in world axes, in metres, relative to the origin of the frame. They are the twins of the tests of
+/// [`shadowfit::CasterVolume`].
+///
+/// Reads a storage buffer of [`CullingPiece`]s at binding 0 of the group: those of
+/// [`SunShadows::culling_pieces`](crate::SunShadows::culling_pieces).
 pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
     options.fill(include_str!("shaders/culling.wgsl"), 0)
 }
@@ -104,7 +114,8 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen, for which 10 bits an axis are enough. Which map a
 /// point reads is [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
-/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
+/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives. Where it
+/// [cross-fades](ShadowMapDescriptor::cross_fades), the factor is a mix of two sets of maps while one of them fades out.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
     let texel =
@@ -128,7 +139,9 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
         include_str!("shaders/turn.wgsl"),
         include_str!("shaders/factor.wgsl"),
     ];
-    options.fill(&pieces.concat().replace("COMPARE", closer), descriptor.first_binding)
+    let one_set = pieces.concat().replace("COMPARE", closer);
+    let text = if descriptor.cross_fades { fading::two_sets(&one_set) } else { one_set };
+    options.fill(&text, descriptor.first_binding)
 }
 
 /// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
@@ -152,7 +165,9 @@ fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
         (0..maps).map(wrap).collect::<String>()
     );
     let load = if loads_texels(descriptor) { "" } else { texture(descriptor.format).1 };
-    options.fill(&[load, &wraps, include_str!("shaders/stored.wgsl")].concat(), descriptor.first_binding)
+    let one_set = [load, &wraps, include_str!("shaders/stored.wgsl")].concat();
+    let text = if descriptor.cross_fades { fading::stored(&one_set) } else { one_set };
+    options.fill(&text, descriptor.first_binding)
 }
 
 /// Whether the look-up reads texels by itself.

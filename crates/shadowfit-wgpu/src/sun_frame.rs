@@ -19,7 +19,8 @@ pub struct SunFrame<'a> {
     /// World position that all positions in the shaders are relative to, in metres. The first view's eye is most exact;
     /// zero suits engines whose shaders take world space.
     pub origin: DVec3,
-    /// **Direction of travel** of the sun's light in world axes, of any length.
+    /// **Direction of travel** of the sun's light in world axes, of any length: the true one, also where [light
+    /// steps](crate::SunShadows::set_light_steps) hold the maps.
     pub direction: Vec3,
     /// Boxes around everything that receives shadows; `None` if they are not known.
     pub receivers: Option<Boxes<'a>>,

@@ -2,11 +2,10 @@
 //! shaders in the tests, so that the two cannot drift apart.
 
 use bytemuck::{Pod, Zeroable};
-use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
 use shadowfit::settings::Softness;
-use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
+use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
 use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
@@ -107,33 +106,22 @@ pub struct ReceiverUniform {
     pub maps: [MapUniform; MAX_MAPS],
 }
 
-/// The uniform of [`crate::culling_wgsl`]: `shadowfit_Culling` in WGSL.
+/// The uniform of a look-up that [cross-fades](ShadowMapDescriptor::cross_fades): `shadowfit_Fading` in WGSL.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct CullingUniform {
-    /// Number of `volumes` that are in use.
-    pub volume_count: u32,
-    /// Puts the volumes at a multiple of 16 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FadingUniform {
+    /// The maps of the sun's present direction.
+    pub now: ReceiverUniform,
+    /// Those of the direction before, while they are faded out; none otherwise.
+    pub before: ReceiverUniform,
+    /// Share of the former in the factor, 0 to 1.
+    pub share: f32,
+    /// Layer of the first of the present maps.
+    pub first_layer: u32,
+    /// Keeps the struct a multiple of 16 bytes.
     pub padding_0: u32,
     /// As above.
     pub padding_1: u32,
-    /// As above.
-    pub padding_2: u32,
-    /// The volumes of the maps: `shadowfit_CasterPlanes` in WGSL.
-    pub volumes: [CasterPlanes; MAX_MAPS],
-}
-
-impl CullingUniform {
-    /// The uniform for volumes of the maps, with shapes relative to `origin` (world space, metres). Volumes past
-    /// [`MAX_MAPS`] are left out.
-    pub fn new(volumes: &[CasterVolume], origin: DVec3) -> Self {
-        let mut uniform = Self::zeroed();
-        for (planes, volume) in uniform.volumes.iter_mut().zip(volumes) {
-            *planes = CasterPlanes::from(&volume.relative_to(origin));
-        }
-        uniform.volume_count = volumes.len().min(MAX_MAPS) as u32;
-        uniform
-    }
 }
 
 impl CasterUniform {
@@ -184,6 +172,12 @@ impl ReceiverUniform {
     /// The uniform for a light that gives nothing.
     pub fn off() -> Self {
         Self { is_off: 1, ..Self::default() }
+    }
+
+    /// The same with maps that are stored from a layer on.
+    pub(crate) fn in_layers(mut self, first: u32) -> Self {
+        self.maps.iter_mut().for_each(|map| map.layer += first);
+        self
     }
 
     /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by

@@ -96,7 +96,7 @@ impl FitState {
         let last = self.last.as_ref().filter(|last| last.technique == *technique);
         let light = light.held(last.filter(|_| technique.maps.are_kept()).map(|last| last.direction));
         // 2. The boxes, and what the views see of them.
-        let (content, points) = Content::new(input.scene(technique.fit.max_distance), scratch.storage)?;
+        let (content, points) = Content::new(input.scene(), scratch.storage)?;
         let range = whole_range(input, technique.fit.max_distance);
         let last_view = last.map(|last| &last.view);
         let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view };
@@ -200,7 +200,7 @@ pub fn fewest_maps(
     if technique.maps.count() == 1 {
         return Ok(1);
     }
-    let (content, _) = Content::new(input.scene(technique.fit.max_distance), scratch.storage)?;
+    let (content, _) = Content::new(input.scene(), scratch.storage)?;
     let range = whole_range(input, technique.fit.max_distance);
     let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view: None };
     Ok(slices::fewest(&frame, &technique.maps.as_slices(), waste))

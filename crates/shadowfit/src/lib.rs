@@ -111,6 +111,7 @@
 //! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::see`], [`FitInput::demand`] |
 //! | how many maps are enough | [`fewest_maps`] |
 //! | boxes that hug large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
+//! | thousands of boxes that stand, handed over once | [`BoxTree`], [`FitInput::standing`], feature `alloc` |
 //! | static casters drawn only where the map is new | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
 //! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`], [`spot`] |
@@ -138,7 +139,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | [`ShadowFitter`], [`Seen`] and `Clusters`, for which an allocator is enough |
+//! | `alloc` | [`ShadowFitter`], [`Seen`], [`BoxTree`] and `Clusters`, for which an allocator is enough |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |

@@ -1,5 +1,5 @@
-//! `cargo xtask bench`: measures the core crate, and with `--gpu` what shadows cost on a GPU, and publishes times and
-//! ratios in docs/BENCHMARKS.md.
+//! `cargo xtask bench`: measures the core crate, with `--gpu` what shadows cost on a GPU, and with `--growth` how costs
+//! grow with the world, and publishes times and ratios in docs/BENCHMARKS.md.
 //!
 //! Times mean little on another machine; ratios of one run do, so every group that has a hand-written counterpart
 //! shows them.
@@ -14,12 +14,16 @@ use serde::Deserialize;
 
 use crate::process;
 
-/// Where the tables of the core and of the GPU stand in the page; what lies between is replaced.
+/// Where the tables of the core, of the GPU and of growth stand in the page; what lies between is replaced.
 const CORE: [&str; 2] = ["<!-- measured: begin -->", "<!-- measured: end -->"];
 const GPU: [&str; 2] = ["<!-- measured on a GPU: begin -->", "<!-- measured on a GPU: end -->"];
+const GROWTH: [&str; 2] = ["<!-- measured growth: begin -->", "<!-- measured growth: end -->"];
 /// Chooses the GPU's tables, and takes them from a file that the example `gpu_cost` wrote on another machine.
 const ON_GPU: &str = "--gpu";
 const FROM: &str = "--from";
+/// Chooses the tables of growth, whose curves go into this folder.
+const ON_GROWTH: &str = "--growth";
+const CURVES: &str = "docs/images/benchmarks";
 /// How the counterpart of a group is called, at the beginning of its name.
 const COUNTERPART: &str = "by hand";
 
@@ -52,23 +56,37 @@ struct Measured {
 pub(crate) fn bench(args: &[String]) -> Result<()> {
     match args.split_first() {
         Some((first, args)) if first == ON_GPU => bench_gpu(args),
+        Some((first, args)) if first == ON_GROWTH => bench_growth(args),
         _ => bench_core(args),
     }
 }
 
 /// Runs the example `gpu_cost` with the arguments, or takes what it wrote elsewhere.
 fn bench_gpu(args: &[String]) -> Result<()> {
-    let written = process::root().join("target/gpu_cost.md");
-    let file = match args {
-        [from, file] if from == FROM => Path::new(file),
-        _ => {
-            let example = ["--release", "--example", "gpu_cost", "--", "--out"];
-            process::run(process::cargo("run").args(example).arg(&written).args(args))?;
-            &written
-        }
-    };
+    match args {
+        [from, file] if from == FROM => publish_file(GPU, Path::new(file)),
+        _ => bench_example("gpu_cost", GPU, args),
+    }
+}
+
+/// Runs the example `growth` with the arguments.
+fn bench_growth(args: &[String]) -> Result<()> {
+    let curves = process::root().join(CURVES).to_string_lossy().into_owned();
+    bench_example("growth", GROWTH, &[&["--pictures".to_owned(), curves][..], args].concat())
+}
+
+/// Runs an example with the arguments, and publishes the tables that it writes.
+fn bench_example(name: &str, marks: [&str; 2], args: &[String]) -> Result<()> {
+    let written = process::root().join("target").join(name).with_extension("md");
+    let example = ["--release", "--example", name, "--", "--out"];
+    process::run(process::cargo("run").args(example).arg(&written).args(args))?;
+    publish_file(marks, &written)
+}
+
+/// Replaces what stands between two marks of the page by what a file has.
+fn publish_file(marks: [&str; 2], file: &Path) -> Result<()> {
     let tables = fs::read_to_string(file).with_context(|| format!("{}: cannot be read", file.display()))?;
-    publish(GPU, &format!("{}\n", tables.trim_end()))
+    publish(marks, &format!("{}\n", tables.trim_end()))
 }
 
 fn bench_core(args: &[String]) -> Result<()> {

@@ -50,11 +50,12 @@ enum Task {
     },
     /// Draw those pictures of docs/MATHS.md again that show what the core crate's fits give.
     Maths,
-    /// Measure the core crate, or with `--gpu` what shadows cost on a GPU, and write the times and ratios into
-    /// docs/BENCHMARKS.md.
+    /// Measure the core crate, with `--gpu` what shadows cost on a GPU, or with `--growth` how costs grow with the world,
+    /// and write the times and ratios into docs/BENCHMARKS.md.
     Bench {
         /// Arguments of the benches, for example part of a name or `--quick`; after `--gpu` those of the example
-        /// `gpu_cost`, for example glTF files, or `--from FILE` for what it wrote on another machine.
+        /// `gpu_cost`, for example glTF files, or `--from FILE` for what it wrote on another machine; after `--growth`
+        /// those of the example `growth`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },

@@ -35,6 +35,13 @@ const CASTER: &str = "
 }
 ";
 
+/// What colour formats need beside it.
+const COLOR: &str = "
+@fragment fn fs_PREFIX(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    return PREFIX_caster_color(at.z);
+}
+";
+
 /// Factors at a pixel of the ground.
 const FACTORS_WGSL: &str = "
 fn factors(pixel: vec2<f32>) -> vec4<f32> {
@@ -200,6 +207,16 @@ impl Picture {
         self.0[y * SIDE as usize + x]
     }
 
+    /// All factors.
+    pub(super) fn values(&self) -> impl Iterator<Item = u8> {
+        self.0.iter().flatten().copied()
+    }
+
+    /// Those of one sun.
+    pub(super) fn of(&self, sun: usize) -> impl Iterator<Item = u8> {
+        self.0.iter().map(move |factors| factors[sun])
+    }
+
     /// The greatest difference from another picture.
     pub(super) fn difference(&self, other: &Self) -> u8 {
         let pixels = self.0.iter().flatten().zip(other.0.iter().flatten());
@@ -223,7 +240,9 @@ impl Painter {
         layout: &wgpu::PipelineLayout,
     ) -> Self {
         let caster = |(sun, _, prefix): &(&SunShadows, u32, &str)| {
-            caster_wgsl(sun.map().descriptor(), &options(0, prefix)) + &CASTER.replace("PREFIX", prefix)
+            let color = if sun.map().color_target().is_some() { COLOR } else { "" };
+            caster_wgsl(sun.map().descriptor(), &options(0, prefix))
+                + &[CASTER, color].concat().replace("PREFIX", prefix)
         };
         let module = device.module(suns.iter().map(caster).collect());
         let casters = suns.iter().map(|(sun, _, prefix)| caster_pipeline(device, &module, sun, prefix)).collect();
@@ -275,18 +294,30 @@ impl Painter {
         encoder: &mut wgpu::CommandEncoder,
         suns: &[(&SunShadows, &[Aabb])],
     ) {
-        for ((sun, boxes), pipeline) in suns.iter().zip(&self.casters) {
-            let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
-            let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
-            sun.render(encoder, 0, |pass, piece| {
-                pass.set_pipeline(pipeline);
-                pass.set_vertex_buffer(0, self.cube.slice(..));
-                pass.set_vertex_buffer(1, instances.slice(..));
-                for number in piece.casters {
-                    pass.draw(0..36, *number..number + 1);
-                }
-            });
+        for index in 0..suns.len() {
+            self.draw_one(device, encoder, suns, index);
         }
+    }
+
+    /// Draws the casters of one of the suns.
+    pub(super) fn draw_one(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        suns: &[(&SunShadows, &[Aabb])],
+        index: usize,
+    ) {
+        let ((sun, boxes), pipeline) = (suns[index], &self.casters[index]);
+        let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
+        let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
+        sun.render(encoder, 0, |pass, piece| {
+            pass.set_pipeline(pipeline);
+            pass.set_vertex_buffer(0, self.cube.slice(..));
+            pass.set_vertex_buffer(1, instances.slice(..));
+            for number in piece.casters {
+                pass.draw(0..36, *number..number + 1);
+            }
+        });
     }
 }
 
@@ -304,6 +335,7 @@ fn caster_pipeline(
 ) -> wgpu::RenderPipeline {
     let map = sun.map();
     let layout = device.layout(&[Some(map.caster_layout())]);
+    let (color, entry) = (map.color_target().map(Some), format!("fs_{prefix}"));
     let buffer =
         |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -321,7 +353,12 @@ fn caster_pipeline(
         primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
-        fragment: None,
+        fragment: color.as_ref().map(|color| wgpu::FragmentState {
+            module,
+            entry_point: Some(&entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: core::slice::from_ref(color),
+        }),
         multiview_mask: None,
         cache: None,
     })

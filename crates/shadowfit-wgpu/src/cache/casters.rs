@@ -16,6 +16,10 @@ use super::identity::{Caster, pair, shift};
 /// | comes, goes, or has another box | nothing: it is redrawn where it was and where it is |
 /// | has another shape in the same box | another key, or [`invalidate`](crate::SunShadows::invalidate) |
 /// | has another number | nothing, and costs the least where most keep theirs |
+///
+/// A box may stand for many casters that an engine culls by itself, such as those in a cell of the world: then it holds
+/// all of them, and [`invalidate`](crate::SunShadows::invalidate) tells where those that stand still changed within it.
+/// Casters that move have boxes of their own, which may hold the same place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
     /// A box around each caster. Empty boxes cast nothing.

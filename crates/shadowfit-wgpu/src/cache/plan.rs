@@ -101,6 +101,20 @@ impl FramePlan {
     }
 }
 
+/// Rounding by which a shader may keep a caster in a box that the CPU culls, as a share of their coordinates: each
+/// allows for 16 · 2⁻²⁴ of them, and the coordinates of a box sum to half of those of a caster in it at least.
+const SHADER_ROUNDING: f32 = 64.0 / 16_777_216.0;
+
+/// A box of moving casters that holds whatever a shader may draw of them, so that it is mended in the next frame.
+/// `offset` lies between its origin and that of the shader's boxes, in metres along all axes together.
+fn widened(aabb: &Aabb, offset: f32) -> Aabb {
+    if aabb.is_empty() {
+        return Aabb::EMPTY;
+    }
+    let by = ((aabb.min.abs() + aabb.max.abs()).element_sum() + offset) * SHADER_ROUNDING;
+    Aabb::new(aabb.min - by, aabb.max + by)
+}
+
 /// One map of a frame.
 pub(super) struct Drawing<'a> {
     pub(super) index: usize,
@@ -156,10 +170,11 @@ impl Drawing<'_> {
     fn all_casters(&self, map: &mut KeptMap, plan: &mut FramePlan) {
         let volumes = [self.volume(self.whole()), self.in_view()];
         self.cull(&volumes, plan);
-        map.moving.clear();
-        let Boxes { origin, boxes } = self.casters.boxes;
-        let moving = self.known.moving.iter().filter(|number| plan.masks[**number as usize] == 0b11);
-        map.moving.extend(moving.map(|number| WorldBox::new(&boxes[*number as usize], origin)));
+        let whole = StoredRect { window: self.whole(), stored: self.whole() };
+        self.find_moving(&[whole], &mut map.moving, plan);
+        for (number, mask) in self.known.moving.iter().zip(&plan.moving_masks) {
+            plan.masks[*number as usize] = *mask;
+        }
         let moves = |number: u32| self.casters.moves(number as usize);
         let is_over =
             |number: u32, mask: u8| (mask & 1 == 1 && self.known.is_fixed(number)) || (mask == 0b11 && moves(number));
@@ -275,7 +290,9 @@ impl Drawing<'_> {
         let Boxes { origin, boxes } = self.casters.boxes;
         moving.clear();
         plan.moving_boxes.clear();
-        plan.moving_boxes.extend(self.known.moving.iter().map(|number| boxes[*number as usize]));
+        let offset = (origin - self.origin).abs().element_sum() as f32;
+        let widened = |number: &u32| widened(&boxes[*number as usize], offset);
+        plan.moving_boxes.extend(self.known.moving.iter().map(widened));
         let mut volumes = vec![self.in_view()];
         volumes.extend(parts.iter().map(|part| self.volume(part.window)));
         plan.moving_masks.clear();
@@ -370,5 +387,42 @@ impl Drawing<'_> {
             views: 0..0,
             size: self.fitted.projection.resolution,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use shadowfit::glam::{Vec3, Vec4};
+
+    use super::*;
+
+    /// Numbers in 0..1 that fill the cube evenly.
+    fn evenly(index: u32, axis: i32) -> f32 {
+        (f64::from(index) * 1.220_744_084_605_759_5_f64.powi(-axis)).fract() as f32
+    }
+
+    #[test]
+    fn whatever_a_shader_keeps_of_a_box_of_casters_the_widened_box_keeps() {
+        let mut lost_without = 0;
+        for i in 1..20_000 {
+            let [x, y, z, a] = [1, 2, 3, 4].map(|axis| evenly(i, axis));
+            let normal = (Vec3::new(x, y, z) - 0.5).normalize_or(Vec3::Y);
+            // A caster in the farthest corner along the normal of a box whose other corner is at the origin.
+            let corner = Vec3::new(a, x, y) * 300.0 * normal.signum();
+            let group = Aabb::new(corner.min(Vec3::ZERO), corner.max(Vec3::ZERO));
+            let caster = Aabb::new(corner.min(corner * 0.99), corner.max(corner * 0.99));
+            // The plane lies beyond the corner by what both tests may round.
+            let reach = normal.as_dvec3().dot(corner.as_dvec3()) as f32;
+            let beyond = corner.abs().element_sum() * 2.0 * evenly(i, 5) * 16.0 / 16_777_216.0;
+            let mut volume = CasterVolume::everywhere(DVec3::ZERO);
+            (volume.planes[0], volume.count) = (Vec4::from((normal, -reach - beyond)), 1);
+            let touches = |aabb: &Aabb| volume.intersects_aabb(aabb.min, aabb.max);
+            if touches(&caster) {
+                assert!(touches(&widened(&group, 0.0)), "{i}");
+                lost_without += u32::from(!touches(&group));
+            }
+        }
+        assert!(lost_without > 100, "{lost_without} are lost without widening");
+        assert!(widened(&Aabb::EMPTY, 1.0).is_empty());
     }
 }

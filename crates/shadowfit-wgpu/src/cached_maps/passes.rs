@@ -1,19 +1,23 @@
 //! The passes of a frame, for the engine to draw.
 
 use super::CachedMaps;
-use crate::cache::{FramePlan, PassContent, PassPlan, PiecePlan};
+use crate::cache::{FramePlan, PassContent, PassPlan};
 use crate::layers::Opening;
 
 /// A pass into a map. A map that is kept unchanged has none.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowPass<'a> {
-    plan: &'a FramePlan,
-    pass: &'a PassPlan,
+    pub(super) maps: &'a CachedMaps,
+    pub(super) pass: &'a PassPlan,
+    /// Number of its plan's first piece, among those of all sets of maps.
+    first_piece: usize,
 }
 
 /// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowPiece<'a> {
+    /// Number of the piece among those of all passes of the frame.
+    pub number: usize,
     /// Number of the map.
     pub map: usize,
     /// Left, top, width and height of the viewport, in texels. It may begin outside the texture: maps wrap around in
@@ -29,7 +33,7 @@ pub struct ShadowPiece<'a> {
 }
 
 impl<'a> ShadowPass<'a> {
-    /// Number of the map.
+    /// Number of the map. While the sun [steps](crate::SunShadows::set_light_steps) two maps have the same number.
     pub fn map(&self) -> usize {
         self.pass.map
     }
@@ -46,14 +50,44 @@ impl<'a> ShadowPass<'a> {
 
     /// Its parts.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
-        let (plan, pass) = (self.plan, self.pass);
-        plan.pieces[pass.pieces.clone()].iter().map(move |piece| shadow_piece(plan, pass, piece))
+        let (plan, pass) = (&self.maps.plan, self.pass);
+        let first = self.first_piece;
+        pass.pieces.clone().map(move |piece| ShadowPiece { number: first + piece, ..shadow_piece(plan, pass, piece) })
     }
 }
 
-fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, piece: &PiecePlan) -> ShadowPiece<'a> {
+impl ShadowPass<'_> {
+    /// Records the pass. `draw` is called for each part that has casters.
+    pub(crate) fn render(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: u32,
+        draw: &mut impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+    ) {
+        let mut opened = self.begin(encoder, group, None);
+        for piece in self.pieces().filter(|piece| !piece.casters.is_empty() || !piece.standing.is_empty()) {
+            piece.set(&mut opened);
+            draw(&mut opened, &piece);
+        }
+    }
+
+    /// Opens the pass: cleared or mended, with the map's matrix bound at `group`.
+    pub(crate) fn begin<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        group: u32,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'encoder> {
+        let CachedMaps { map, plan, layers, .. } = self.maps;
+        layers.begin(encoder, Opening { map, plan, group }, self.pass, timestamps)
+    }
+}
+
+fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> ShadowPiece<'a> {
+    let piece = &plan.pieces[number];
     let (first, stored) = (piece.part.viewport(), piece.part.stored);
     ShadowPiece {
+        number,
         map: pass.map,
         viewport: [first.x as f32, first.y as f32, pass.size.x as f32, pass.size.y as f32],
         scissor: [stored.min.x, stored.min.y, stored.size.x, stored.size.y],
@@ -78,39 +112,18 @@ impl CachedMaps {
         self.plan.clear();
     }
 
-    /// The passes of this frame, in the order in which they must be drawn.
-    pub(crate) fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
-        self.plan.passes.iter().map(|pass| ShadowPass { plan: &self.plan, pass })
+    /// Number of passes of this frame.
+    pub(crate) fn pass_count(&self) -> usize {
+        self.plan.passes.len()
     }
 
-    /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
-    /// pipeline and buffers, and draws the part's casters. The map's matrix is bound at `group`; viewport and scissor
-    /// rectangle are set, and must stay.
-    pub(crate) fn render(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        group: u32,
-        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
-    ) {
-        for pass in self.passes() {
-            let mut opened = self.begin_pass(encoder, &pass, group, None);
-            for piece in pass.pieces().filter(|piece| !piece.casters.is_empty() || !piece.standing.is_empty()) {
-                piece.set(&mut opened);
-                draw(&mut opened, &piece);
-            }
-        }
+    /// Number of the passes' pieces.
+    pub(crate) fn piece_count(&self) -> usize {
+        self.plan.pieces.len()
     }
 
-    /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
-    /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
-    pub(crate) fn begin_pass<'encoder>(
-        &self,
-        encoder: &'encoder mut wgpu::CommandEncoder,
-        pass: &ShadowPass<'_>,
-        group: u32,
-        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) -> wgpu::RenderPass<'encoder> {
-        let opening = Opening { map: &self.map, plan: pass.plan, group };
-        self.layers.begin(encoder, opening, pass.pass, timestamps)
+    /// One of the passes, in the order in which they must be drawn. `first_piece`: number of the first piece of all.
+    pub(crate) fn pass(&self, index: usize, first_piece: usize) -> ShadowPass<'_> {
+        ShadowPass { maps: self, pass: &self.plan.passes[index], first_piece }
     }
 }

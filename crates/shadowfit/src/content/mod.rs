@@ -2,7 +2,7 @@
 //!
 //! Boxes of objects and clusters come in an order in which neighbours in the list are mostly neighbours in space. So
 //! the bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
-//! Of the boxes of a tree those in view are taken from it once a frame; what is asked of all of them is asked of the tree.
+//! A tree of boxes is asked whenever something is asked of them: it looks at few of them.
 
 #[cfg(feature = "alloc")]
 pub(crate) mod clusters;
@@ -17,11 +17,10 @@ use core::cell::OnceCell;
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::enclosing::{EnclosingSphere, HullBuilder, SymmetricFrustum, minimal};
-use crate::base::{Aabb, Boxes, FitError, checks, moved};
+use crate::base::{Boxes, FitError, checks, moved};
 use crate::content::groups::Groups;
 use crate::content::normal_cone::NormalCone;
-use crate::content::standing::Corners;
-pub(crate) use crate::content::standing::{BoxTree, each_in_view};
+pub(crate) use crate::content::standing::BoxTree;
 use crate::light::LightAxes;
 use crate::view::{Range, Slice, View, ViewFrustum, slice_corners};
 
@@ -36,14 +35,6 @@ pub(crate) struct Scene<'a> {
     pub(crate) casters: Option<Boxes<'a>>,
     /// Boxes that receive and cast beside those of the lists.
     pub(crate) standing: Option<&'a BoxTree>,
-    /// View depth up to which standing boxes are of use as receivers, in metres.
-    pub(crate) reach: f32,
-}
-
-impl Scene<'_> {
-    fn count(&self) -> [usize; 2] {
-        [self.receivers, self.casters].map(|boxes| boxes.map_or(0, |boxes| boxes.boxes.len()))
-    }
 }
 
 /// The views and boxes of one frame, with the view depths of each box computed once.
@@ -55,9 +46,7 @@ pub(crate) struct Content<'a> {
     /// The list of casters.
     casters: Option<Boxes<'a>>,
     standing: Option<&'a BoxTree>,
-    /// The standing boxes in view, which are receivers after those of the list.
-    seen: Corners<'a>,
-    /// Least and greatest view depth of each receiver, view by view; the least is above the
+    /// Least and greatest view depth of each receiver of the list, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
     receiver_groups: Groups<'a>,
@@ -82,25 +71,20 @@ impl<'a> Content<'a> {
     where
         'a: 'w,
     {
-        let (origin, [listed, casters]) = (input.views[0].origin, input.count());
-        let is_same = is_same(input.receivers, input.casters);
-        for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
-            check(boxes)?;
-        }
-        let given = storage.len();
-        let (seen, storage) = match input.standing {
-            Some(tree) => Corners::in_view(tree, (input.views, input.reach), storage)?,
-            None => (Corners::default(), storage),
-        };
-        let count = listed + seen.len();
+        let origin = input.views[0].origin;
+        let [count, casters] = [input.receivers, input.casters].map(|boxes| boxes.map_or(0, |boxes| boxes.boxes.len()));
         let needed = count.saturating_mul(input.views.len());
-        let grouped = [Groups::required(listed), Groups::required(casters)];
+        let grouped = [Groups::required(count), Groups::required(casters)];
         let required = needed
             .saturating_add(2 * 8 * input.views.len())
             .saturating_add(HullBuilder::SLACK)
             .saturating_add(grouped[0] + grouped[1]);
         if storage.len() < required {
-            return Err(FitError::ScratchTooSmall { given, required: required + (given - storage.len()) });
+            return Err(FitError::ScratchTooSmall { given: storage.len(), required });
+        }
+        let is_same = is_same(input.receivers, input.casters);
+        for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
+            check(boxes)?;
         }
         let (depths, points) = storage.split_at_mut(needed);
         let (of_receivers, points) = points.split_at_mut(grouped[0]);
@@ -110,15 +94,9 @@ impl<'a> Content<'a> {
         };
         let receiver_groups = groups(input.receivers, of_receivers);
         let caster_groups = if is_same { receiver_groups } else { groups(input.casters, of_casters) };
-        for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
-            let (of_list, of_standing) = depths.split_at_mut(listed);
-            if let Some(receivers) = &input.receivers {
-                view_depths(&input, receivers, &receiver_groups, view, of_list);
-            }
-            let view = View::new(view, origin);
-            for (i, depths) in of_standing.iter_mut().enumerate() {
-                let (min, max) = seen.get(i);
-                *depths = view.depths(min, max).map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
+        if let Some(receivers) = &input.receivers {
+            for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
+                view_depths(&input, receivers, &receiver_groups, view, depths);
             }
         }
         let content = Content {
@@ -127,7 +105,6 @@ impl<'a> Content<'a> {
             receivers: input.receivers,
             casters: input.casters,
             standing: input.standing,
-            seen,
             depths,
             receiver_groups,
             caster_groups,
@@ -146,7 +123,6 @@ impl<'a> Content<'a> {
             receivers: None,
             casters: None,
             standing: None,
-            seen: Corners::default(),
             depths: &[],
             receiver_groups: Groups::default(),
             caster_groups: Groups::default(),
@@ -214,9 +190,9 @@ impl<'a> Content<'a> {
         self.standing.is_some() || self.casters.is_some_and(|casters| !casters.boxes.is_empty())
     }
 
-    /// The list of receivers, and that of casters.
+    /// The list of receivers, and that of casters; `None` of the second one where it is the same in memory.
     pub(crate) fn lists(&self) -> [Option<Boxes<'a>>; 2] {
-        [self.receivers, self.casters]
+        [self.receivers, self.casters.filter(|_| !is_same(self.receivers, self.casters))]
     }
 
     /// Number of receivers of the list.
@@ -224,24 +200,21 @@ impl<'a> Content<'a> {
         self.receivers.map_or(0, |receivers| receivers.boxes.len())
     }
 
-    /// Number of receivers of the list and of standing boxes in view.
-    fn count(&self) -> usize {
-        self.listed() + self.seen.len()
-    }
-
-    /// Depths of all receivers in each view.
+    /// Depths of the listed receivers in each view.
     fn depths(&self) -> impl Iterator<Item = &[DVec2]> {
-        self.depths.chunks(self.count().max(1))
+        let listed = self.listed();
+        (0..self.views.len()).map(move |view| self.depths.get(view * listed..(view + 1) * listed).unwrap_or_default())
     }
 
-    /// A receiver's box.
+    /// A receiver's box: of the list by its index, and standing ones after these by their numbers.
     #[inline]
     pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
         let listed = self.listed();
         if let (Some(receivers), true) = (&self.receivers, index < listed) {
             return Some(moved(&receivers.boxes[index], receivers.origin - self.origin));
         }
-        (index < self.count()).then(|| self.seen.get(index - listed))
+        let tree = self.standing?;
+        tree.get((index - listed) as u32).map(|aabb| moved(&aabb, tree.origin() - self.origin))
     }
 
     /// Least and greatest view depth of what the views see of the receivers, `None` when nothing.
@@ -249,16 +222,30 @@ impl<'a> Content<'a> {
         let mut range = OUT_OF_VIEW;
         for (view, depths) in self.views().zip(self.depths()) {
             let whole = view.slice(view.near, view.far);
-            for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
-                range.y = range.y.max(depths.y.min(view.far));
+            let add = |range: &mut DVec2, depths: (f64, f64), min: DVec3, max: DVec3| {
+                range.y = range.y.max(depths.1.min(view.far));
                 // The part of a box that is in view may begin much farther out than the box.
-                if let Some((min, max)) = self.receiver(i).filter(|_| depths.x < range.x) {
+                if depths.0 < range.x {
                     let Ok(()) = whole.clip(min, max, &mut |p| {
                         range.x = range.x.min(view.depth.distance(p).max(view.near));
                         Ok::<(), core::convert::Infallible>(())
                     });
                 }
+            };
+            for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
+                if let Some((min, max)) = self.receiver(i) {
+                    add(&mut range, (depths.x, depths.y), min, max);
+                }
             }
+            let is_new = |range: &DVec2, (near, far): (f64, f64), _, _| near < range.x || far.min(view.far) > range.y;
+            self.each_standing_seen(
+                (&view, view.near, view.far),
+                &mut range,
+                is_new,
+                |range, depths, _, (min, max)| {
+                    add(range, depths, min, max);
+                },
+            );
         }
         if range.x < range.y { Some((range.x, range.y)) } else { None }
     }
@@ -322,11 +309,14 @@ impl<'a> Content<'a> {
     }
 
     /// Passes on each receiver's box that may reach into a range of view depths, with the slice of
-    /// the view that it may intersect, in coordinates relative to the origin.
-    pub(crate) fn receivers_in<E>(
+    /// the view that it may intersect, in coordinates relative to the origin, with a state; those of the list by index.
+    /// Standing ones are passed on where `is_new` of them and of the boxes around them is true.
+    pub(crate) fn receivers_in<S, E>(
         &self,
         range: Range,
-        mut visit: impl FnMut(usize, &Slice, DVec3, DVec3) -> Result<(), E>,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, Option<usize>, &Slice, (DVec3, DVec3)) -> Result<(), E>,
     ) -> Result<(), E> {
         for (view, depths) in self.views().zip(self.depths()) {
             let slice = view.slice(f64::from(range.near), f64::from(range.far));
@@ -335,22 +325,42 @@ impl<'a> Content<'a> {
             }
             for i in scattered(depths.len()) {
                 let is_in = depths[i].x <= slice.far && depths[i].y >= slice.near;
-                if let Some((min, max)) = self.receiver(i).filter(|_| is_in) {
-                    visit(i, &slice, min, max)?;
+                if let Some(corners) = self.receiver(i).filter(|_| is_in) {
+                    visit(state, Some(i), &slice, corners)?;
                 }
             }
+            let mut all = (&mut *state, Ok(()));
+            let goes_on = |all: &(&mut S, Result<(), E>), _, min, max| all.1.is_ok() && is_new(all.0, min, max);
+            self.each_standing_seen((&view, slice.near, slice.far), &mut all, goes_on, |all, _, _, corners| {
+                if all.1.is_ok() {
+                    all.1 = visit(all.0, None, &slice, corners);
+                }
+            });
+            all.1?;
         }
         Ok(())
     }
 
     /// Passes on each receiver's box that reaches into one of the views, with its least and greatest view
-    /// depth.
-    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut((f64, f64), DVec3, DVec3)) {
+    /// depth and a state. Standing ones, about the nearest first, are passed on where `is_new` of them and of the boxes
+    /// around them is true.
+    pub(crate) fn each_receiver<S>(
+        &self,
+        view: usize,
+        state: &mut S,
+        is_new: impl Fn(&S, (f64, f64), DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, (f64, f64), DVec3, DVec3),
+    ) {
         let depths = self.depths().nth(view).unwrap_or_default();
         for (i, depths) in depths.iter().enumerate().filter(|(_, depths)| depths.x <= depths.y) {
             if let Some((min, max)) = self.receiver(i) {
-                visit((depths.x, depths.y), min, max);
+                visit(state, (depths.x, depths.y), min, max);
             }
+        }
+        if let Some(view) = self.views().nth(view) {
+            self.each_standing_seen((&view, view.near, view.far), state, is_new, |state, depths, _, (min, max)| {
+                visit(state, depths, min, max);
+            });
         }
     }
 
@@ -362,30 +372,45 @@ impl<'a> Content<'a> {
         is_new: impl Fn(&S, DVec3, DVec3) -> bool,
         mut visit: impl FnMut(&mut S, DVec3, DVec3),
     ) {
-        let mut visit_run = |state: &mut S, run: core::ops::Range<usize>| {
+        for (run, min, max) in self.receiver_groups.runs() {
+            if !is_new(state, min, max) {
+                continue;
+            }
             for i in run.filter(|i| self.depths().any(|depths| depths[*i].x <= depths[*i].y)) {
                 if let Some((min, max)) = self.receiver(i) {
                     visit(state, min, max);
                 }
             }
-        };
-        for (run, min, max) in self.receiver_groups.runs() {
-            if is_new(state, min, max) {
-                visit_run(state, run);
-            }
         }
-        visit_run(state, self.listed()..self.count());
+        for view in self.views() {
+            let is_new = |state: &S, _, min, max| is_new(state, min, max);
+            self.each_standing_seen((&view, view.near, view.far), state, is_new, |state, _, _, (min, max)| {
+                visit(state, min, max);
+            });
+        }
     }
 
-    /// Passes on each receiver's box that reaches into a view, whether it is dark or not, with its index.
-    pub(crate) fn each_in_view(&self, view: &View, mut visit: impl FnMut(usize, DVec3, DVec3)) {
+    /// Passes on each receiver's box that reaches into a view, whether it is dark or not, with its
+    /// [number](Self::receiver) and a state. Standing ones, about the nearest first, are passed on where `is_new` of
+    /// their least view depth, of them and of the boxes around them is true.
+    pub(crate) fn each_in_view<S>(
+        &self,
+        view: &View,
+        state: &mut S,
+        is_new: impl Fn(&S, f64, (DVec3, DVec3)) -> bool,
+        mut visit: impl FnMut(&mut S, usize, (DVec3, DVec3)),
+    ) {
+        let listed = self.listed();
         let boxes = self.receivers.map_or(&[][..], |receivers| receivers.boxes);
-        let listed = (0..boxes.len()).filter(|i| !boxes[*i].is_empty());
-        for i in listed.chain(boxes.len()..self.count()) {
-            if let Some((min, max)) = self.receiver(i).filter(|(min, max)| view.depths(*min, *max).is_some()) {
-                visit(i, min, max);
+        for (i, _) in boxes.iter().enumerate().filter(|(_, aabb)| !aabb.is_empty()) {
+            if let Some(corners) = self.receiver(i).filter(|(min, max)| view.depths(*min, *max).is_some()) {
+                visit(state, i, corners);
             }
         }
+        let is_new = |state: &S, (near, _): (f64, f64), min, max| is_new(state, near, (min, max));
+        self.each_standing_seen((view, view.near, view.far), state, is_new, |state, _, number, corners| {
+            visit(state, listed + number as usize, corners);
+        });
     }
 
     /// Passes on each caster's box, in view or not, with a state: those for which, and for the bounds of those around
@@ -400,25 +425,6 @@ impl<'a> Content<'a> {
             each_of_list(casters, &self.caster_groups, self.origin, state, &is_new, &mut visit);
         }
         self.each_standing(state, is_new, visit);
-    }
-
-    /// [`Self::each_caster`] of the standing boxes alone, which receive as well.
-    pub(crate) fn each_standing<S>(
-        &self,
-        state: &mut S,
-        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
-        mut visit: impl FnMut(&mut S, DVec3, DVec3),
-    ) {
-        let Some(tree) = self.standing else { return };
-        let offset = tree.origin() - self.origin;
-        let enter = |state: &mut S, (), aabb: &Aabb| {
-            let (min, max) = moved(aabb, offset);
-            is_new(state, min, max).then_some(())
-        };
-        tree.visit((), state, enter, |state, (), _, aabb| {
-            let (min, max) = moved(aabb, offset);
-            visit(state, min, max);
-        });
     }
 
     /// A box around all casters, in view or not, if there are any.

@@ -1,9 +1,10 @@
-//! Standing boxes as one frame sees them: those in view, taken from their tree once.
+//! Standing boxes as one frame sees them: no more of them are looked at than may change what is asked for.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use crate::base::{Aabb, FitError, moved};
-use crate::view::{View, ViewFrustum};
+use super::Content;
+use crate::base::{Aabb, moved};
+use crate::view::View;
 
 #[cfg(feature = "alloc")]
 pub(crate) use super::tree::BoxTree;
@@ -19,6 +20,10 @@ impl BoxTree {
         match *self {}
     }
 
+    pub(crate) fn get(&self, _: u32) -> Option<Aabb> {
+        match *self {}
+    }
+
     pub(crate) fn visit<C: Copy, S>(
         &self,
         _: C,
@@ -28,64 +33,60 @@ impl BoxTree {
     ) {
         match *self {}
     }
+
+    pub(crate) fn visit_nearest<S>(
+        &self,
+        _: &mut S,
+        _: impl Fn(&Aabb) -> Option<(f64, f64)>,
+        _: impl Fn(&S, (f64, f64), &Aabb) -> bool,
+        _: impl FnMut(&mut S, (f64, f64), u32, &Aabb),
+    ) {
+        match *self {}
+    }
 }
 
-/// Most views that boxes are tested against; where there are more, all boxes count as seen.
-const MAX_VIEWS: usize = 12;
-
-/// Boxes relative to the origin of a fit, in its storage.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Corners<'a>(&'a [DVec2]);
-
-impl<'a> Corners<'a> {
-    /// Elements of storage for a box.
-    pub(super) const ELEMENTS: usize = 3;
-
-    /// Takes the boxes of a tree that may touch one of the views up to a view depth; returns the rest of the storage.
-    pub(super) fn in_view(
-        tree: &BoxTree,
-        (views, reach): (&[ViewFrustum], f32),
-        storage: &'a mut [DVec2],
-    ) -> Result<(Self, &'a mut [DVec2]), FitError> {
-        let given = storage.len();
-        let mut count = 0;
-        each_in_view(tree, (views, reach), |min, max| {
-            if let Some(free) = storage.get_mut(count..count + Self::ELEMENTS) {
-                free.copy_from_slice(&[min.truncate(), DVec2::new(min.z, max.x), DVec2::new(max.y, max.z)]);
-            }
-            count += Self::ELEMENTS;
+impl Content<'_> {
+    /// Passes on each standing box, in view or not, with a state: those for which `is_new` is true, as it is for all
+    /// boxes of the hierarchy around them.
+    pub(crate) fn each_standing<S>(
+        &self,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, DVec3, DVec3),
+    ) {
+        let Some(tree) = self.standing else { return };
+        let offset = tree.origin() - self.origin;
+        let enter = |state: &mut S, (), aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            is_new(state, min, max).then_some(())
+        };
+        tree.visit((), state, enter, |state, (), _, aabb| {
+            let (min, max) = moved(aabb, offset);
+            visit(state, min, max);
         });
-        if count > given {
-            return Err(FitError::ScratchTooSmall { given, required: count });
-        }
-        let (corners, rest) = storage.split_at_mut(count);
-        Ok((Self(corners), rest))
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.0.len() / Self::ELEMENTS
+    /// The same of those that a view may see between two view depths, about the nearest first, with their least and
+    /// greatest view depth and their numbers.
+    pub(super) fn each_standing_seen<S>(
+        &self,
+        (view, near, far): (&View, f64, f64),
+        state: &mut S,
+        is_new: impl Fn(&S, (f64, f64), DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, (f64, f64), u32, (DVec3, DVec3)),
+    ) {
+        let Some(tree) = self.standing else { return };
+        let offset = tree.origin() - self.origin;
+        let depths = |aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            view.depths(min, max).filter(|(first, last)| *first <= far && *last >= near)
+        };
+        let enter = |state: &S, depths, aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            is_new(state, depths, min, max)
+        };
+        tree.visit_nearest(state, depths, enter, |state, depths, number, aabb| {
+            visit(state, depths, number, moved(aabb, offset));
+        });
     }
-
-    pub(super) fn get(&self, index: usize) -> (DVec3, DVec3) {
-        let corners = &self.0[index * Self::ELEMENTS..][..Self::ELEMENTS];
-        (DVec3::new(corners[0].x, corners[0].y, corners[1].x), DVec3::new(corners[1].y, corners[2].x, corners[2].y))
-    }
-}
-
-/// Passes on the boxes of a tree that may touch one of the views up to a view depth, relative to the first one's eye.
-pub(crate) fn each_in_view(tree: &BoxTree, (views, reach): (&[ViewFrustum], f32), mut visit: impl FnMut(DVec3, DVec3)) {
-    let origin = views[0].origin;
-    let offset = tree.origin() - origin;
-    let mut tested = [None; MAX_VIEWS];
-    tested.iter_mut().zip(views).for_each(|(to, view)| *to = Some(View::new(view, origin)));
-    let is_in = |view: &View, min, max| view.depths(min, max).is_some_and(|(near, _)| near <= f64::from(reach));
-    let enter = |(): &mut (), (), aabb: &Aabb| {
-        let (min, max) = moved(aabb, offset);
-        let is_seen = views.len() > MAX_VIEWS || tested.iter().flatten().any(|view| is_in(view, min, max));
-        is_seen.then_some(())
-    };
-    tree.visit((), &mut (), enter, |(), (), _, aabb| {
-        let (min, max) = moved(aabb, offset);
-        visit(min, max);
-    });
 }

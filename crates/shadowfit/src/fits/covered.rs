@@ -260,7 +260,8 @@ impl<'a> LightHull<'a> {
             return Self::of_views(content, axes, range, points);
         }
         let mut collector = Collector::new(axes, points);
-        content.receivers_in(range, |_, slice, min, max| {
+        let is_new = |collector: &Collector, min, max| !collector.holds(min, max);
+        content.receivers_in(range, &mut collector, is_new, |collector, _, slice, (min, max)| {
             if collector.holds(min, max) { Ok(()) } else { slice.clip(min, max, &mut |p| collector.push(p)) }
         })?;
         if collector.hull.is_empty() {

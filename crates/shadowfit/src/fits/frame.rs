@@ -4,7 +4,7 @@ use glam::{DVec2, Vec3};
 
 use crate::base::{Boxes, FitError};
 use crate::content::normal_cone::NormalCone;
-use crate::content::{BoxTree, Content, Scene, each_in_view};
+use crate::content::{BoxTree, Content, Scene};
 use crate::demand::grid::DemandGrid;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
 use crate::fits::{FitRule, Volume};
@@ -97,11 +97,11 @@ impl<'a> FitInput<'a> {
         }
     }
 
-    /// What content is made of; shadows end at a view depth, in metres.
+    /// What content is made of.
     #[inline]
-    pub(crate) fn scene(&self, reach: f32) -> Scene<'a> {
+    pub(crate) fn scene(&self) -> Scene<'a> {
         let Self { views, direction, receivers, receiver_cones, casters, .. } = *self;
-        Scene { views, direction, receivers, receiver_cones, casters, standing: self.tree(), reach }
+        Scene { views, direction, receivers, receiver_cones, casters, standing: self.tree() }
     }
 
     /// Whether it is known what casts shadows.
@@ -120,19 +120,20 @@ impl<'a> FitInput<'a> {
         None
     }
 
-    /// Number of elements of [`Scratch`] that is enough for any fit of this input, as [`Scratch::required`] says it of
-    /// lists: standing boxes in view count as well. Maps that are
+    /// Number of elements of [`Scratch`] that is enough for any fit of this input: that of
+    /// [`Scratch::required`] for its lists, and room for the outline of standing boxes. Maps that are
     /// [held](crate::settings::Stabilise::Hysteresis) look at the views of two frames ahead, for which two more views
     /// count.
     pub fn scratch(&self) -> usize {
         let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
-        let mut boxes = count(self.receivers).max(count(self.casters));
-        if let (Some(tree), false) = (self.tree(), self.views.is_empty()) {
-            each_in_view(tree, (self.views, f32::MAX), |_, _| boxes += 1);
-        }
+        let outline = if self.tree().is_some() { STANDING_OUTLINE } else { 0 };
+        let boxes = count(self.receivers).max(count(self.casters)) + outline;
         Scratch::required(boxes, self.views.len() + VIEWS_AHEAD)
     }
 }
+
+/// Boxes that make up the outline of standing ones: far more than it has corners in any scene that was tried.
+const STANDING_OUTLINE: usize = 128;
 
 /// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
 const VIEWS_AHEAD: usize = 2;

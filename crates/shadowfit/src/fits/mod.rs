@@ -70,16 +70,10 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     if rule.form.is_exact {
         // It uses nothing but the corners, and is as cheap as the sample's own code only without
         // storage.
-        return fit_whole(
-            &Content::of_views(input.scene(settings.map.max_distance)),
-            &light,
-            &rule,
-            settings.map.max_distance,
-            &mut [],
-        );
+        return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.map.max_distance, &mut []);
     }
     let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
-    let (content, points) = Content::new(input.scene(settings.map.max_distance), &mut storage)?;
+    let (content, points) = Content::new(input.scene(), &mut storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
@@ -95,7 +89,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 /// [`Scratch::required`].
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, scratch: &mut Scratch) -> Result<LightProjection, FitError> {
     let (rule, light) = prepare(input, settings, default_border(settings))?;
-    let (content, points) = Content::new(input.scene(settings.map.max_distance), scratch.storage)?;
+    let (content, points) = Content::new(input.scene(), scratch.storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 

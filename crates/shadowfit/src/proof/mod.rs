@@ -196,7 +196,7 @@ pub fn prove(
     checks::point("the fit's origin", fit.origin)?;
     let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
-    let (content, points) = Content::new(input.scene(range.far), scratch.storage)?;
+    let (content, points) = Content::new(input.scene(), scratch.storage)?;
     let offset = content.origin - fit.origin;
     let mut receivers = Worst::new(&half_spaces, offset);
     receivers.add_all(&content, range);
@@ -298,21 +298,26 @@ impl<'a> Worst<'a> {
             content.corners(range).for_each(|corner| self.add(corner));
             return;
         }
-        let all = content.receivers_in(range, |_, slice, min, max| self.add_box(slice, min, max));
+        let add = |worst: &mut Self, _, slice: &Slice, (min, max)| worst.add_box(slice, min, max);
+        let all = content.receivers_in(range, self, Self::may_be_worse, add);
         let Ok(()): Result<(), core::convert::Infallible> = all;
     }
 
     /// Adds a receiver's box clipped to a slice.
     fn add_box(&mut self, slice: &Slice, min: DVec3, max: DVec3) -> Result<(), core::convert::Infallible> {
-        // No part of a box is less inside than its corners.
-        let corners = box_corners(min, max);
-        if self.any.is_some() && corners.into_iter().all(|corner| !self.is_worse(corner)) {
+        if !self.may_be_worse(min, max) {
             return Ok(());
         }
         slice.clip(min, max, &mut |p| {
             self.add(p);
             Ok(())
         })
+    }
+
+    /// Whether a point of a box may have less margin at some plane than all before it: none is less inside than the
+    /// corners.
+    fn may_be_worse(&self, min: DVec3, max: DVec3) -> bool {
+        self.any.is_none() || box_corners(min, max).into_iter().any(|corner| self.is_worse(corner))
     }
 
     /// Whether a point has less margin at some plane than all before it.

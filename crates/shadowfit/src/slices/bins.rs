@@ -156,7 +156,10 @@ pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, rays: RayCount) -
     let mut spread = Spread::new(bins);
     for (view_index, view) in content.views().enumerate() {
         let mut grid = Grid::new(&view, rays);
-        content.each_receiver(view_index, |depths, min, max| grid.meet(&view, bins, depths.0, min, max));
+        let may_meet = |grid: &Grid, depths: (f64, f64), min, max| grid.may_meet(&view, depths.0, min, max);
+        content.each_receiver(view_index, &mut grid, may_meet, |grid, depths, min, max| {
+            grid.meet(&view, bins, depths.0, min, max);
+        });
         for ray in &grid.rays[..rays.columns * rays.rows] {
             let mut weight = 1.0;
             for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < NOWHERE) {
@@ -288,6 +291,14 @@ impl Grid {
             }
         }
         Self { rays, count, picture: view.picture(), near: view.near, depth: view.far - view.near }
+    }
+
+    /// Whether a box that begins at a view depth, or a box in it, may be among the nearest ones along a ray.
+    fn may_meet(&self, view: &View, nearest: f64, min: DVec3, max: DVec3) -> bool {
+        let Some((columns, rows)) = covered(view, &self.picture, self.count, min, max) else { return false };
+        let nearest = (nearest - self.near) / self.depth - ROUNDING;
+        let mut rays = rows.flat_map(|row| &self.rays[row * self.count.columns..][columns.clone()]);
+        rays.any(|ray| nearest < ray.enters[LAYERS - 1])
     }
 
     /// Intersects all rays with a box that begins at a view depth.

@@ -133,7 +133,14 @@ impl Sizes {
 fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
     for (index, view) in content.views().enumerate() {
         let slabs = Slabs::new(&view, bins);
-        content.each_receiver(index, |depths, min, max| collect_box(extents, &slabs, directions, depths, min, max));
+        content.each_receiver(
+            index,
+            extents,
+            |_, _, _, _| true,
+            |extents, depths, min, max| {
+                collect_box(extents, &slabs, directions, depths, min, max);
+            },
+        );
     }
 }
 

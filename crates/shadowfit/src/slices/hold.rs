@@ -98,7 +98,7 @@ impl Holder<'_, '_> {
         views[..now].copy_from_slice(self.frame.input.views);
         views[now..now + ahead.len()].copy_from_slice(ahead);
         let input = FitInput { views: &views[..now + ahead.len()], ..*self.frame.input };
-        let (content, points) = Content::new(input.scene(self.frame.range.far), points)?;
+        let (content, points) = Content::new(input.scene(), points)?;
         fits::fit_map(&content, &self.frame.light, rule, slice, Snapping::Tight, points)
     }
 

@@ -45,7 +45,8 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
         let picture = Picture::new(&view, plane);
         #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
         let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
-        content.each_in_view(&view, |i, min, max| picture.meet(&view, i, (min, max), &mut rays));
+        let may_meet = |rays: &_, nearest, corners| picture.may_meet(&view, nearest, corners, rays);
+        content.each_in_view(&view, &mut rays, may_meet, |rays, i, corners| picture.meet(&view, i, corners, rays));
         let mut counted = Counted::new();
         let offset = frustum.origin - content.origin;
         for (i, ray) in rays.iter().enumerate() {
@@ -101,6 +102,20 @@ impl<'a> Picture<'a> {
         let c = &self.whole.corners;
         let at = |i: usize| (c[i] * (1.0 - x) + c[i + 1] * x) * (1.0 - y) + (c[i + 3] * (1.0 - x) + c[i + 2] * x) * y;
         (at(0), at(4))
+    }
+
+    /// Whether a box that begins at a view depth, or a box in it, may be among the nearest ones along a ray.
+    fn may_meet(
+        &self,
+        view: &View,
+        nearest: f64,
+        (min, max): (DVec3, DVec3),
+        rays: &[Ray; RAYS.columns * RAYS.rows],
+    ) -> bool {
+        let Some((columns, rows)) = covered(view, &self.positions, RAYS, min, max) else { return false };
+        let nearest = (nearest - view.near) / (view.far - view.near) * (1.0 - ROUNDING) - ROUNDING;
+        let mut rays = rows.flat_map(|row| &rays[row * RAYS.columns..][columns.clone()]);
+        nearest <= 0.0 || rays.any(|ray| nearest < f64::from(ray.layers[LAYERS - 1].enter))
     }
 
     /// Intersects all rays with a box.
@@ -162,6 +177,9 @@ impl<'a> Picture<'a> {
         met
     }
 }
+
+/// Rounding of shares of a ray to f32, and of view depths to such shares.
+const ROUNDING: f64 = 1e-6;
 
 /// Share of the points with the finest demands, which count as no finer than those of the rest: estimates from
 /// boxes find too many near the eye.

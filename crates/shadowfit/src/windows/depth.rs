@@ -50,7 +50,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
             content,
             axes,
             receivers: for_receivers,
-            casters: for_casters,
+            casters: if lists[1].is_some() { for_casters } else { for_receivers },
             min: DVec3::MAX,
             max: DVec3::MIN,
             is_empty: false,
@@ -63,21 +63,24 @@ impl<'a, 'b> Shadows<'a, 'b> {
     fn find_bounds(&mut self, range: Range) {
         let (content, axes) = (self.content, &self.axes);
         if content.knows_receivers() {
-            let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
-            let _ = content.receivers_in(range, |i, slice, low, high| {
-                let listed = self.receivers.get(i * PER_BOX..).and_then(<[DVec2]>::first_chunk);
-                let b = listed.copied().unwrap_or_else(|| projected(low, high, axes));
+            let mut bounds = (DVec3::MAX, DVec3::MIN);
+            let widens = |(min, max): &(DVec3, DVec3), b: &[DVec2; PER_BOX]| {
                 let (b_min, b_max) = (b[0].extend(b[2].x), b[1].extend(b[2].y));
-                if b_min.cmpge(min).all() && b_max.cmple(max).all() {
+                !(b_min.cmpge(*min).all() && b_max.cmple(*max).all())
+            };
+            let is_new = |bounds: &(DVec3, DVec3), low, high| widens(bounds, &projected(low, high, axes));
+            let receivers = self.receivers.as_chunks().0;
+            let Ok(()) = content.receivers_in(range, &mut bounds, is_new, |bounds, i, slice, (low, high)| {
+                if i.is_some_and(|i| !widens(bounds, &receivers[i])) {
                     return Ok::<(), core::convert::Infallible>(());
                 }
                 slice.clip(low, high, &mut |p| {
                     let p = axes.project(p);
-                    (min, max) = (min.min(p), max.max(p));
+                    *bounds = (bounds.0.min(p), bounds.1.max(p));
                     Ok(())
                 })
             });
-            (self.min, self.max) = (min, max);
+            (self.min, self.max) = bounds;
         }
         self.is_empty = content.knows_receivers() && self.min.cmpgt(self.max).any();
         if !content.knows_receivers() || self.is_empty {

@@ -195,9 +195,9 @@ fn memory_that_an_input_asks_for_is_enough_and_less_is_refused_by_number() {
             preset.name
         );
         if preset.name != "xna-1" {
-            let small = FitState::new().fit(&input, &preset.technique(), &mut Scratch::new(&mut storage[..100]));
+            let small = FitState::new().fit(&input, &preset.technique(), &mut Scratch::new(&mut storage[..20]));
             assert!(
-                matches!(small, Err(FitError::ScratchTooSmall { given: 100, required }) if required > 100),
+                matches!(small, Err(FitError::ScratchTooSmall { given: 20, required }) if required > 20),
                 "{small:?}"
             );
         }

@@ -221,6 +221,17 @@ impl BoxTree {
         self.nodes.visit(context, state, &enter, &mut take);
     }
 
+    /// The same of those that have distances, least and greatest, about the nearest first.
+    pub(crate) fn visit_nearest<S>(
+        &self,
+        state: &mut S,
+        distances: impl Fn(&Aabb) -> Option<(f64, f64)>,
+        enter: impl Fn(&S, (f64, f64), &Aabb) -> bool,
+        mut take: impl FnMut(&mut S, (f64, f64), u32, &Aabb),
+    ) {
+        self.nodes.visit_nearest(state, &distances, &enter, &mut take);
+    }
+
     fn is_used(&self, number: u32) -> bool {
         self.used.get(number as usize).copied().unwrap_or(false)
     }

@@ -352,6 +352,51 @@ impl Nodes {
             }
         }
     }
+
+    /// Passes on the boxes that have distances, least and greatest, and for which `enter` is true, as for all boxes
+    /// around them; those of each node in the order of their least distances.
+    pub(super) fn visit_nearest<S>(
+        &self,
+        state: &mut S,
+        distances: &impl Fn(&Aabb) -> Option<(f64, f64)>,
+        enter: &impl Fn(&S, (f64, f64), &Aabb) -> bool,
+        take: &mut impl FnMut(&mut S, (f64, f64), u32, &Aabb),
+    ) {
+        if self.root != NONE {
+            self.visit_nearest_in(self.root, state, distances, enter, take);
+        }
+    }
+
+    fn visit_nearest_in<S>(
+        &self,
+        index: u32,
+        state: &mut S,
+        distances: &impl Fn(&Aabb) -> Option<(f64, f64)>,
+        enter: &impl Fn(&S, (f64, f64), &Aabb) -> bool,
+        take: &mut impl FnMut(&mut S, (f64, f64), u32, &Aabb),
+    ) {
+        let node = &self.all[index as usize];
+        let mut order = [((0.0, 0.0), 0); WIDTH];
+        let mut count = 0;
+        for (slot, aabb) in node.boxes[..usize::from(node.len)].iter().enumerate() {
+            let Some(distances) = distances(aabb) else { continue };
+            let place = order[..count].iter().position(|(known, _)| distances.0 < known.0).unwrap_or(count);
+            order.copy_within(place..count, place + 1);
+            order[place] = (distances, slot);
+            count += 1;
+        }
+        for (distances_of_box, slot) in order.into_iter().take(count) {
+            let (aabb, id) = (&node.boxes[slot], node.ids[slot]);
+            if !enter(state, distances_of_box, aabb) {
+                continue;
+            }
+            if node.level == 0 {
+                take(state, distances_of_box, id, aabb);
+            } else {
+                self.visit_nearest_in(id, state, distances, enter, take);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,156 @@
+//! Textures that the engine made and owns, in which maps lie: a frame graph's, or one that two suns share.
+
+use core::fmt;
+
+use crate::{ShadowMapDescriptor, ShadowMapError};
+
+/// Layers of a texture that hold shadow maps: as many as there are maps, from one on.
+///
+/// ```no_run
+/// # fn demo(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), shadowfit_wgpu::SunShadowsError> {
+/// use shadowfit::Technique;
+/// use shadowfit_wgpu::{MapTexture, ShadowMapDescriptor, SunShadows};
+///
+/// // Four maps of the sun and two of the moon, in one array.
+/// let (by_day, by_night) = (Technique::default(), Technique::default().with_count(2));
+/// let mut descriptor = ShadowMapDescriptor::from(&by_day).texture();
+/// descriptor.size.depth_or_array_layers = 6;
+/// let texture = device.create_texture(&descriptor);
+/// let layers = |base_layer| MapTexture { texture: texture.clone(), base_layer };
+/// let sun = SunShadows::in_texture(device, queue, &by_day, 0, &layers(0))?;
+/// let moon = SunShadows::in_texture(device, queue, &by_night, 3, &layers(4))?;
+/// # Ok(()) }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapTexture {
+    /// The texture, as [`ShadowMapDescriptor::texture`] describes it.
+    pub texture: wgpu::Texture,
+    /// Layer of the first map. OpenGL has none but 0. Layers of another sun are not to overlap.
+    pub base_layer: u32,
+}
+
+/// Why a texture cannot hold maps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MapTextureError {
+    /// It has another dimension than two.
+    Dimension(wgpu::TextureDimension),
+    /// It has another format than the maps.
+    Format {
+        /// The texture's.
+        texture: wgpu::TextureFormat,
+        /// That of the maps.
+        maps: wgpu::TextureFormat,
+    },
+    /// It is larger or smaller than the maps.
+    Size {
+        /// Its width and height, in texels.
+        texture: [u32; 2],
+        /// Those of the maps.
+        maps: [u32; 2],
+    },
+    /// It ends before the last map.
+    Layers {
+        /// Number of its layers.
+        texture: u32,
+        /// Layer of the first map.
+        base_layer: u32,
+        /// Number of maps.
+        maps: u32,
+    },
+    /// It has several samples a texel.
+    Samples(u32),
+    /// It lacks usages.
+    Usages {
+        /// Those that are missing.
+        missing: wgpu::TextureUsages,
+    },
+    /// OpenGL's shaders read textures from their first layer on only.
+    BaseLayer(u32),
+}
+
+impl MapTexture {
+    /// A view of the first mip level of some maps.
+    pub(crate) fn view(&self, dimension: wgpu::TextureViewDimension, first: u32, count: u32) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            label: Some("shadowfit map"),
+            dimension: Some(dimension),
+            mip_level_count: Some(1),
+            base_array_layer: self.base_layer + first,
+            array_layer_count: Some(count),
+            ..Default::default()
+        })
+    }
+
+    /// Refuses a texture that cannot hold the maps of a descriptor.
+    pub(crate) fn check(&self, device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
+        let backend = device.adapter_info().backend;
+        self.check_shape(descriptor)
+            .and_then(|()| check_base_layer(self.base_layer, backend))
+            .map_err(ShadowMapError::Texture)
+    }
+
+    fn check_shape(&self, descriptor: &ShadowMapDescriptor) -> Result<(), MapTextureError> {
+        let Self { texture, base_layer } = self;
+        let (base_layer, needed) = (*base_layer, descriptor.texture());
+        let size = [texture.width(), texture.height()];
+        let (layers, maps) = (texture.depth_or_array_layers(), descriptor.layers());
+        let missing = needed.usage - texture.usage();
+        if texture.dimension() != needed.dimension {
+            return Err(MapTextureError::Dimension(texture.dimension()));
+        }
+        if texture.format() != needed.format {
+            return Err(MapTextureError::Format { texture: texture.format(), maps: needed.format });
+        }
+        if size != descriptor.resolution {
+            return Err(MapTextureError::Size { texture: size, maps: descriptor.resolution });
+        }
+        if texture.sample_count() != needed.sample_count {
+            return Err(MapTextureError::Samples(texture.sample_count()));
+        }
+        if base_layer.checked_add(maps).is_none_or(|end| end > layers) {
+            return Err(MapTextureError::Layers { texture: layers, base_layer, maps });
+        }
+        if missing.is_empty() { Ok(()) } else { Err(MapTextureError::Usages { missing }) }
+    }
+}
+
+/// Refuses layers that shaders cannot read.
+fn check_base_layer(base_layer: u32, backend: wgpu::Backend) -> Result<(), MapTextureError> {
+    if backend == wgpu::Backend::Gl && base_layer > 0 { Err(MapTextureError::BaseLayer(base_layer)) } else { Ok(()) }
+}
+
+impl fmt::Display for MapTextureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Dimension(dimension) => write!(f, "it has the dimension {dimension:?}: D2 is needed"),
+            Self::Format { texture, maps } => write!(f, "it has the format {texture:?}: the maps need {maps:?}"),
+            Self::Size { texture: [width, height], maps: [columns, rows] } => {
+                write!(f, "it has {width} × {height} texels: the maps have {columns} × {rows}")
+            }
+            Self::Layers { texture, base_layer, maps } => {
+                write!(f, "it has {texture} layers: {maps} maps from layer {base_layer} on need more")
+            }
+            Self::Samples(samples) => write!(f, "it has {samples} samples a texel: maps have 1"),
+            Self::Usages { missing } => write!(f, "it lacks the usage {missing:?}"),
+            Self::BaseLayer(layer) => {
+                write!(f, "its first map is in layer {layer}: OpenGL's shaders read textures from layer 0 on only")
+            }
+        }
+    }
+}
+
+impl core::error::Error for MapTextureError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opengl_reads_textures_from_their_first_layer_on_only() {
+        assert_eq!(check_base_layer(0, wgpu::Backend::Gl), Ok(()));
+        assert_eq!(check_base_layer(2, wgpu::Backend::Vulkan), Ok(()));
+        let error = check_base_layer(2, wgpu::Backend::Gl).expect_err("another layer");
+        assert_eq!(error, MapTextureError::BaseLayer(2));
+        assert!(error.to_string().contains("layer 2") && error.to_string().contains("layer 0"), "{error}");
+    }
+}

@@ -1,0 +1,135 @@
+//! Curves over logarithmic axes, as SVG.
+
+use std::path::Path;
+
+use anyhow::{Result, anyhow};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+use shadowfit_truth::peers::readable;
+
+use crate::plotting::{
+    COLOURS, FAMILY, GRID, INK, LEGEND_LINE, LEGEND_TOP, PAPER, RULE, TEXT, TITLE, register, text_style,
+};
+
+/// Size, in pixels, and how much of its width the legend takes.
+const SIZE: (u32, u32) = (860, 400);
+const LEGEND: u32 = 270;
+/// Room around the curves, as a factor.
+const ROOM: f64 = 1.3;
+
+/// A line through what was measured.
+#[derive(Clone)]
+pub(crate) struct Curve {
+    name: String,
+    /// Place of its colour, and whether it is drawn as one to compare with: thin, with hollow marks.
+    colour: usize,
+    is_thin: bool,
+    points: Vec<(f64, f64)>,
+}
+
+/// Curves that answer one question.
+pub(crate) struct Picture {
+    /// Name of the file, without its ending.
+    pub(crate) file: &'static str,
+    pub(crate) title: &'static str,
+    /// What the axes count.
+    pub(crate) axes: [&'static str; 2],
+    pub(crate) curves: Vec<Curve>,
+}
+
+impl Curve {
+    /// A line in the colour of a place.
+    pub(crate) fn new(name: impl Into<String>, colour: usize) -> Self {
+        Self { name: name.into(), colour, is_thin: false, points: Vec::new() }
+    }
+
+    /// A thin line with hollow marks in the colour of a place, to compare others with.
+    pub(crate) fn thin(name: impl Into<String>, colour: usize) -> Self {
+        Self { is_thin: true, ..Self::new(name, colour) }
+    }
+
+    /// Adds a value.
+    pub(crate) fn add(&mut self, count: usize, value: f64) {
+        self.points.push((count as f64, value));
+    }
+
+    /// Styles of the line and of its marks.
+    fn styles(&self) -> [ShapeStyle; 2] {
+        let colour = COLOURS[self.colour % COLOURS.len()];
+        if self.is_thin {
+            [colour.stroke_width(1), colour.stroke_width(1)]
+        } else {
+            [colour.stroke_width(2), colour.filled()]
+        }
+    }
+}
+
+impl Picture {
+    /// Writes it into a folder.
+    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
+        register();
+        let file = folder.join(self.file).with_extension("svg");
+        let area = SVGBackend::new(&file, SIZE).into_drawing_area();
+        self.draw(&area)
+            .and_then(|()| area.present())
+            .map_err(|error| anyhow!("{}: cannot be drawn: {error}", file.display()))
+    }
+
+    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {
+        area.fill(&PAPER)?;
+        let (left, right) = area.split_horizontally(SIZE.0 - LEGEND);
+        self.draw_legend(&right)?;
+        let mut chart = ChartBuilder::on(&left)
+            .margin(8)
+            .margin_top(44)
+            .margin_right(24)
+            .x_label_area_size(52)
+            .y_label_area_size(62)
+            .build_cartesian_2d(self.range(|point| point.0).log_scale(), self.range(|point| point.1).log_scale())?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID)
+            .axis_style(RULE)
+            .x_desc(self.axes[0])
+            .y_desc(self.axes[1])
+            .x_label_formatter(&|value| grouped(value.round() as usize))
+            .y_label_formatter(&|value| readable(*value))
+            .label_style((FAMILY, TEXT).into_font().color(&INK))
+            .draw()?;
+        area.draw(&Text::new(self.title, (10, 20), text_style(TITLE, HPos::Left)))?;
+        for curve in &self.curves {
+            let [line, mark] = curve.styles();
+            chart.draw_series(LineSeries::new(curve.points.iter().copied(), line))?;
+            chart.draw_series(curve.points.iter().map(|point| Circle::new(*point, 3, mark)))?;
+        }
+        Ok(())
+    }
+
+    fn draw_legend(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {
+        for (curve, number) in self.curves.iter().zip(0..) {
+            let ([line, mark], y) = (curve.styles(), LEGEND_TOP + LEGEND_LINE * number);
+            area.draw(&PathElement::new([(4, y), (24, y)], line))?;
+            area.draw(&Circle::new((14, y), 3, mark))?;
+            area.draw(&Text::new(curve.name.clone(), (32, y), text_style(TEXT, HPos::Left)))?;
+        }
+        Ok(())
+    }
+
+    /// From the least to the greatest of the points' values, with some room.
+    fn range(&self, value: impl Fn(&(f64, f64)) -> f64) -> core::ops::Range<f64> {
+        let values = self.curves.iter().flat_map(|curve| &curve.points).map(value);
+        let [low, high] = values.fold([f64::INFINITY, 0.0], |[low, high], v| [low.min(v), high.max(v)]);
+        low / ROOM..high * ROOM
+    }
+}
+
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// A number with its thousands set apart.
+pub(crate) fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let (first, rest) = digits.split_at((digits.len() - 1) % 3 + 1);
+    rest.as_bytes().chunks(3).fold(first.to_owned(), |text, group| text + "," + &String::from_utf8_lossy(group))
+}

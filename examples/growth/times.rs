@@ -1,0 +1,63 @@
+//! How long the frames of a walk take.
+
+use std::time::Instant;
+
+use anyhow::Result;
+
+/// Frames before those that count: the first one, and the one in which what is visible first becomes known.
+pub(crate) const LEAD: usize = 2;
+
+/// Each frame's shortest time of all rounds, in milliseconds.
+#[derive(Clone, Default)]
+pub(crate) struct Times(Vec<f64>);
+
+impl Times {
+    /// Adds a round.
+    pub(crate) fn add(&mut self, round: &[f64]) {
+        if self.0.is_empty() {
+            self.0 = round.to_vec();
+        }
+        for (least, time) in self.0.iter_mut().zip(round) {
+            *least = least.min(*time);
+        }
+    }
+
+    /// The first frame.
+    pub(crate) fn first(&self) -> f64 {
+        self.0.first().copied().unwrap_or(0.0)
+    }
+
+    /// The middle one of the frames that count.
+    pub(crate) fn median(&self) -> f64 {
+        let mut times = self.counting().to_vec();
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// The slowest of the frames that count.
+    pub(crate) fn worst(&self) -> f64 {
+        self.counting().iter().copied().fold(0.0, f64::max)
+    }
+
+    fn counting(&self) -> &[f64] {
+        self.0.get(LEAD..).unwrap_or_default()
+    }
+}
+
+/// What something gives, and the milliseconds that it took.
+pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let begin = Instant::now();
+    let result = work();
+    (result, begin.elapsed().as_secs_f64() * 1e3)
+}
+
+/// The shortest of some rounds, in milliseconds.
+pub(crate) fn shortest(rounds: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
+    let mut least = f64::INFINITY;
+    for _ in 0..rounds {
+        let (result, time) = timed(&mut work);
+        result?;
+        least = least.min(time);
+    }
+    Ok(least)
+}

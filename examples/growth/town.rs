@@ -1,0 +1,94 @@
+//! A town of any size, and a walk through its middle.
+
+use anyhow::Result;
+use glam::{DVec3, Vec3};
+use shadowfit::{Aabb, BoxTree, Boxes, FitInput, PerspectiveCamera, Seen, Technique, ViewFrustum};
+use shadowfit_study::see_by_rays;
+use shadowfit_truth::Tracer;
+
+use crate::cuboid::triangles;
+
+/// From the middle of a house to that of the next one, width of a house, and least and greatest height, in metres.
+const STEP: f32 = 3.0;
+const WIDTH: f32 = 2.0;
+const HEIGHTS: [f32; 2] = [2.0, 8.0];
+/// Thickness of the ground, in metres.
+const GROUND: f32 = 0.1;
+
+/// Where shadows and the view end, in metres.
+const FAR: f32 = 400.0;
+/// Height of the eye, in metres; its way and turn from frame to frame, in metres and radians.
+const EYE: f64 = 1.7;
+const WAY: f64 = 0.1;
+const TURN: f32 = 0.02;
+
+/// A ground and the houses on it, in a square around the origin.
+pub(crate) struct Town {
+    /// World space, in metres; the ground comes first.
+    pub(crate) boxes: Vec<Aabb>,
+}
+
+impl Town {
+    /// A town of so many boxes.
+    pub(crate) fn new(count: usize) -> Self {
+        // Even, so that a street and no house is in the middle.
+        let side = ((count as f64).sqrt().ceil() as usize).next_multiple_of(2);
+        let half = side as f32 * STEP * 0.5;
+        let ground = Aabb::new(Vec3::new(-half, -GROUND, -half), Vec3::new(half, 0.0, half));
+        let house = |index: usize| {
+            let middle = Vec3::new(index.rem_euclid(side) as f32 + 0.5, 0.0, (index / side) as f32 + 0.5) * STEP;
+            let corner = middle - Vec3::new(half + WIDTH * 0.5, 0.0, half + WIDTH * 0.5);
+            let share = (index as f64 * 0.618_033_988_749_895).fract() as f32;
+            let height = HEIGHTS[0] + (HEIGHTS[1] - HEIGHTS[0]) * share;
+            Aabb::new(corner, corner + Vec3::new(WIDTH, height, WIDTH))
+        };
+        Self { boxes: [ground].into_iter().chain((1..count).map(house)).collect() }
+    }
+
+    /// Direction of travel of the sun's light.
+    pub(crate) fn direction() -> Vec3 {
+        Vec3::new(0.4, -0.8, 0.3).normalize()
+    }
+
+    /// The camera of a frame: along a street, and turning.
+    pub(crate) fn camera(frame: usize) -> PerspectiveCamera {
+        let turn = frame as f32 * TURN;
+        PerspectiveCamera {
+            eye: DVec3::new(0.0, EYE, -(frame as f64) * WAY),
+            forward: Vec3::new(turn.sin(), -0.1, -turn.cos()),
+            up: Vec3::Y,
+            fov_y: 0.6,
+            aspect: 16.0 / 9.0,
+            near: 0.1,
+            far: FAR,
+        }
+    }
+
+    /// What each of the first frames shows, by rays.
+    pub(crate) fn seen(&self, frames: usize, technique: &Technique) -> Result<Vec<Seen>> {
+        let in_reach = self.boxes.iter().filter(|aabb| aabb.min.length().min(aabb.max.length()) < FAR * 1.5);
+        let tracer = Tracer::new(self.boxes.iter().take(1).chain(in_reach.skip(1)).flat_map(triangles));
+        let see = |frame| Ok(see_by_rays(&tracer, &Self::camera(frame), Self::direction(), technique)?);
+        (0..frames).map(see).collect()
+    }
+}
+
+/// How boxes are handed over.
+#[derive(Clone, Copy)]
+pub(crate) enum World<'a> {
+    /// In each frame.
+    List(Boxes<'a>),
+    /// Once.
+    Tree(&'a BoxTree),
+}
+
+impl<'a> World<'a> {
+    /// The input of a fit.
+    pub(crate) fn input(self, views: &'a [ViewFrustum]) -> FitInput<'a> {
+        let input = FitInput::new(views, Town::direction());
+        match self {
+            Self::List(boxes) => FitInput { receivers: Some(boxes), casters: Some(boxes), ..input },
+            Self::Tree(tree) => FitInput { standing: Some(tree), ..input },
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! The example `growth` as a program.
+
+use std::process::Command;
+
+use crate::support::example_program;
+
+#[test]
+fn a_quick_run_of_growth_has_every_row_and_draws_every_curve() {
+    let folder = std::env::temp_dir().join(format!("shadowfit-growth-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let tables = folder.join("growth.md");
+    let mut growth = Command::new(example_program("growth"));
+    growth.arg("--quick").arg("--out").arg(&tables).arg("--pictures").arg(&folder);
+    let output = growth.output().expect("the example starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(&tables).expect("the tables");
+
+    let rows = text.lines().filter(|line| line.starts_with("| ") && line.contains(" ms |")).count();
+    assert_eq!(rows, ROWS, "{text}");
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    let pictures: Vec<&str> =
+        text.split("(images/benchmarks/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert_eq!(pictures, ["fits.svg", "culling.svg", "frames.svg", "maps.svg"]);
+    for picture in pictures {
+        let svg = std::fs::read_to_string(folder.join(picture)).unwrap_or_else(|error| panic!("{picture}: {error}"));
+        assert!(svg.matches("<circle").count() > 2 && !svg.contains("NaN"), "{picture}: {svg}");
+    }
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
+/// Towns of 100 and 1,000 boxes: four fits, culling, five kinds of frames; eight numbers of maps and six sides.
+const ROWS: usize = 2 * (4 + 1 + 5) + 8 + 6;
