@@ -1,6 +1,6 @@
 //! The plan as data: random histories of a small world, drawn into simulated maps.
 //!
-//! A simulated map has a sample every 64 texels of its layer, which holds the set of casters that were drawn there. Each
+//! A simulated map has a sample every 128 texels of its layer, which holds the set of casters that were drawn there. Each
 //! frame's plan is carried out on it: clears, restored parts, pieces. Maps that do not wait must then hold what is there
 //! now, and maps that wait nothing static that is gone.
 
@@ -19,7 +19,7 @@ use super::*;
 const MAPS: usize = 3;
 
 /// Samples along a side of a map.
-const SAMPLES: u32 = 24;
+const SAMPLES: u32 = 16;
 
 /// Where the world lies.
 const PLACE: DVec3 = DVec3::new(3000.0, 10.0, -2000.0);
@@ -211,7 +211,7 @@ impl World {
     }
 
     /// The number of an object; the ground stays.
-    fn number(&self, index: &Index) -> usize {
+    fn number(&self, index: Index) -> usize {
         index.index(self.objects.len())
     }
 
@@ -225,27 +225,27 @@ impl World {
             Event::Remove(_) | Event::SwapRemove(_) if self.objects.len() == 1 => {}
             Event::Insert(number, place) => {
                 let (centre, half) = at(place);
-                self.insert(self.number(number), centre, half);
+                self.insert(self.number(*number), centre, half);
             }
             Event::Copy(of, number) => {
-                let mut copy = Object { stands: None, ..self.objects[self.number(of)] };
+                let mut copy = Object { stands: None, ..self.objects[self.number(*of)] };
                 if self.frame.is_multiple_of(2) {
                     self.keys += 1;
                     copy.key = self.keys;
                 }
-                self.objects.insert(self.number(number), copy);
+                self.objects.insert(self.number(*number), copy);
             }
-            Event::Remove(number) => drop(self.objects.remove(self.number(number))),
-            Event::SwapRemove(number) => drop(self.objects.swap_remove(self.number(number))),
-            Event::RemoveFrom(number) => self.objects.truncate(self.number(number).max(4)),
+            Event::Remove(number) => drop(self.objects.remove(self.number(*number))),
+            Event::SwapRemove(number) => drop(self.objects.swap_remove(self.number(*number))),
+            Event::RemoveFrom(number) => self.objects.truncate(self.number(*number).max(4)),
             Event::Reverse => self.objects.reverse(),
             Event::Rotate(number) => {
-                let by = self.number(number);
+                let by = self.number(*number);
                 self.objects.rotate_left(by);
             }
             Event::SortByPlace => self.objects.sort_by(|a, b| a.centre.x.total_cmp(&b.centre.x)),
             Event::Place(number, place) => {
-                let (bit, number) = (self.next_bit(), self.number(number));
+                let (bit, number) = (self.next_bit(), self.number(*number));
                 let (centre, half) = at(place);
                 let object = &mut self.objects[number];
                 // The same box stands for the same shape.
@@ -260,7 +260,7 @@ impl World {
                 }
             }
             Event::Reshape(number) => {
-                let (bit, number) = (self.next_bit(), self.number(number));
+                let (bit, number) = (self.next_bit(), self.number(*number));
                 self.keys += 1;
                 let object = &mut self.objects[number];
                 (object.bit, object.key) = (bit, self.keys);
@@ -271,14 +271,14 @@ impl World {
             }
             Event::Keys(thirds) => self.keyed = *thirds,
             Event::Moves(number) => {
-                let (bit, number) = (self.next_bit(), self.number(number));
+                let (bit, number) = (self.next_bit(), self.number(*number));
                 let object = &mut self.objects[number];
                 if object.stands.is_none() {
                     (object.moves, object.bit) = (!object.moves, bit);
                 }
             }
             Event::Stand(number) => {
-                let number = self.number(number);
+                let number = self.number(*number);
                 let object = &mut self.objects[number];
                 object.stands = match object.stands.take().and_then(|number| self.tree.remove(number)) {
                     Some(_) => None,
@@ -296,7 +296,7 @@ impl World {
             Event::Light(light) => self.light = *light,
             Event::Distance(distance) => self.distance = *distance,
             Event::Pan([x, z]) => self.place += DVec3::new(*x, 0.01 * x, *z),
-            Event::Invalidate(number) => self.invalidate(self.number(number)),
+            Event::Invalidate(number) => self.invalidate(self.number(*number)),
             Event::InvalidateAll => self.cache.reset(),
         }
         for object in self.objects.iter_mut().filter(|object| object.moves) {

@@ -94,14 +94,21 @@ fn raised(boxes: &[Aabb], is_raised: impl Fn(usize) -> bool) -> Vec<Aabb> {
     boxes.iter().enumerate().map(raise).collect()
 }
 
+fn chosen(boxes: &[Aabb], is_chosen: impl Fn(usize) -> bool) -> Vec<Aabb> {
+    boxes.iter().enumerate().filter(|(number, _)| is_chosen(*number)).map(|(_, aabb)| *aabb).collect()
+}
+
 /// Texels of the least rectangles around some boxes, in each map.
-fn around(maps: &[FittedMap], boxes: impl Iterator<Item = Aabb> + Clone) -> Vec<u64> {
+fn around(maps: &[FittedMap], boxes: &[Aabb]) -> Vec<u64> {
     let rect = |map: &FittedMap| {
-        let rects = boxes.clone().map(|aabb| TexelRect::of_box(&map.projection, &aabb, DVec3::ZERO));
+        let rects = boxes.iter().map(|aabb| TexelRect::of_box(&map.projection, aabb, DVec3::ZERO));
         rects.filter(|rect| !rect.is_empty()).reduce(TexelRect::union).unwrap_or_default().area()
     };
     maps.iter().map(rect).collect()
 }
+
+/// A change of a list.
+type Change<'a, T, R = ()> = &'a dyn Fn(&mut Vec<T>) -> R;
 
 #[test]
 fn any_permutation_redraws_nothing() {
@@ -110,7 +117,7 @@ fn any_permutation_redraws_nothing() {
     for keys in [&keys[..], &[]] {
         let mut drawn = Drawn::new(&boxes, keys);
         let mut order: Vec<usize> = (0..boxes.len()).collect();
-        let orders: [&dyn Fn(&mut Vec<usize>); 4] = [
+        let orders: [Change<usize>; 4] = [
             &|order| order.reverse(),
             &|order| order.rotate_left(4321),
             &|order| order.sort_by(|a, b| boxes[*a].min.x.total_cmp(&boxes[*b].min.x)),
@@ -129,7 +136,7 @@ fn any_permutation_redraws_nothing() {
 fn what_is_put_in_or_taken_out_anywhere_redraws_its_own_place() {
     let boxes = town();
     let near = 70 * ROW + 50;
-    let changes: [&dyn Fn(&mut Vec<Aabb>) -> Aabb; 3] = [
+    let changes: [Change<Aabb, Aabb>; 3] = [
         &|list| list.remove(near),
         &|list| {
             let came = Aabb::new(Vec3::new(1.0, 0.0, -37.0), Vec3::new(2.0, 1.0, -36.0));
@@ -142,7 +149,7 @@ fn what_is_put_in_or_taken_out_anywhere_redraws_its_own_place() {
         let mut drawn = Drawn::new(&boxes, &[]);
         let mut list = boxes.clone();
         let changed = change(&mut list);
-        let touched = around(&drawn.maps, [changed].into_iter());
+        let touched = around(&drawn.maps, &[changed]);
         let redrawn = drawn.draw(&list, &[], &[]);
         for (map, touched) in redrawn.iter().zip(touched) {
             assert_eq!(map.rects, usize::from(touched > 0), "{redrawn:?}");
@@ -159,8 +166,7 @@ fn a_thousand_of_ten_thousand_boxes_in_one_corner_redraw_that_corner() {
     let mut drawn = Drawn::new(&boxes, &[]);
     let changed = raised(&boxes, is_corner);
     let redrawn = drawn.draw(&changed, &[], &[]);
-    let corner = changed.iter().enumerate().filter(|(number, _)| is_corner(*number)).map(|(_, aabb)| *aabb);
-    let corner = around(&drawn.maps, corner);
+    let corner = around(&drawn.maps, &chosen(&changed, is_corner));
     assert!(corner.iter().any(|texels| *texels > 0 && *texels < WHOLE / 2), "{corner:?}");
     for (map, corner) in redrawn.iter().zip(corner) {
         assert!(map.texels <= corner + corner / 10, "{redrawn:?}");
@@ -177,7 +183,6 @@ fn scattered_changes_are_drawn_each_for_itself_however_many_they_are() {
         let chosen: Vec<usize> =
             (0..count).map(|i| 1000 * 6 + ((f64::from(i) * 0.754_877_67).fract() * 3900.0) as usize).collect();
         let redrawn = drawn.draw(&raised(&boxes, |number| chosen.contains(&number)), &[], &[]);
-        println!("{count} scattered: {redrawn:?}");
         let texels: u64 = redrawn.iter().map(|map| map.texels).sum();
         assert!(texels < WHOLE / 2, "{count}: {redrawn:?}");
         assert!(redrawn.iter().all(|map| map.rects <= 2 * count as usize), "{count}: {redrawn:?}");
@@ -191,9 +196,7 @@ fn maps_that_no_change_touches_redraw_nothing() {
     // Half of all boxes, behind the eye: beside the finest maps.
     let is_behind = |number: usize| number / ROW >= 92 || number / ROW < 30;
     let redrawn = drawn.draw(&raised(&boxes, is_behind), &[], &[]);
-    let touched =
-        around(&drawn.maps, boxes.iter().enumerate().filter(|(number, _)| is_behind(*number)).map(|(_, aabb)| *aabb));
-    println!("{redrawn:?} {touched:?}");
+    let touched = around(&drawn.maps, &chosen(&boxes, is_behind));
     assert!(touched.contains(&0) && touched.iter().any(|texels| *texels > 0), "{touched:?}");
     for (map, touched) in redrawn.iter().zip(touched) {
         assert_eq!(map.texels > 0, touched > 0);
@@ -231,7 +234,7 @@ fn what_is_removed_in_view_is_never_late() {
         let came = drawn.draw(&list, &[], &[]);
         list.remove(near);
         let went = drawn.draw(&list, &[], &[]);
-        let touched = around(&drawn.maps, [boxes[near]].into_iter());
+        let touched = around(&drawn.maps, &[boxes[near]]);
         for map in 0..drawn.maps.len() {
             assert_eq!(went[map].texels > 0, touched[map] > 0, "{schedule:?}: {went:?}");
         }
@@ -251,7 +254,7 @@ fn standing_casters_are_drawn_where_their_tree_changes() {
     let near = 78 * ROW as u32 + 50;
     tree.remove(near);
     let removed = drawn.frame(&none, Some(&tree));
-    let touched = around(&drawn.maps, [boxes[near as usize]].into_iter());
+    let touched = around(&drawn.maps, &[boxes[near as usize]]);
     for (map, touched) in removed.iter().zip(touched) {
         assert!(map.rects == usize::from(touched > 0) && map.texels <= 2 * touched, "{removed:?}");
     }

@@ -165,13 +165,17 @@ struct Part {
 }
 
 impl Part {
-    const NONE: Self = Self { along: u32::MAX..0, across: u32::MAX..0 };
+    const NONE: Self = Self { along: 0..0, across: 0..0 };
 
     fn add(&mut self, line: u32, tiles: &Range<u32>) {
-        if !tiles.is_empty() {
-            self.along = self.along.start.min(line)..self.along.end.max(line + 1);
-            self.across = self.across.start.min(tiles.start)..self.across.end.max(tiles.end);
+        if tiles.is_empty() {
+            return;
         }
+        if self.across.is_empty() {
+            *self = Self { along: line..line + 1, across: tiles.clone() };
+        }
+        self.along = self.along.start.min(line)..self.along.end.max(line + 1);
+        self.across = self.across.start.min(tiles.start)..self.across.end.max(tiles.end);
     }
 
     fn area(&self) -> u32 {
