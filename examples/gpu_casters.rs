@@ -55,7 +55,7 @@ fn main() -> Result<()> {
 fn draw(gpu: &Gpu, sun: &mut SunShadows, casters: &GpuCasters, town: &Town, frame: u32) -> Result<Option<Draws>> {
     let views = [camera(frame).frustum()?];
     let boxes = Boxes::world(&town.cells);
-    let coarse = Casters { boxes, moves: &town.cells_move };
+    let coarse = Casters { boxes, moves: &town.cells_move, keys: &[] };
     let sun_frame = SunFrame::new(&views, SUNLIGHT, boxes, coarse).with_origin(DVec3::ZERO);
     sun.update(&gpu.queue, &sun_frame)?;
 

@@ -60,6 +60,7 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
                     all.push(ShadowMapDescriptor { format, filter, depth, selection: choice, ..Default::default() });
                 }
             }
+            all.push(ShadowMapDescriptor { format, filter, cross_fades: true, ..Default::default() });
         }
     }
     all
@@ -97,7 +98,8 @@ fn modules() -> Vec<(String, String)> {
     }
     all.extend(sample_modules());
     for map in descriptors() {
-        let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.selection);
+        let sets = if map.cross_fades { "two sets" } else { "one set" };
+        let kind = format!("{:?} {:?} {:?} {:?} {sets}", map.format, map.filter, map.depth, map.selection);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));

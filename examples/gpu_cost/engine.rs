@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, FittedMap, PerspectiveCamera, Technique};
 use shadowfit_render::passes::{DEPTH_FORMAT, Maker, Shape, depth};
 use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
-use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
+use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, SunSteps, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::scene::BenchScene;
@@ -46,6 +46,8 @@ pub(crate) struct Engine<'a> {
     camera_uniform: wgpu::Buffer,
     camera_group: wgpu::BindGroup,
     pub(crate) depth: wgpu::TextureView,
+    /// Direction of travel of the light.
+    pub(crate) direction: Vec3,
     /// Casters of the scene in the order in which they are told, their boxes, and which of them move.
     shown: Vec<u32>,
     boxes: Vec<Aabb>,
@@ -84,7 +86,21 @@ impl<'a> Engine<'a> {
             camera_uniform,
             camera_group,
             depth,
+            direction: BenchScene::direction(),
         })
+    }
+
+    /// Holds the maps of a sun that moves.
+    pub(crate) fn set_light_steps(&mut self, steps: Option<SunSteps>) -> Result<()> {
+        if self.sun.set_light_steps(steps)? {
+            self.caster_pipeline = caster_pipeline(&Maker { device: &self.gpu.device, samples: 1 }, self.sun.map());
+        }
+        Ok(())
+    }
+
+    /// Lets all casters stand still.
+    pub(crate) fn stand_still(&mut self) {
+        self.moves.fill(false);
     }
 
     /// Tells these casters of the scene alone, in this order.
@@ -129,7 +145,7 @@ impl<'a> Engine<'a> {
         let boxes = Boxes { boxes: &self.boxes, ..Boxes::default() };
         let casters = Casters { moves: &self.moves, ..Casters::fixed(boxes) };
         let views = [camera.frustum()?];
-        self.sun.update(&self.gpu.queue, &SunFrame::new(&views, BenchScene::direction(), boxes, casters))?;
+        self.sun.update(&self.gpu.queue, &SunFrame::new(&views, self.direction, boxes, casters))?;
         Ok(())
     }
 
@@ -192,7 +208,8 @@ impl<'a> Engine<'a> {
 
 /// What a pass draws a picture into.
 pub(crate) fn target(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let usage =
+        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
     bindings::plain_texture(device, "picture", SIZE, format, usage).create_view(&Default::default())
 }
 

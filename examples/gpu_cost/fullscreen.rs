@@ -36,7 +36,7 @@ const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 pub(crate) struct Fullscreen {
     pipeline: wgpu::RenderPipeline,
     groups: [wgpu::BindGroup; 2],
-    color: wgpu::TextureView,
+    pub(crate) color: wgpu::TextureView,
 }
 
 impl Fullscreen {

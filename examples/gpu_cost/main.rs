@@ -1,4 +1,5 @@
-//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, rays.
+//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, a
+//! sun that moves, rays.
 //!
 //! ```sh
 //! cargo run --release --example gpu_cost                                   # the courtyard
@@ -12,6 +13,8 @@
 
 #[path = "../shared/cuboid.rs"]
 mod cuboid;
+mod day;
+mod edges;
 mod engine;
 mod field;
 mod filters;
@@ -70,6 +73,8 @@ enum Part {
     Streaming,
     /// The pass over the depth buffer
     Demand,
+    /// A minute of a sun that moves
+    Day,
     /// Rays and classes on the GPU
     Rays,
 }
@@ -129,6 +134,9 @@ fn main() -> Result<()> {
     }
     if wants(Part::Demand) {
         add(passes::time_demand(&bench, &scenes)?);
+    }
+    if wants(Part::Day) {
+        add(day::time(&bench, &scenes[0])?);
     }
     if wants(Part::Rays) {
         add(rays::time(&bench, &args.scenes)?);

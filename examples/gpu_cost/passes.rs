@@ -53,7 +53,7 @@ pub(crate) struct Taken {
 }
 
 impl Bench {
-    fn technique(&self) -> Technique {
+    pub(crate) fn technique(&self) -> Technique {
         Technique::default().with_resolution(self.map, self.map)
     }
 

@@ -6,6 +6,8 @@ mod engine;
 mod groups_gpu;
 #[path = "door/off_gpu.rs"]
 mod off_gpu;
+#[path = "door/steps_gpu.rs"]
+mod steps_gpu;
 #[path = "door/texture_gpu.rs"]
 mod texture_gpu;
 

@@ -42,6 +42,39 @@ fn a_picture_of_maps_that_stay_is_that_of_maps_that_are_drawn() {
 }
 
 #[test]
+fn maps_that_may_stay_are_drawn_once_and_pictures_and_statistics_are_the_same() {
+    let (mut pictures, seen) = Pictures::new(&technique(), 1);
+    let (drawn, alone) = (pictures.draw(&seen.frame()), pictures.read());
+    let may = Frame { maps_may_stay: true, ..seen.frame() };
+    assert_eq!((pictures.draw(&may), pictures.read()), (drawn, alone.clone()));
+    // Passes that are not drawn leave their times as they were.
+    let times = pictures.renderer.pass_times();
+    for _ in 0..3 {
+        assert_eq!((pictures.draw(&may), pictures.read()), (drawn, alone.clone()));
+    }
+    assert!(times.shadow_ms.is_some() && pictures.renderer.pass_times() == times);
+    // Whatever decides what is drawn into the maps draws them again.
+    let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(-2.0, 1.0, 1.0), ..seen.camera };
+    let moved = Frame { camera: &camera, ..may };
+    let lit = Frame { direction: Vec3::new(-0.4, -0.6, 0.3).normalize(), ..may };
+    let fewer = Frame { maps: &seen.maps[1..], ..may };
+    let whole = Frame { culling: Culling::WholeMap, ..may };
+    for other in [moved, lit, fewer, whole, may] {
+        let anew = pictures.draw(&Frame { maps_may_stay: false, ..other });
+        let expected = pictures.read();
+        pictures.draw(&Frame { maps: &[], maps_may_stay: false, ..may });
+        assert_eq!((pictures.draw(&other), pictures.read()), (anew, expected));
+    }
+    let pose = pictures.scene.pose();
+    let scene = shadowfit_scene::builtin::default_scene();
+    let walking = scene.pose(Some(0), 0.8);
+    pictures.scene.set_pose(&pictures.gpu, &scene, &walking);
+    assert_ne!(pictures.scene.pose(), pose);
+    let posed = pictures.picture(&may);
+    assert_eq!(posed, pictures.picture(&seen.frame()));
+}
+
+#[test]
 fn statistics_and_times_of_a_frame_have_what_its_probe_drew() {
     let (mut pictures, seen) = Pictures::new(&technique(), 1);
     let alone = pictures.draw(&seen.frame());

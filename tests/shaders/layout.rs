@@ -13,7 +13,8 @@ use shadowfit_render::{
 };
 use shadowfit_wgpu::demand::{DemandUniform, demand_wgsl};
 use shadowfit_wgpu::{
-    CasterUniform, CullingPiece, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions, culling_wgsl,
+    CasterUniform, CullingPiece, FadingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor,
+    WgslOptions, culling_wgsl,
 };
 
 use super::parse;
@@ -170,6 +171,16 @@ fn what_the_look_up_reads_has_the_size_and_offsets_of_its_wgsl_structs() {
 }
 
 #[test]
+fn what_a_look_up_into_two_sets_of_maps_reads_lies_as_in_wgsl() {
+    let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor { cross_fades: true, ..Default::default() }));
+    let fading = layout!("shadowfit_Fading" = FadingUniform { now, before, share, first_layer, padding_0, padding_1 });
+    assert_same(&scene, &fading);
+    // The sets themselves are what the only one is elsewhere.
+    assert_eq!(reflected(&scene, "shadowfit_Receiver").1 as usize, size_of::<ReceiverUniform>());
+    assert_eq!(reflected(&scene, "shadowfit_Map").1 as usize, size_of::<MapUniform>());
+}
+
+#[test]
 fn the_pieces_that_casters_are_culled_by_lie_as_in_wgsl() {
     let culling = parse("culling", &culling_wgsl(&WgslOptions::group(0)));
     assert_same(
@@ -236,6 +247,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
     let compared = [
         "shadowfit_Caster",
         "shadowfit_Receiver",
+        "shadowfit_Fading",
         "Frame",
         "Material",
         "Judged",

@@ -121,36 +121,50 @@ impl SceneCasters {
 /// The triangles of a mesh in clusters of a few hundred: reordered indices, and the clusters. A mesh that deforms is one
 /// cluster. Indices past the positions panic.
 pub fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32>, Vec<Cluster>) {
-    let mut triangles: Vec<[u32; 3]> = indices.as_chunks::<3>().0.to_vec();
-    let mut clusters = Vec::new();
     if deforms {
-        let bounds = bounds(positions, &triangles);
-        clusters.push(Cluster { indices: 0..indices.len() as u32, bounds });
-    } else {
-        split(positions, &mut triangles, 0, &mut clusters);
+        let triangles = indices.as_chunks::<3>().0;
+        let whole = Cluster { indices: 0..triangles.len() as u32 * 3, bounds: bounds(positions, triangles.iter()) };
+        return (triangles.as_flattened().to_vec(), vec![whole]);
     }
-    (triangles.into_flattened(), clusters)
+    let mut faces: Vec<Face> =
+        indices.as_chunks::<3>().0.iter().map(|corners| Face::new(positions, *corners)).collect();
+    let clusters = split(positions, &mut faces, 0);
+    (faces.iter().flat_map(|face| face.corners).collect(), clusters)
+}
+
+/// A triangle with three times its middle, by which it is sorted.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    middle: Vec3,
+    corners: [u32; 3],
+}
+
+impl Face {
+    fn new(positions: &[Vec3], corners: [u32; 3]) -> Self {
+        Self { middle: corners.iter().map(|index| positions[*index as usize]).sum(), corners }
+    }
 }
 
 /// Cuts triangles in two at the median of their middles along the longest side, until they are few.
-fn split(positions: &[Vec3], triangles: &mut [[u32; 3]], first: u32, clusters: &mut Vec<Cluster>) {
-    if triangles.len() <= CLUSTER_TRIANGLES {
-        let bounds = bounds(positions, triangles);
-        clusters.push(Cluster { indices: first..first + triangles.len() as u32 * 3, bounds });
-        return;
+fn split(positions: &[Vec3], faces: &mut [Face], first: u32) -> Vec<Cluster> {
+    let end = first + faces.len() as u32 * 3;
+    if faces.len() <= CLUSTER_TRIANGLES {
+        let bounds = bounds(positions, faces.iter().map(|face| &face.corners));
+        return vec![Cluster { indices: first..end, bounds }];
     }
-    let middle = |triangle: &[u32; 3]| triangle.iter().map(|index| positions[*index as usize]).sum::<Vec3>();
-    let size = Aabb::from_points(triangles.iter().map(middle)).map_or(Vec3::ZERO, |middles| middles.size());
+    let size = Aabb::from_points(faces.iter().map(|face| face.middle)).map_or(Vec3::ZERO, |middles| middles.size());
     let axis = size.max_position();
-    let half = triangles.len() / 2;
-    triangles.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
-    let (low, high) = triangles.split_at_mut(half);
-    split(positions, low, first, clusters);
-    split(positions, high, first + half as u32 * 3, clusters);
+    let half = faces.len() / 2;
+    faces.select_nth_unstable_by(half, |a, b| a.middle[axis].total_cmp(&b.middle[axis]));
+    let (low, high) = faces.split_at_mut(half);
+    let (mut clusters, others) =
+        rayon::join(|| split(positions, low, first), || split(positions, high, first + half as u32 * 3));
+    clusters.extend(others);
+    clusters
 }
 
-fn bounds(positions: &[Vec3], triangles: &[[u32; 3]]) -> Aabb {
-    Aabb::from_points(triangles.as_flattened().iter().map(|index| positions[*index as usize])).unwrap_or(Aabb::EMPTY)
+fn bounds<'a>(positions: &[Vec3], triangles: impl Iterator<Item = &'a [u32; 3]>) -> Aabb {
+    Aabb::from_points(triangles.flatten().map(|index| positions[*index as usize])).unwrap_or(Aabb::EMPTY)
 }
 
 /// The world box of a box in the space of a mesh.

@@ -20,6 +20,9 @@ pub struct Frame<'a> {
     /// [`Self::culling`] are ignored, and positions are looked up from this frame's camera. For the probe of a frame and its
     /// picture in turn, and for further pictures of the same maps.
     pub maps_stay: bool,
+    /// Whether maps that would be drawn as they were last are not drawn again: pictures and statistics are the same, and
+    /// times are left as they were. Measurements of what it takes to draw maps leave this off.
+    pub maps_may_stay: bool,
     /// Eye and unit forward direction (world space, metres) whose view depths choose among maps that are
     /// read by view depth; the
     /// camera's own where `None`.
@@ -60,6 +63,7 @@ impl<'a> Frame<'a> {
             direction,
             maps,
             maps_stay: false,
+            maps_may_stay: false,
             choice: None,
             culling: Culling::default(),
             shadows: true,

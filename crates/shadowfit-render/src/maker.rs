@@ -149,9 +149,23 @@ pub enum InstanceNumber {
     Holder,
 }
 
-/// The three vertex streams of a part: what deforms, what does not, and the instances.
-pub fn part_buffers(number: InstanceNumber) -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
-    const MOTION: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
+/// Which streams of a part have an element for each vertex. Of the others it has a single one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Streams {
+    /// Tangents; zero where there are none.
+    pub tangents: bool,
+    /// Texture coordinates and colours; the origin and white where there are none.
+    pub surface: bool,
+}
+
+/// Number of the stream of instances, which comes after those of vertices.
+pub(crate) const INSTANCES: u32 = 4;
+
+/// The vertex streams of a part: positions, normals, tangents, texture coordinates with colours, and the instances.
+pub fn part_buffers(number: InstanceNumber, streams: Streams) -> [Option<wgpu::VertexBufferLayout<'static>>; 5] {
+    const POSITIONS: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
+    const NORMALS: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32x3];
+    const TANGENTS: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Float32x4];
     const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x2, 4 => Float32x4];
     const FIRST_TRIANGLE: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, first_triangle));
     const HOLDER: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, holder));
@@ -161,11 +175,21 @@ pub fn part_buffers(number: InstanceNumber) -> [Option<wgpu::VertexBufferLayout<
         InstanceNumber::FirstTriangle => &FIRST_TRIANGLE,
         InstanceNumber::Holder => &HOLDER,
     };
+    let each = wgpu::VertexStepMode::Vertex;
     [
-        stream(40, wgpu::VertexStepMode::Vertex, &MOTION),
-        stream(24, wgpu::VertexStepMode::Vertex, &SURFACE),
+        stream(12, each, &POSITIONS),
+        stream(12, each, &NORMALS),
+        stream(if streams.tangents { 16 } else { 0 }, each, &TANGENTS),
+        stream(if streams.surface { 24 } else { 0 }, each, &SURFACE),
         stream(size_of::<InstanceData>() as u64, wgpu::VertexStepMode::Instance, instance),
     ]
+}
+
+/// The streams that the shadow pass reads: positions, texture coordinates with colours, and the instances.
+pub(crate) fn caster_buffers(surface: bool) -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
+    let [positions, _, _, surface, instances] =
+        part_buffers(InstanceNumber::FirstTriangle, Streams { tangents: false, surface });
+    [positions, surface, instances]
 }
 
 /// Rows of the transform, and the number at an offset.

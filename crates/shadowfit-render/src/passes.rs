@@ -7,7 +7,7 @@
 //! [`bindings`](crate::bindings) and [`attachment`](crate::attachment) have the rest, [`shaders`](crate::shaders) the WGSL
 //! that pictures share.
 
-pub use crate::maker::{InstanceNumber, Maker, Shape, culled, depth, part_buffers};
+pub use crate::maker::{InstanceNumber, Maker, Shape, Streams, culled, depth, part_buffers};
 pub use crate::material::material_layout;
 pub use crate::probe::{PROBE_FORMAT, can_probe};
 pub use crate::scene::{Draw, PartKey};

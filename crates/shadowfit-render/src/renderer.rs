@@ -1,5 +1,6 @@
 //! One frame: shadow passes, shaded pass, and what lies over the picture.
 
+mod known;
 mod maps;
 mod over;
 mod picture;
@@ -22,6 +23,7 @@ use crate::uniform::{FrameUniform, InsetVertex, LineVertex, QuadVertex};
 use crate::vertex_buffer::VertexBuffer;
 use crate::{Gpu, Inset, Line, Quad, bindings};
 
+use known::KnownMaps;
 use plan::Plan;
 
 /// Draws scenes with the shadows of a sun; owns every pipeline.
@@ -45,6 +47,8 @@ pub struct Renderer {
     pixel_targets: Option<ProbeTargets>,
     /// What was drawn into the maps since the last picture.
     drawn: [MapStatistics; MAX_MAPS],
+    /// What the maps hold, until it is unknown.
+    known: Option<KnownMaps>,
     timer: PassTimer,
 }
 
@@ -79,6 +83,7 @@ impl Renderer {
             part: None,
             pixel_targets: None,
             drawn: Default::default(),
+            known: None,
             timer: PassTimer::new(device),
         })
     }
@@ -149,6 +154,7 @@ impl Renderer {
         frame: &Frame<'_>,
         target: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
+        let frame = &self.with_known_maps(scene, frame);
         self.timer.begin_picture(gpu, frame.maps_stay);
         let plan = self.prepare(gpu, scene, (frame, Drawn::Shaded(frame.overlay)), target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -195,7 +201,7 @@ impl Renderer {
             return Err(ProbeError::NoPrimitiveIndex);
         }
         // A probe shows no overlay.
-        let frame = Frame { overlay: crate::Overlay::None, ..*frame };
+        let frame = Frame { overlay: crate::Overlay::None, ..self.with_known_maps(scene, frame) };
         let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;
         self.timer.begin_probe(gpu, frame.maps_stay);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -215,6 +221,9 @@ impl Renderer {
         size: [u32; 2],
     ) -> Result<Plan, ShadowMapError> {
         let eye = frame.camera.eye;
+        if !frame.maps_stay {
+            self.known = None;
+        }
         self.prepare_maps(gpu, scene, frame)?;
         self.prepare_parts(gpu, scene, drawn);
         let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);

@@ -2,13 +2,17 @@
 //! pass sees. Deformed primitives (skins, morph targets) are deformed on the CPU, so that ray
 //! tracers see exactly the same triangles.
 
-use glam::{DVec3, Mat4, Vec3, Vec4};
+use core::sync::atomic::{AtomicU64, Ordering};
+
+use bytemuck::cast_slice;
+use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use shadowfit::Aabb;
-use shadowfit_scene::{AlphaMode, Instance, Pose, Primitive, Scene};
+use shadowfit_scene::{AlphaMode, Deformed, Instance, Pose, Primitive, Scene};
 use shadowfit_wgpu::Casters;
 
 use crate::Gpu;
 use crate::casters::{CasterDraw, Cluster, SceneCasters, clustered, transformed};
+use crate::maker::{INSTANCES, Streams};
 use crate::material::upload_materials;
 use crate::uniform::InstanceData;
 
@@ -27,13 +31,20 @@ pub struct GpuScene {
     /// [`InstanceData::holder`] of each instance, in frames that show them; else empty.
     holders: Vec<u32>,
     pub(crate) instance_buffer: wgpu::Buffer,
+    /// Number of the pose, unlike that of any other pose of any scene.
+    pose: u64,
 }
+
+/// Numbers of poses that were given away.
+static POSES: AtomicU64 = AtomicU64::new(0);
 
 /// One primitive with all its instances (a deformed one has a part of its own per instance).
 #[derive(Debug)]
 pub(crate) struct Part {
-    pub(crate) motion: wgpu::Buffer,
-    pub(crate) surface: wgpu::Buffer,
+    /// Positions, normals, tangents, and texture coordinates with colours.
+    pub(crate) streams: [wgpu::Buffer; 4],
+    /// Which of the last two have an element for each vertex.
+    has: Streams,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) index_count: u32,
     /// Its triangles in the order of their clusters, for the shadow passes.
@@ -57,6 +68,8 @@ pub struct PartKey {
     pub blended: bool,
     double_sided: bool,
     mirrored: bool,
+    /// Which of its streams have an element for each vertex.
+    pub streams: Streams,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -78,11 +91,6 @@ pub struct Draw {
     /// Distance from the eye to the nearest instance's centre, for the order of blended parts.
     pub(crate) distance: f32,
 }
-
-/// Position, normal and tangent: what deforms.
-const MOTION_FLOATS: usize = 10;
-/// Texture coordinates and colour: what does not.
-const SURFACE_FLOATS: usize = 6;
 
 impl GpuScene {
     /// Uploads a scene in a pose. `layout` is [`material_layout`](crate::passes::material_layout).
@@ -113,6 +121,7 @@ impl GpuScene {
             data: Vec::new(),
             holders: Vec::new(),
             instance_buffer: instance_buffer(&gpu.device, count.max(1)),
+            pose: 0,
         };
         gpu_scene.set_pose(gpu, scene, pose);
         gpu_scene
@@ -120,14 +129,18 @@ impl GpuScene {
 
     /// Moves everything to a pose of the same scene.
     pub fn set_pose(&mut self, gpu: &Gpu, scene: &Scene, pose: &Pose) {
+        self.pose = POSES.fetch_add(1, Ordering::Relaxed);
         for part in &self.parts {
             for &member in &part.members {
                 let entry = &mut self.instances[member];
                 entry.world_from_mesh = pose.world_from_instance(scene, &entry.instance);
                 let local = match pose.deform(scene, &entry.instance) {
                     Some(deformed) => {
-                        let motion = interleave_motion(&deformed.positions, &deformed.normals, &deformed.tangents);
-                        gpu.queue.write_buffer(&part.motion, 0, bytemuck::cast_slice(&motion));
+                        let Deformed { positions, normals, tangents } = &deformed;
+                        let streams: [&[u8]; 3] = [cast_slice(positions), cast_slice(normals), cast_slice(tangents)];
+                        for (buffer, stream) in part.streams.iter().zip(streams) {
+                            gpu.queue.write_buffer(buffer, 0, stream);
+                        }
                         Aabb::from_points(deformed.positions)
                     }
                     None => part.local_bounds,
@@ -145,6 +158,11 @@ impl GpuScene {
                 transformed(&clusters[cluster].bounds, &instance.world_from_mesh)
             }
         });
+    }
+
+    /// Number of the pose that was set last, unlike that of any other pose of any scene.
+    pub fn pose(&self) -> u64 {
+        self.pose
     }
 
     /// Starts a frame's instance list, for positions relative to `eye` (world space, metres).
@@ -249,16 +267,17 @@ impl GpuScene {
         if let Some(group) = material_group {
             pass.set_bind_group(group, &self.materials[part.material], &[]);
         }
-        pass.set_vertex_buffer(0, part.motion.slice(..));
-        pass.set_vertex_buffer(1, part.surface.slice(..));
-        pass.set_vertex_buffer(2, self.instance_buffer.slice(..));
+        for (stream, slot) in part.streams.iter().zip(0..) {
+            pass.set_vertex_buffer(slot, stream.slice(..));
+        }
+        pass.set_vertex_buffer(INSTANCES, self.instance_buffer.slice(..));
         pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
     }
 
     /// Uploads the frame's instance list.
     pub fn end_frame(&mut self, gpu: &Gpu) {
-        let bytes: &[u8] = bytemuck::cast_slice(&self.data);
+        let bytes: &[u8] = cast_slice(&self.data);
         if bytes.len() as u64 > self.instance_buffer.size() {
             self.instance_buffer = instance_buffer(&gpu.device, self.data.len().next_power_of_two());
         }
@@ -285,21 +304,29 @@ impl GpuScene {
 impl Part {
     fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, (mirrored, deforms): (bool, bool)) -> Self {
         let material = &scene.materials[primitive.material];
-        let motion = interleave_motion(&primitive.positions, &primitive.normals, &primitive.tangents);
-        let mut surface = Vec::with_capacity(primitive.positions.len() * SURFACE_FLOATS);
-        for index in 0..primitive.positions.len() {
-            let color = primitive.colors.get(index).copied().unwrap_or(Vec4::ONE);
-            surface.extend(primitive.uvs[index].to_array());
-            surface.extend(color.to_array());
-        }
-        let vertex = wgpu::BufferUsages::VERTEX;
-        let (caster_indices, clusters) = clustered(&primitive.positions, &primitive.indices, deforms);
+        let Primitive { positions, normals, tangents, indices, .. } = primitive;
+        let has = Streams {
+            tangents: !tangents.is_empty(),
+            surface: !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
+        };
+        let buffer = |usage, bytes: &[u8]| filled_buffer(gpu, usage, bytes);
+        let vertex = |bytes: &[u8]| buffer(wgpu::BufferUsages::VERTEX, bytes);
+        let streams = [
+            vertex(cast_slice(positions)),
+            vertex(cast_slice(normals)),
+            vertex(if has.tangents { cast_slice(tangents) } else { bytemuck::bytes_of(&Vec4::ZERO) }),
+            vertex(cast_slice(&surface(primitive, has))),
+        ];
+        // What casts nothing is not cut, and neither is what deforms.
+        let is_whole = deforms || material.alpha == AlphaMode::Blend;
+        let (caster_indices, clusters) = clustered(positions, indices, is_whole);
+        let index = |indices: &[u32]| buffer(wgpu::BufferUsages::INDEX, cast_slice(indices));
         Self {
-            motion: filled_buffer(gpu, vertex, bytemuck::cast_slice(&motion)),
-            surface: filled_buffer(gpu, vertex, bytemuck::cast_slice(&surface)),
-            indices: filled_buffer(gpu, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&primitive.indices)),
+            streams,
+            has,
+            indices: index(indices),
+            caster_indices: index(&caster_indices),
             index_count: primitive.indices.len() as u32,
-            caster_indices: filled_buffer(gpu, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&caster_indices)),
             clusters,
             material: primitive.material,
             alpha: material.alpha,
@@ -323,6 +350,7 @@ impl PartKey {
             blended: part.alpha == AlphaMode::Blend,
             double_sided: part.double_sided,
             mirrored: part.mirrored,
+            streams: part.has,
         }
     }
 
@@ -390,10 +418,17 @@ fn casters(scene: &Scene, instances: &[Instance], parts: &[Part]) -> SceneCaster
 
 /// Whether each node has an animation, or hangs on a node that has one.
 fn animated(scene: &Scene) -> Vec<bool> {
-    let channels = || scene.animations.iter().flat_map(|animation| &animation.channels);
-    let roots: std::collections::HashSet<usize> = channels().map(|channel| channel.node).collect();
-    let is_moved = |node: usize| roots.iter().any(|root| scene.is_descendant(node, *root));
-    (0..scene.nodes.len()).map(is_moved).collect()
+    let mut moves = vec![false; scene.nodes.len()];
+    for channel in scene.animations.iter().flat_map(|animation| &animation.channels) {
+        if let Some(moves) = moves.get_mut(channel.node) {
+            *moves = true;
+        }
+    }
+    // Parents stand before their children.
+    for node in 0..moves.len() {
+        moves[node] |= scene.nodes[node].parent.is_some_and(|parent| moves[parent]);
+    }
+    moves
 }
 
 fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
@@ -401,14 +436,15 @@ fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
     scene.instance_skin(instance).is_some() || !primitive.morphs.is_empty()
 }
 
-fn interleave_motion(positions: &[Vec3], normals: &[Vec3], tangents: &[Vec4]) -> Vec<f32> {
-    let mut motion = Vec::with_capacity(positions.len() * MOTION_FLOATS);
-    for (index, position) in positions.iter().enumerate() {
-        motion.extend(position.to_array());
-        motion.extend(normals[index].to_array());
-        motion.extend(tangents.get(index).copied().unwrap_or(Vec4::ZERO).to_array());
-    }
-    motion
+/// Texture coordinates and colours of each vertex, or those of all.
+fn surface(primitive: &Primitive, has: Streams) -> Vec<[f32; 6]> {
+    let element = |index: usize| {
+        let uv = primitive.uvs.get(index).copied().unwrap_or(Vec2::ZERO);
+        let color = primitive.colors.get(index).copied().unwrap_or(Vec4::ONE);
+        [uv.x, uv.y, color.x, color.y, color.z, color.w]
+    };
+    let count = if has.surface { primitive.positions.len() } else { 1 };
+    (0..count).map(element).collect()
 }
 
 fn instance_data(world_from_mesh: &Mat4, eye: DVec3, first_triangle: u32) -> InstanceData {
@@ -431,6 +467,9 @@ fn instance_buffer(device: &wgpu::Device, count: usize) -> wgpu::Buffer {
     })
 }
 
+/// Bytes that are on their way to the GPU at a time: each of them is held twice meanwhile.
+const UPLOAD: usize = 64 << 20;
+
 fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("primitive"),
@@ -438,7 +477,14 @@ fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Bu
         usage: usage | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
-    gpu.queue.write_buffer(&buffer, 0, bytes);
+    for (index, part) in bytes.chunks(UPLOAD).enumerate() {
+        gpu.queue.write_buffer(&buffer, (index * UPLOAD) as u64, part);
+        if bytes.len() > UPLOAD {
+            gpu.submit([]);
+            // A device that was lost is reported where it is drawn with.
+            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        }
+    }
     buffer
 }
 

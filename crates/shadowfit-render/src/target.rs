@@ -43,6 +43,11 @@ impl RenderTarget {
         &self.depth_view
     }
 
+    /// The colours, which tell this target from others.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.color
+    }
+
     /// A view of the encoded bytes, for user interfaces.
     pub fn encoded_view(&self) -> wgpu::TextureView {
         self.color.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() })

@@ -1,6 +1,6 @@
 //! Scenes of plain triangles, without a file: what measurements of fits start from.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::{Material, Mesh, Node, Primitive, Scene, Transform};
 
@@ -29,7 +29,6 @@ fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
     let primitive = Primitive {
         normals: triangles.iter().flat_map(|triangle| [normal(triangle); 3]).collect(),
-        uvs: vec![Vec2::ZERO; positions.len()],
         indices: (0..positions.len() as u32).collect(),
         positions,
         ..Primitive::default()

@@ -3,7 +3,7 @@
 use glam::{DVec3, Mat4, Vec3};
 
 use crate::sample::{Sample, sample};
-use crate::{Node, Scene, Transform};
+use crate::{Deformed, Node, Scene, Transform};
 
 /// One primitive drawn at one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -152,32 +152,34 @@ impl Pose {
         let instances = scene.instances();
         let count = |i: &Instance| scene.meshes[i.mesh].primitives[i.primitive].indices.len() / 3;
         let mut triangles = Vec::with_capacity(instances.iter().map(count).sum());
-        for (number, instance) in instances.iter().enumerate() {
-            self.instance_triangles(scene, instance, (number as u32, origin), &mut triangles);
+        for (instance, number) in instances.iter().zip(0..) {
+            let deformed = self.deform(scene, instance);
+            let corners = self.corners_from(scene, instance, deformed.as_ref(), origin);
+            let numbered = corners.zip(0..).map(|(vertices, index)| Triangle { vertices, instance: number, index });
+            triangles.extend(numbered);
         }
         triangles
     }
 
-    fn instance_triangles(
+    /// Corners of every triangle of an instance in their order, as [`Pose::triangles_from`] has them. `deformed` is what
+    /// [`Pose::deform`] gives for it.
+    pub fn corners_from<'a>(
         &self,
-        scene: &Scene,
+        scene: &'a Scene,
         instance: &Instance,
-        (number, origin): (u32, DVec3),
-        triangles: &mut Vec<Triangle>,
-    ) {
+        deformed: Option<&'a Deformed>,
+        origin: DVec3,
+    ) -> impl ExactSizeIterator<Item = [Vec3; 3]> + use<'a> {
         let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
         let mut world_from_local = self.world_from_instance(scene, instance);
         let from_origin = (world_from_local.w_axis.truncate().as_dvec3() - origin).as_vec3();
         world_from_local.w_axis = from_origin.extend(1.0);
-        let deformed = self.deform(scene, instance);
-        let local = deformed.as_ref().map_or(&primitive.positions, |d| &d.positions);
-        let world: Vec<Vec3> = local.iter().map(|&p| world_from_local.transform_point3(p)).collect();
+        let local = deformed.map_or(&primitive.positions, |deformed| &deformed.positions);
         let mirrored = self.is_mirrored(scene, instance);
-        for (index, corners) in primitive.indices.chunks_exact(3).enumerate() {
-            let [a, b, c] = [corners[0], corners[1], corners[2]].map(|i| world[i as usize]);
-            let vertices = if mirrored { [a, c, b] } else { [a, b, c] };
-            triangles.push(Triangle { vertices, instance: number, index: index as u32 });
-        }
+        primitive.indices.as_chunks::<3>().0.iter().map(move |corners| {
+            let [a, b, c] = corners.map(|index| world_from_local.transform_point3(local[index as usize]));
+            if mirrored { [a, c, b] } else { [a, b, c] }
+        })
     }
 
     /// World from a node, or the identity for one that does not exist.

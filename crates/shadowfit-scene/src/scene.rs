@@ -101,7 +101,7 @@ pub struct Primitive {
     pub normals: Vec<Vec3>,
     /// Unit tangents with the bitangent's sign in w; empty unless the material has a normal map.
     pub tangents: Vec<Vec4>,
-    /// Texture coordinates (set 0), before the material's `uv_from_texcoord`; (0, 0) where absent.
+    /// Texture coordinates (set 0), before the material's `uv_from_texcoord`; empty where absent, which stands for (0, 0).
     pub uvs: Vec<Vec2>,
     /// Linear vertex colours; empty where absent.
     pub colors: Vec<Vec4>,

@@ -149,7 +149,8 @@ impl JudgeJob {
         ensure!(given as u64 == wanted, "a picture of {width} × {height} pixels has {wanted}, and {given} were given");
         let before = self.before.as_ref().map_or(given, |before| before.factors.len());
         ensure!(before == given, "the frame before has {before} factors for {given} pixels");
-        let instances = self.rays.triangles.iter().map(|triangle| triangle.instance as usize + 1).max().unwrap_or(0);
+        let last = (self.rays.tracer.len() as u32).checked_sub(1).and_then(|last| self.rays.instance(last));
+        let instances = last.map_or(0, |last| last as usize + 1);
         let counted = self.counted.len();
         ensure!(counted >= instances, "{counted} instances count or do not, and the scene has {instances}");
         Ok(())

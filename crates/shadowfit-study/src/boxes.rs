@@ -3,7 +3,7 @@
 //! Static instances are divided once into clusters that fit their surface closely, since the box of a level that is one
 //! mesh says little. Instances that an animation moves have one box each, recomputed with every pose.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use shadowfit::Clusters;
 use shadowfit::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
@@ -117,13 +117,14 @@ fn clusters(scene: &Scene, pose: &Pose, instances: &[Instance], moves: &[bool]) 
     if instances.iter().map(count).sum::<usize>() > MOST_TRIANGLES {
         return None;
     }
-    let mut objects: Vec<Vec<[Vec3; 3]>> = vec![Vec::new(); instances.len()];
-    for triangle in pose.triangles(scene) {
-        let index = triangle.instance as usize;
-        if !moves[index] {
-            objects[index].push(triangle.vertices);
+    let corners = |(instance, moves): (&Instance, &bool)| {
+        if *moves {
+            return Vec::new();
         }
-    }
+        let deformed = pose.deform(scene, instance);
+        pose.corners_from(scene, instance, deformed.as_ref(), DVec3::ZERO).collect()
+    };
+    let objects: Vec<Vec<[Vec3; 3]>> = instances.iter().zip(moves).map(corners).collect();
     let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
     Clusters::build(&objects, Clusters::DEFAULT_LIMIT).ok()
 }

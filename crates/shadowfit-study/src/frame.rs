@@ -15,9 +15,10 @@ pub fn atmosphere(sight: f32) -> Atmosphere {
 }
 
 impl View {
-    /// A plain picture of the view, with the shadows that these maps give.
+    /// A plain picture of the view, with the shadows that these maps give. Where they were drawn last, they are not drawn
+    /// again.
     pub fn frame<'a>(&'a self, maps: &'a [FittedMap], atmosphere: &'a Atmosphere) -> Frame<'a> {
-        Frame::new(&self.camera, self.direction, maps, atmosphere)
+        Frame { maps_may_stay: true, ..Frame::new(&self.camera, self.direction, maps, atmosphere) }
     }
 
     /// Sun and sky with a haze that suits the camera's far plane.

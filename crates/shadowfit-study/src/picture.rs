@@ -72,7 +72,7 @@ impl JudgeJob {
         let measure = |maps: &[FittedMap]| measured(maps, descriptor, self.view.direction, rays.origin);
         let measured = measure(maps);
         let seen = picture_maps(&measured, maps, descriptor);
-        let counts = |triangle: u32| self.counted[rays.triangles[triangle as usize].instance as usize];
+        let counts = |triangle| rays.instance(triangle).is_some_and(|instance| self.counted[instance as usize]);
         let mut judged = judge_while(&rays.tracer, truth, &seen, &factors, counts, goes_on)?;
         if let Some(before) = &self.before {
             let measured = measure(&before.maps);

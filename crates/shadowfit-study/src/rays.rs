@@ -1,67 +1,130 @@
 //! A scene's casters for rays: the same triangles and cut-outs that the renderer draws into the shadow map.
 
-use glam::{DVec3, Vec2, Vec4};
-use shadowfit_scene::{AlphaMode, Image, Instance, Pose, Primitive, Scene, Texture, Triangle};
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use shadowfit_scene::{AlphaMode, Deformed, Image, Instance, Pose, Primitive, Scene, Texture};
 use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
 /// The casters of a scene in one pose. Blended surfaces cast nothing and are left out, as in the
 /// shadow pass.
 #[derive(Clone, Debug)]
 pub struct SceneRays {
-    /// Answers rays; triangle numbers are those of `triangles`.
+    /// Answers rays against the casters' triangles, relative to the origin, in metres; they have the renderer's numbers.
     pub tracer: Tracer,
-    /// The casters' triangles, relative to the origin, in metres.
-    pub triangles: Vec<Triangle>,
     /// World position that rays and triangles are relative to, in metres.
     pub origin: DVec3,
+    /// Number of the first triangle of each instance, and last how many there are. What casts nothing has none.
+    firsts: Vec<u32>,
 }
 
 impl SceneRays {
     /// Moves everything to another pose of the same scene.
     pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
-        let triangles = casters(scene, &scene.instances(), pose, self.origin);
-        if self.tracer.set_triangles(triangles.iter().map(|triangle| triangle.vertices)).is_err() {
-            // It is another scene.
-            *self = Self::from_origin(scene, pose, self.origin);
+        let casters = Casters::new(scene, pose, self.origin);
+        if casters.firsts == self.firsts && self.tracer.set_triangles(casters.corners()).is_ok() {
             return;
         }
-        self.triangles = triangles;
+        // It is another scene.
+        *self = Self::from_origin(scene, pose, self.origin);
     }
 
     /// Makes a scene's casters in a pose ready for rays. `origin` is the world position, in metres, that everything is
     /// relative to: f32 rays are exact only for scenes near it.
     pub fn from_origin(scene: &Scene, pose: &Pose, origin: DVec3) -> Self {
-        let instances = scene.instances();
-        let triangles = casters(scene, &instances, pose, origin);
-        let tracer = Tracer::new(triangles.iter().map(|triangle| triangle.vertices))
-            .with_cut_outs(cut_outs(scene, &instances, &triangles));
-        Self { tracer, triangles, origin }
+        let casters = Casters::new(scene, pose, origin);
+        let tracer = Tracer::new(casters.corners()).with_cut_outs(casters.cut_outs());
+        Self { tracer, origin, firsts: casters.firsts }
+    }
+
+    /// The instance of a triangle, an index into [`Scene::instances`]; `None` beyond the last triangle.
+    pub fn instance(&self, triangle: u32) -> Option<u32> {
+        let instances = self.firsts.len() - 1;
+        // What has no triangles begins where the next one does.
+        let after = self.firsts.partition_point(|first| *first <= triangle);
+        (after <= instances).then(|| after as u32 - 1)
     }
 }
 
-/// The triangles that cast, in the order of the renderer's numbers.
-fn casters(scene: &Scene, instances: &[Instance], pose: &Pose, origin: DVec3) -> Vec<Triangle> {
-    let alpha_of = |triangle: &Triangle| material(scene, instances, triangle).alpha;
-    pose.triangles_from(scene, origin).into_iter().filter(|triangle| alpha_of(triangle) != AlphaMode::Blend).collect()
+/// What casts in a pose, instance by instance.
+struct Casters<'a> {
+    scene: &'a Scene,
+    pose: &'a Pose,
+    origin: DVec3,
+    instances: Vec<Instance>,
+    deformed: Vec<Option<Deformed>>,
+    firsts: Vec<u32>,
 }
 
-fn primitive<'a>(scene: &'a Scene, instances: &[Instance], triangle: &Triangle) -> &'a Primitive {
-    let instance = &instances[triangle.instance as usize];
+impl<'a> Casters<'a> {
+    fn new(scene: &'a Scene, pose: &'a Pose, origin: DVec3) -> Self {
+        let instances = scene.instances();
+        let mut firsts = vec![0];
+        let mut triangles = 0;
+        for instance in &instances {
+            let primitive = primitive(scene, instance);
+            if scene.materials[primitive.material].alpha != AlphaMode::Blend {
+                triangles += primitive.indices.len() as u32 / 3;
+            }
+            firsts.push(triangles);
+        }
+        let deformed = instances.iter().map(|instance| pose.deform(scene, instance)).collect();
+        Self { scene, pose, origin, instances, deformed, firsts }
+    }
+
+    /// Those that have triangles, each with its index.
+    fn casting(&self) -> impl Iterator<Item = (usize, &Instance)> {
+        let casts = |(index, _): &(usize, _)| self.firsts[*index] < self.firsts[*index + 1];
+        self.instances.iter().enumerate().filter(casts)
+    }
+
+    /// All triangles, in the order of the renderer's numbers.
+    fn corners(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        let of_instance = |(index, instance): (usize, &Instance)| {
+            self.pose.corners_from(self.scene, instance, self.deformed[index].as_ref(), self.origin)
+        };
+        Counted { left: self.firsts.last().map_or(0, |all| *all as usize), all: self.casting().flat_map(of_instance) }
+    }
+
+    /// The masked triangles, and the alpha of the images that they have.
+    fn cut_outs(&self) -> CutOuts {
+        let masked: Vec<(u32, CutOut)> = self
+            .casting()
+            .flat_map(|(index, instance)| {
+                let primitive = primitive(self.scene, instance);
+                let corners = primitive.indices.as_chunks::<3>().0;
+                let is_masked = matches!(self.scene.materials[primitive.material].alpha, AlphaMode::Mask { .. });
+                let corners = if is_masked { corners } else { &[] };
+                let cut_out = move |corners: &[u32; 3]| cut_out(self.scene, primitive, *corners);
+                (self.firsts[index]..)
+                    .zip(corners)
+                    .filter_map(move |(number, corners)| Some((number, cut_out(corners)?)))
+            })
+            .collect();
+        let images = if masked.is_empty() { Vec::new() } else { self.scene.images.iter().map(alpha_image).collect() };
+        CutOuts::new(images, masked)
+    }
+}
+
+/// An iterator that knows its length, so that lists are made in one piece.
+struct Counted<I> {
+    all: I,
+    left: usize,
+}
+
+impl<I: Iterator> Iterator for Counted<I> {
+    type Item = I::Item;
+
+    fn next(&mut self) -> Option<I::Item> {
+        self.left = self.left.saturating_sub(1);
+        self.all.next()
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+fn primitive<'a>(scene: &'a Scene, instance: &Instance) -> &'a Primitive {
     &scene.meshes[instance.mesh].primitives[instance.primitive]
-}
-
-fn material<'a>(scene: &'a Scene, instances: &[Instance], triangle: &Triangle) -> &'a shadowfit_scene::Material {
-    &scene.materials[primitive(scene, instances, triangle).material]
-}
-
-/// The masked triangles of a scene, and the alpha of the images that they have.
-fn cut_outs(scene: &Scene, instances: &[Instance], triangles: &[Triangle]) -> CutOuts {
-    let masked: Vec<(u32, CutOut)> = (0u32..)
-        .zip(triangles)
-        .filter_map(|(index, triangle)| Some((index, cut_out(scene, instances, triangle)?)))
-        .collect();
-    let images = if masked.is_empty() { Vec::new() } else { scene.images.iter().map(alpha_image).collect() };
-    CutOuts::new(images, masked)
 }
 
 /// The alpha of an image; one without texels has no holes.
@@ -71,12 +134,11 @@ fn alpha_image(image: &Image) -> AlphaImage {
     AlphaImage::new(image.width, image.height, alpha).unwrap_or_else(opaque)
 }
 
-fn cut_out(scene: &Scene, instances: &[Instance], triangle: &Triangle) -> Option<CutOut> {
-    let primitive = primitive(scene, instances, triangle);
+fn cut_out(scene: &Scene, primitive: &Primitive, corners: [u32; 3]) -> Option<CutOut> {
     let material = &scene.materials[primitive.material];
     let AlphaMode::Mask { cutoff } = material.alpha else { return None };
     let texture = material.base_color_texture;
-    let vertices = [0, 1, 2].map(|k| primitive.indices[triangle.index as usize * 3 + k] as usize);
+    let vertices = corners.map(|corner| corner as usize);
     let uv = |vertex: usize| {
         let uv = primitive.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO);
         texture.map_or(uv, |texture| in_image(&texture, uv))
@@ -108,9 +170,34 @@ fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use shadowfit_scene::builtin::default_scene;
 
     use super::*;
+
+    #[test]
+    fn each_triangle_is_that_of_the_scene_and_knows_its_instance() {
+        let mut scene = default_scene();
+        // The surfaces of every second material cast nothing.
+        for material in scene.materials.iter_mut().skip(1).step_by(2) {
+            material.alpha = AlphaMode::Blend;
+        }
+        let (instances, pose, origin) = (scene.instances(), scene.pose(Some(0), 0.8), DVec3::new(3.0, -2.0, 1e3));
+        let rays = SceneRays::from_origin(&scene, &pose, origin);
+        let casts = |triangle: &shadowfit_scene::Triangle| {
+            let instance = &instances[triangle.instance as usize];
+            scene.materials[primitive(&scene, instance).material].alpha != AlphaMode::Blend
+        };
+        let all = pose.triangles_from(&scene, origin);
+        let casting: Vec<_> = all.iter().filter(|triangle| casts(triangle)).collect();
+        assert!(casting.len() < all.len() && casting.len() == rays.tracer.len());
+        for (number, triangle) in (0..).zip(casting) {
+            assert_eq!(
+                (rays.tracer.corners(number), rays.instance(number)),
+                (triangle.vertices, Some(triangle.instance))
+            );
+        }
+        assert_eq!(rays.instance(rays.tracer.len() as u32), None);
+    }
 
     #[test]
     fn texture_coordinates_are_turned_and_moved_as_the_texture_says() {

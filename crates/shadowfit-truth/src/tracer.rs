@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::{Bvh2, builder::build_bvh2_from_tris};
+use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 use obvhs::ray::{Ray, RayHit};
-use obvhs::{BvhBuildParams, triangle::Triangle};
+use obvhs::{Boundable, BvhBuildParams, triangle::Triangle};
 
 use crate::cut_out::CutOuts;
 use crate::memory::TracerMemory;
@@ -26,7 +26,7 @@ const MAX_COST_GROWTH: f32 = 1.5;
 /// the images of cut-outs.
 #[derive(Clone)]
 pub struct Tracer {
-    triangles: Vec<Triangle>,
+    triangles: Vec<Corners>,
     bvh: Option<Bvh2>,
     /// Cost of a ray when the hierarchy was built.
     built_cost: f32,
@@ -67,7 +67,7 @@ impl Tracer {
     /// Builds the hierarchy. Vertices in world space, metres; triangles with non-finite vertices
     /// are never met.
     pub fn new(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Self {
-        let triangles: Vec<Triangle> = triangles.into_iter().map(triangle).collect();
+        let triangles: Vec<Corners> = triangles.into_iter().map(Corners::new).collect();
         let bvh = build(&triangles);
         let built_cost = bvh.as_ref().map_or(0.0, cost);
         Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: CutOuts::default() }
@@ -81,7 +81,7 @@ impl Tracer {
     ///
     /// When the number of triangles differs; nothing is changed then.
     pub fn set_triangles(&mut self, moved: impl IntoIterator<Item = [Vec3; 3]>) -> Result<(), TriangleCountError> {
-        let moved: Vec<Triangle> = moved.into_iter().map(triangle).collect();
+        let moved: Vec<Corners> = moved.into_iter().map(Corners::new).collect();
         if moved.len() != self.triangles.len() {
             return Err(TriangleCountError { wanted: self.triangles.len(), given: moved.len() });
         }
@@ -148,14 +148,13 @@ impl Tracer {
 
     /// Corners of a triangle, world space, metres; all zero for one that was not finite.
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        let Triangle { v0, v1, v2 } = self.triangles[triangle as usize];
-        [v0, v1, v2].map(Vec3::from)
+        self.triangles[triangle as usize].0
     }
 
     /// Unit normal of a triangle by its winding, counter-clockwise seen from the front; zero for
     /// one without area.
     pub fn normal(&self, triangle: u32) -> Vec3 {
-        self.triangles[triangle as usize].compute_normal().into()
+        self.triangles[triangle as usize].triangle().compute_normal().into()
     }
 
     /// Unit normal of a triangle's plane by its winding, in f64; zero for one without area.
@@ -232,7 +231,7 @@ impl Tracer {
 
     /// Distance to a triangle along a ray, infinite for a miss or a cut-out.
     fn meet(&self, ray: &Ray, index: u32) -> f32 {
-        let triangle = &self.triangles[index as usize];
+        let triangle = &self.triangles[index as usize].triangle();
         let distance = triangle.intersect(ray);
         let is_opaque = self.alpha_test.is_none() && self.cut_outs.is_empty();
         if is_opaque || !distance.is_finite() {
@@ -244,16 +243,32 @@ impl Tracer {
     }
 }
 
-/// A triangle, all zero if it is not finite.
-fn triangle(vertices: [Vec3; 3]) -> Triangle {
-    let finite = vertices.iter().all(|vertex| vertex.is_finite());
-    let [v0, v1, v2] = if finite { vertices.map(Vec3A::from) } else { [Vec3A::ZERO; 3] };
-    Triangle { v0, v1, v2 }
+/// Corners of a triangle: a quarter less than the aligned ones that rays are tested against.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners([Vec3; 3]);
+
+impl Corners {
+    /// All zero if one of them is not finite.
+    fn new(corners: [Vec3; 3]) -> Self {
+        let finite = corners.iter().all(|corner| corner.is_finite());
+        Self(if finite { corners } else { [Vec3::ZERO; 3] })
+    }
+
+    fn triangle(&self) -> Triangle {
+        let [v0, v1, v2] = self.0.map(Vec3A::from);
+        Triangle { v0, v1, v2 }
+    }
 }
 
-fn build(triangles: &[Triangle]) -> Option<Bvh2> {
+impl Boundable for Corners {
+    fn aabb(&self) -> Aabb {
+        self.triangle().aabb()
+    }
+}
+
+fn build(triangles: &[Corners]) -> Option<Bvh2> {
     let params = BvhBuildParams::medium_build();
-    let mut bvh = (!triangles.is_empty()).then(|| build_bvh2_from_tris(triangles, params, &mut Duration::default()))?;
+    let mut bvh = (!triangles.is_empty()).then(|| build_bvh2(triangles, params, &mut Duration::default()))?;
     // Drops what only the builder needs, and unused capacity.
     bvh.parents = Vec::new();
     bvh.primitives_to_nodes = Vec::new();
@@ -262,7 +277,7 @@ fn build(triangles: &[Triangle]) -> Option<Bvh2> {
 }
 
 /// Fits the boxes to triangles that have moved.
-fn refit(bvh: &mut Bvh2, triangles: &[Triangle]) {
+fn refit(bvh: &mut Bvh2, triangles: &[Corners]) {
     for node in bvh.nodes.iter_mut().filter(|node| node.is_leaf()) {
         let slots = node.first_index as usize..(node.first_index + node.prim_count) as usize;
         let boxes = bvh.primitive_indices[slots].iter().map(|index| triangles[*index as usize].aabb());

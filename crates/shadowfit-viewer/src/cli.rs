@@ -117,7 +117,7 @@ impl Arguments {
     ///
     /// If the file cannot be loaded, or has no scene or animation of the index asked for.
     pub fn load_scene(&self) -> Result<Scene> {
-        let scene = self.source()?.unwrap_or_default().load(&|_| ())?;
+        let scene = self.source()?.unwrap_or_default().load(&|_, _| ())?;
         check_animation(self.animation, scene.animations.len(), &scene.name)?;
         Ok(scene)
     }

@@ -1,27 +1,25 @@
 //! Loads scenes on a thread, while the window goes on.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+mod progress;
+
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use anyhow::{Context, Error, Result, anyhow};
 use shadowfit_render::Gpu;
+use shadowfit_scene::{LoadStep, SceneSize};
 use shadowfit_study::PreparedScene;
 
 use crate::source::SceneSource;
-
-/// Share of the work that reading the file takes; the rest prepares the scene.
-const READING: f32 = 0.7;
-/// Steps of the bar.
-const STEPS: f32 = 1000.0;
+use progress::{Progress, READY};
 
 /// A scene that is being loaded.
 pub(crate) struct Loading {
     pub(crate) source: SceneSource,
     /// The line of a script that asked for it.
     pub(crate) line: Option<String>,
-    /// Progress, in steps.
-    done: Arc<AtomicU32>,
+    progress: Arc<Mutex<Progress>>,
     result: Receiver<Result<PreparedScene>>,
 }
 
@@ -29,23 +27,23 @@ impl Loading {
     /// Begins to load. `layout` is that of the scene's materials.
     pub(crate) fn start(source: SceneSource, line: Option<String>, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
         let (sender, result) = channel();
-        let done = Arc::new(AtomicU32::new(0));
+        let progress = Arc::new(Mutex::new(Progress::new(Instant::now())));
         let work = {
-            let (source, gpu, layout, done) = (source.clone(), gpu.clone(), layout.clone(), done.clone());
+            let (source, gpu, layout, progress) = (source.clone(), gpu.clone(), layout.clone(), Arc::clone(&progress));
             move || {
-                let prepared = load(&source, &gpu, &layout, &done);
+                let prepared = load(&source, &gpu, &layout, &progress);
                 // The receiver is gone where another scene was asked for.
                 let _ = sender.send(prepared);
             }
         };
         // Where no thread can be made, the channel is closed, which is reported as the end of the thread.
         let _ = std::thread::Builder::new().name("loading".to_owned()).spawn(work);
-        Self { source, line, done, result }
+        Self { source, line, progress, result }
     }
 
     /// Share that is done, 0..=1.
     pub(crate) fn share(&self) -> f32 {
-        self.done.load(Ordering::Relaxed) as f32 / STEPS
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner).share(Instant::now())
     }
 
     /// The scene, once it is loaded.
@@ -61,11 +59,16 @@ impl Loading {
     }
 }
 
-fn load(source: &SceneSource, gpu: &Gpu, layout: &wgpu::BindGroupLayout, done: &AtomicU32) -> Result<PreparedScene> {
-    let tell = |share: f32| done.store((share * STEPS) as u32, Ordering::Relaxed);
-    let scene = source.load(&|share| tell(share * READING))?;
-    tell(READING);
-    let prepared = PreparedScene::new(gpu, layout, scene).map_err(Error::from).with_context(|| source.text())?;
-    tell(1.0);
-    Ok(prepared)
+fn load(
+    source: &SceneSource,
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    progress: &Mutex<Progress>,
+) -> Result<PreparedScene> {
+    let begin = |phase, size: Option<&SceneSize>| {
+        progress.lock().unwrap_or_else(PoisonError::into_inner).begin(phase, size, Instant::now());
+    };
+    let scene = source.load(&|step: LoadStep, size| begin(step as usize, Some(size)))?;
+    begin(READY, None);
+    PreparedScene::new(gpu, layout, scene).map_err(Error::from).with_context(|| source.text())
 }

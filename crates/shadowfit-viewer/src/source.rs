@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use shadowfit_classics::{Sample, SampleVariant};
-use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
+use shadowfit_scene::{LoadStep, Scene, SceneSize};
 
 /// Prefix of the names of a sample's options, on the command line and in scripts.
 pub(crate) const OPTION_PREFIX: &str = "sample.";
@@ -86,12 +86,12 @@ impl SceneSource {
         }
     }
 
-    /// Loads the scene, and reports the loaded share now and then.
+    /// Loads the scene, and tells the steps of loading a file.
     ///
     /// # Errors
     ///
     /// If the file cannot be loaded, or has no such scene.
-    pub(crate) fn load(&self, progress: &dyn Fn(f32)) -> Result<Scene> {
+    pub(crate) fn load(&self, progress: &dyn Fn(LoadStep, &SceneSize)) -> Result<Scene> {
         Ok(match self {
             Self::BuiltIn(scene) => scene.build(),
             Self::Sample { sample, .. } => sample.scene(),

@@ -322,6 +322,7 @@ impl Stage {
     /// are compared; a sample as its source does.
     pub fn draw(&mut self, target: &RenderTarget) {
         if self.sample.is_some() {
+            self.side.shown = None;
             self.draw_sample(target);
         } else {
             self.draw_side(target);
@@ -350,6 +351,7 @@ impl Stage {
     pub fn draw_beside(&mut self, target: &RenderTarget) {
         let (side, mut shot) = self.shot(target.size);
         let Some(fitted) = side.fitted.clone() else { return };
+        side.shown = None;
         let maps = fitted.maps.to_vec();
         let statistics = side.statistics;
         side.draw_outside(&mut shot, (&fitted, &maps, true), target);

@@ -342,6 +342,9 @@ impl KeptMap {
             return None;
         }
         let price = Price::new(casters, self.over, whole(now), self.is_split);
+        if !price.may_be_worth(self.changed.texels(), whole(now)) {
+            return None;
+        }
         let changed = self.changed.rects(&price).into_iter().map(|rect| moved(rect, scroll.shift, size));
         let rects: Vec<TexelRect> = scroll.exposed().chain(changed).filter(|rect| !rect.is_empty()).collect();
         let is_worth = price.is_worth(&rects, whole(now));

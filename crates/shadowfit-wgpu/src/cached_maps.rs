@@ -29,6 +29,8 @@ pub(crate) struct CachedMaps {
     pub(crate) caching: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
+    /// Whether the look-up reads these maps first. Maps that are faded out, or not read yet, leave it as it is.
+    pub(crate) is_present: bool,
     device: wgpu::Device,
     map: ShadowMap,
     layers: Layers,
@@ -60,21 +62,31 @@ impl CachedMaps {
             Some(texture) => ShadowMap::in_texture(device, descriptor, texture),
             None => ShadowMap::new(device, descriptor),
         }?;
-        let layers = Layers::new(device, &map);
-        Ok(Self {
+        Ok(Self::of(device, map))
+    }
+
+    /// The second set of maps of a descriptor that cross-fades, drawn by the same rules. The look-up does not read it.
+    pub(crate) fn second(&self) -> Self {
+        let (schedule, caching, culling) = (self.schedule, self.caching, self.culling);
+        Self { schedule, caching, culling, is_present: false, ..Self::of(&self.device, self.map.second(&self.device)) }
+    }
+
+    fn of(device: &wgpu::Device, map: ShadowMap) -> Self {
+        Self {
             schedule: UpdateSchedule::default(),
             caching: true,
             culling: Culling::default(),
+            is_present: true,
             device: device.clone(),
+            layers: Layers::new(device, &map),
             map,
-            layers,
             cache: MapCache::default(),
             plan: FramePlan::default(),
             maps: Vec::new(),
             volumes: Vec::new(),
             origin: DVec3::ZERO,
             is_off: false,
-        })
+        }
     }
 
     /// Moves the view depths between which shadows fade, in metres.
@@ -162,7 +174,7 @@ impl CachedMaps {
         for (index, map) in self.maps.iter_mut().enumerate() {
             map.wrap = self.cache.wrap(index);
         }
-        self.map.prepare(queue, &view, &self.maps)?;
+        self.write_uniforms(queue, &view)?;
         self.is_off = false;
         self.layers.prepare(&self.device, queue, &self.plan);
         Ok(())
@@ -187,6 +199,19 @@ impl CachedMaps {
             is_due[index] = self.cache.shows_gone(index, &volume[0]);
         }
         Ok(is_due)
+    }
+
+    fn write_uniforms(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+        if self.is_present {
+            self.map.prepare(queue, view, &self.maps)
+        } else {
+            self.map.prepare_casters(queue, view, &self.maps)
+        }
+    }
+
+    /// Lets the look-up mix another set of maps into these, after [`Self::update`] of both. `share`: that of these.
+    pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, view: &MapView, share: f32) {
+        self.map.fade_from(queue, (&before.map, &before.maps), view, share);
     }
 
     /// Finds the casters of each map, relative to its origin: those that can shadow something in view, or all that it

@@ -33,6 +33,10 @@ pub struct ShadowMapDescriptor {
     /// [`CasterPolicy::DepthClamp`] need it. On devices without [`wgpu::Features::DEPTH_CLIP_CONTROL`] the
     /// engine's fragment shaders do it: [`ShadowMap::clamps_in_fragment`](crate::ShadowMap::clamps_in_fragment).
     pub depth_clamp: bool,
+    /// Whether there is a second set of layers, and a look-up that goes over from one set of maps to the other: of a
+    /// [`SunShadows`](crate::SunShadows) what its [light steps](crate::SunShadows::set_light_steps) ask for, whatever is
+    /// given here. A [`ShadowMap`](crate::ShadowMap) by itself leaves the second set empty. Default: `false`.
+    pub cross_fades: bool,
     /// First binding of the bind groups of casters and receivers; the others follow it. With another one for each sun
     /// several suns fit into one bind group: [`ShadowMap::receiver_entries`](crate::ShadowMap::receiver_entries).
     /// Default: 0.
@@ -59,6 +63,7 @@ impl From<&Technique> for ShadowMapDescriptor {
             selection: technique.maps.selection(),
             depth: technique.fit.depth,
             depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact(),
+            cross_fades: false,
             first_binding: 0,
         }
     }
@@ -82,12 +87,12 @@ impl ShadowMapDescriptor {
         wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 
     /// The texture of the maps, for engines that make it themselves ([`MapTexture`](crate::MapTexture)): as many layers
-    /// as there are maps, with the usages that they need. It may have more layers, usages and mip levels.
+    /// as there are maps, twice as many where they cross-fade, with the usages that they need. It may have more layers, usages and mip levels.
     pub fn texture(&self) -> wgpu::TextureDescriptor<'static> {
         let [width, height] = self.resolution;
         wgpu::TextureDescriptor {
             label: Some("shadowfit map"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: self.maps },
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: self.layers() },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -95,6 +100,11 @@ impl ShadowMapDescriptor {
             usage: Self::USAGES,
             view_formats: &[],
         }
+    }
+
+    /// Layers of the texture that shaders read.
+    pub(crate) const fn layers(&self) -> u32 {
+        if self.cross_fades { 2 * self.maps } else { self.maps }
     }
 
     /// Refuses a descriptor that is impossible, in general or on this device.

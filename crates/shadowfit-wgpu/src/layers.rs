@@ -127,7 +127,8 @@ impl StaticLayers {
     fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let descriptor = map.descriptor();
         let format = map.depth_stencil_state().format;
-        let texture = MapTexture { texture: crate::map::texture(device, descriptor, format), base_layer: 0 };
+        let texture = crate::map::texture(device, descriptor, (format, descriptor.maps));
+        let texture = MapTexture { texture, base_layer: 0 };
         let types = [bindings::depths(wgpu::TextureViewDimension::D2, false)];
         let layout = bindings::layout(device, "shadowfit static casters", wgpu::ShaderStages::FRAGMENT, (0, &types));
         let layer = |index: u32| {

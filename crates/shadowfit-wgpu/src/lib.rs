@@ -52,11 +52,12 @@
 //! | name | is |
 //! |---|---|
 //! | [`SunShadows`] | the shadows of one sun: one object for each |
-//! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, and which of them move |
+//! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, which of them move, and what stands |
 //! | [`ShadowPiece`] | one draw of a pass: casters by number, viewport, scissor rectangle |
 //! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
 //! | [`MapUpdate`], [`UpdateContent`] | a rectangle that a frame draws, for tools that show it |
 //! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
+//! | [`SunSteps`] | how the maps of a sun that moves are held still, and cross-faded |
 //! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
 //! | [`SunShadowsError`] | why a technique or a frame is refused; earlier maps stay as they are |
 //!
@@ -107,5 +108,5 @@ pub use map_view::MapView;
 pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
 pub use shadowfit::settings::MAX_MAPS;
 pub use sun_frame::SunFrame;
-pub use sun_shadows::{SunShadows, SunShadowsError};
-pub use uniform::{CasterUniform, MapUniform, ReceiverUniform};
+pub use sun_shadows::{SunShadows, SunShadowsError, SunSteps};
+pub use uniform::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};

@@ -1,5 +1,7 @@
 //! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
 
+use core::mem::offset_of;
+
 use shadowfit::glam::UVec2;
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
@@ -8,13 +10,15 @@ use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
 use crate::bindings;
 use crate::caught::caught;
 use crate::map_view::check;
-use crate::uniform::{CasterUniform, ReceiverUniform};
+use crate::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
 use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
 pub struct ShadowMap {
     descriptor: ShadowMapDescriptor,
+    /// Layer of the first map in the array.
+    first_layer: u32,
     clamps_in_fragment: bool,
     layers: Vec<Layer>,
     view: wgpu::TextureView,
@@ -83,10 +87,10 @@ impl ShadowMap {
         let caster_layout = caster_layout(device, descriptor);
         let types = (descriptor.first_binding, receiver_types(descriptor));
         let receiver_layout = bindings::layout(device, "shadowfit receiver", RECEIVER_STAGES, types);
-        let layers =
-            (0..descriptor.maps).map(|index| Layer::new(device, descriptor, &caster_layout, textures, index)).collect();
-        let view = textures.read.view(wgpu::TextureViewDimension::D2Array, 0, descriptor.maps);
-        let receiver_uniform = uniform_buffer(device, size_of::<ReceiverUniform>());
+        let layers = layers(device, descriptor, &caster_layout, textures, 0);
+        let view = textures.read.view(wgpu::TextureViewDimension::D2Array, 0, descriptor.layers());
+        let size = if descriptor.cross_fades { size_of::<FadingUniform>() } else { size_of::<ReceiverUniform>() };
+        let receiver_uniform = uniform_buffer(device, size);
         let sampler = comparison_sampler(device, descriptor);
         let resources = receiver_resources(&receiver_uniform, &view, &sampler);
         let resources = (descriptor.first_binding, &resources[..types.1.len()]);
@@ -94,6 +98,7 @@ impl ShadowMap {
         let has_clamp = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         Self {
             descriptor: *descriptor,
+            first_layer: 0,
             clamps_in_fragment: descriptor.depth_clamp && !has_clamp,
             layers,
             view,
@@ -104,6 +109,34 @@ impl ShadowMap {
             receiver_uniform,
             volumes: Vec::new(),
             texture: textures.is_handed_in.then(|| textures.read.clone()),
+        }
+    }
+
+    /// The second set of maps of a descriptor that [cross-fades](ShadowMapDescriptor::cross_fades), with the textures and
+    /// the look-up of the first one.
+    pub(crate) fn second(&self, device: &wgpu::Device) -> Self {
+        let Layer { depth, color, .. } = &self.layers[0];
+        let texture = |view: &wgpu::TextureView, base_layer| MapTexture { texture: view.texture().clone(), base_layer };
+        let base_layer = self.texture.as_ref().map_or(0, |texture| texture.base_layer);
+        let textures = Textures {
+            read: texture(color.as_ref().unwrap_or(depth), base_layer),
+            beside: color.as_ref().map(|_| texture(depth, 0)),
+            is_handed_in: self.texture.is_some(),
+        };
+        let first_layer = self.descriptor.maps;
+        Self {
+            descriptor: self.descriptor,
+            first_layer,
+            clamps_in_fragment: self.clamps_in_fragment,
+            layers: layers(device, &self.descriptor, &self.caster_layout, &textures, first_layer),
+            view: self.view.clone(),
+            sampler: self.sampler.clone(),
+            caster_layout: self.caster_layout.clone(),
+            receiver_layout: self.receiver_layout.clone(),
+            receiver_group: self.receiver_group.clone(),
+            receiver_uniform: self.receiver_uniform.clone(),
+            volumes: Vec::new(),
+            texture: self.texture.clone(),
         }
     }
 
@@ -142,7 +175,7 @@ impl ShadowMap {
     ///
     /// | binding | holds | as |
     /// |---|---|---|
-    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes | uniform buffer |
+    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes; [`FadingUniform`] where the look-up [cross-fades](ShadowMapDescriptor::cross_fades) | uniform buffer |
     /// | first + 1 | the maps, one layer each | array of depth textures, or of unfilterable float textures for colour formats |
     /// | first + 2 | how depths are compared; only for depth formats | comparison sampler |
     pub fn receiver_layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
@@ -229,6 +262,18 @@ impl ShadowMap {
     /// layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
     /// are not finite and for a direction that is not of unit length. Nothing is written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[FittedMap]) -> Result<(), ShadowMapError> {
+        self.prepare_casters(queue, view, maps)?;
+        self.write_receiver(queue, &ReceiverUniform::new(maps, view, &self.descriptor));
+        Ok(())
+    }
+
+    /// The same for maps that the look-up does not read yet, or fades out: it stays as it is.
+    pub(crate) fn prepare_casters(
+        &mut self,
+        queue: &wgpu::Queue,
+        view: &MapView,
+        maps: &[FittedMap],
+    ) -> Result<(), ShadowMapError> {
         check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {
             let clamps_in_fragment = self.clamps_in_fragment.into();
@@ -236,13 +281,33 @@ impl ShadowMap {
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
             (layer.used, layer.wrap) = (map.projection.resolution, map.wrap);
         }
-        let uniform = ReceiverUniform::new(maps, view, &self.descriptor);
-        queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
         self.volumes
             .extend(maps.iter().map(|map| stored_casters(&map.projection, depth_clamp).relative_to(view.origin)));
         Ok(())
+    }
+
+    /// Writes what the look-up reads: this set of maps alone.
+    fn write_receiver(&self, queue: &wgpu::Queue, now: &ReceiverUniform) {
+        let (now, first_layer) = (now.in_layers(self.first_layer), self.first_layer);
+        let fading = FadingUniform { now, share: 1.0, first_layer, ..FadingUniform::default() };
+        let bytes = if self.descriptor.cross_fades { bytemuck::bytes_of(&fading) } else { bytemuck::bytes_of(&now) };
+        queue.write_buffer(&self.receiver_uniform, 0, bytes);
+    }
+
+    /// Mixes another set of maps into what the look-up reads, after [`Self::prepare`]. `share`: that of this set.
+    pub(crate) fn fade_from(
+        &self,
+        queue: &wgpu::Queue,
+        (before, maps): (&Self, &[FittedMap]),
+        view: &MapView,
+        share: f32,
+    ) {
+        let uniform = ReceiverUniform::new(maps, view, &before.descriptor).in_layers(before.first_layer);
+        let write = |offset: usize, bytes: &[u8]| queue.write_buffer(&self.receiver_uniform, offset as u64, bytes);
+        write(offset_of!(FadingUniform, before), bytemuck::bytes_of(&uniform));
+        write(offset_of!(FadingUniform, share), bytemuck::bytes_of(&share));
     }
 
     /// Moves the view depths between which shadows fade, in metres, from the next frame on.
@@ -253,7 +318,7 @@ impl ShadowMap {
     /// Makes all factors 0, until maps are [prepared](Self::prepare) again: for a light that gives nothing. There is
     /// nothing to draw.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {
-        queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&ReceiverUniform::off()));
+        self.write_receiver(queue, &ReceiverUniform::off());
         self.volumes.clear();
     }
 
@@ -353,6 +418,17 @@ pub(crate) fn caster_policy(depth_clamp: bool) -> CasterPolicy {
     if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None }
 }
 
+/// The layers of a set of maps, from one of the array on.
+fn layers(
+    device: &wgpu::Device,
+    descriptor: &ShadowMapDescriptor,
+    layout: &wgpu::BindGroupLayout,
+    textures: &Textures,
+    first: u32,
+) -> Vec<Layer> {
+    (first..first + descriptor.maps).map(|index| Layer::new(device, descriptor, layout, textures, index)).collect()
+}
+
 impl Layer {
     fn new(
         device: &wgpu::Device,
@@ -361,13 +437,17 @@ impl Layer {
         textures: &Textures,
         index: u32,
     ) -> Self {
-        let view = |texture: &MapTexture| texture.view(wgpu::TextureViewDimension::D2, index, 1);
+        let view = |texture: &MapTexture, index| texture.view(wgpu::TextureViewDimension::D2, index, 1);
         let caster_uniform = uniform_buffer(device, size_of::<CasterUniform>());
         let resources = [caster_uniform.as_entire_binding()];
         let caster_group = bindings::group(device, "shadowfit caster", layout, (descriptor.first_binding, &resources));
+        // Depth buffers beside colours are not stored: both sets of maps draw with the same.
+        let beside = textures.beside.as_ref().map(|texture| view(texture, index % descriptor.maps));
+        let read = view(&textures.read, index);
+        let (depth, color) = beside.map_or_else(|| (read.clone(), None), |beside| (beside, Some(read.clone())));
         Self {
-            depth: view(textures.beside.as_ref().unwrap_or(&textures.read)),
-            color: textures.beside.is_some().then(|| view(&textures.read)),
+            depth,
+            color,
             caster_uniform,
             caster_group,
             used: descriptor.resolution.into(),
@@ -400,15 +480,17 @@ impl Textures {
         if handed_in.is_none() && !missing.is_empty() {
             return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
         }
-        let made = |format| MapTexture { texture: texture(device, descriptor, format), base_layer: 0 };
+        let made = |of| MapTexture { texture: texture(device, descriptor, of), base_layer: 0 };
         // Devices below WebGPU's level may lack more than these flags say.
         caught(device, || Self {
-            read: handed_in.cloned().unwrap_or_else(|| made(descriptor.texture_format())),
-            beside: (!format.is_depth()).then(|| made(descriptor.depth_format())),
+            read: handed_in.cloned().unwrap_or_else(|| made((descriptor.texture_format(), descriptor.layers()))),
+            beside: (!format.is_depth()).then(|| made((descriptor.depth_format(), maps))),
             is_handed_in: handed_in.is_some(),
         })
         .map_err(|error| match error {
-            wgpu::Error::OutOfMemory { .. } => ShadowMapError::OutOfMemory { resolution, maps, format },
+            wgpu::Error::OutOfMemory { .. } => {
+                ShadowMapError::OutOfMemory { resolution, maps: descriptor.layers(), format }
+            }
             error => why(error.to_string()),
         })
     }
@@ -417,12 +499,15 @@ impl Textures {
 /// Usages of the textures that are made here; copies are for tools.
 const USAGES: wgpu::TextureUsages = ShadowMapDescriptor::USAGES.union(wgpu::TextureUsages::COPY_SRC);
 
+/// A texture of so many layers.
 pub(crate) fn texture(
     device: &wgpu::Device,
     descriptor: &ShadowMapDescriptor,
-    format: wgpu::TextureFormat,
+    (format, layers): (wgpu::TextureFormat, u32),
 ) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor { format, usage: USAGES, ..descriptor.texture() })
+    let mut of = descriptor.texture();
+    of.size.depth_or_array_layers = layers;
+    device.create_texture(&wgpu::TextureDescriptor { format, usage: USAGES, ..of })
 }
 
 fn uniform_buffer(device: &wgpu::Device, size: usize) -> wgpu::Buffer {

@@ -93,7 +93,7 @@ impl MapTexture {
         let Self { texture, base_layer } = self;
         let (base_layer, needed) = (*base_layer, descriptor.texture());
         let size = [texture.width(), texture.height()];
-        let (layers, maps) = (texture.depth_or_array_layers(), descriptor.maps);
+        let (layers, maps) = (texture.depth_or_array_layers(), descriptor.layers());
         let missing = needed.usage - texture.usage();
         if texture.dimension() != needed.dimension {
             return Err(MapTextureError::Dimension(texture.dimension()));

@@ -1,6 +1,8 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
+mod fading;
+
 use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
 
@@ -112,7 +114,8 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen, for which 10 bits an axis are enough. Which map a
 /// point reads is [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
-/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
+/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives. Where it
+/// [cross-fades](ShadowMapDescriptor::cross_fades), the factor is a mix of two sets of maps while one of them fades out.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
     let texel =
@@ -136,7 +139,9 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
         include_str!("shaders/turn.wgsl"),
         include_str!("shaders/factor.wgsl"),
     ];
-    options.fill(&pieces.concat().replace("COMPARE", closer), descriptor.first_binding)
+    let one_set = pieces.concat().replace("COMPARE", closer);
+    let text = if descriptor.cross_fades { fading::two_sets(&one_set) } else { one_set };
+    options.fill(&text, descriptor.first_binding)
 }
 
 /// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
@@ -160,7 +165,9 @@ fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
         (0..maps).map(wrap).collect::<String>()
     );
     let load = if loads_texels(descriptor) { "" } else { texture(descriptor.format).1 };
-    options.fill(&[load, &wraps, include_str!("shaders/stored.wgsl")].concat(), descriptor.first_binding)
+    let one_set = [load, &wraps, include_str!("shaders/stored.wgsl")].concat();
+    let text = if descriptor.cross_fades { fading::stored(&one_set) } else { one_set };
+    options.fill(&text, descriptor.first_binding)
 }
 
 /// Whether the look-up reads texels by itself.

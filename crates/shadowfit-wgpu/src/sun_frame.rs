@@ -19,7 +19,8 @@ pub struct SunFrame<'a> {
     /// World position that all positions in the shaders are relative to, in metres. The first view's eye is most exact;
     /// zero suits engines whose shaders take world space.
     pub origin: DVec3,
-    /// **Direction of travel** of the sun's light in world axes, of any length.
+    /// **Direction of travel** of the sun's light in world axes, of any length: the true one, also where [light
+    /// steps](crate::SunShadows::set_light_steps) hold the maps.
     pub direction: Vec3,
     /// Boxes around everything that receives shadows; `None` if they are not known.
     pub receivers: Option<Boxes<'a>>,
@@ -31,6 +32,26 @@ pub struct SunFrame<'a> {
     /// costs what changed and what is drawn, and not what there is. Static casters belong here from some thousand on;
     /// what moves in each frame belongs in the list. For another shape in the same box call
     /// [`invalidate`](crate::SunShadows::invalidate). Keep one tree: another one, or none, redraws all maps.
+    ///
+    /// ```
+    /// # use shadowfit::glam::{DVec3, Vec3};
+    /// # use shadowfit::{Aabb, Boxes, BoxTree, PerspectiveCamera};
+    /// # use shadowfit_wgpu::{Casters, SunFrame};
+    /// # let camera = PerspectiveCamera {
+    /// #     eye: DVec3::Y, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.8, aspect: 1.6, near: 0.1, far: 200.0
+    /// # };
+    /// # let (views, aabb) = ([camera.frustum()?], Aabb::new(Vec3::ZERO, Vec3::ONE));
+    /// let mut world = BoxTree::new(DVec3::ZERO);
+    /// let number = world.insert(aabb)?; // once: later `set` and `remove`
+    ///
+    /// let moving = [aabb];
+    /// let boxes = Boxes::world(&moving);
+    /// let casters = Casters { moves: &[true], ..Casters::fixed(boxes) };
+    /// let frame = SunFrame::new(&views, Vec3::new(0.3, -0.8, 0.2), boxes, casters);
+    /// let frame = SunFrame { standing: Some(&world), ..frame };
+    /// # assert_eq!(frame.standing.and_then(|world| world.get(number)), Some(aabb));
+    /// # Ok::<(), shadowfit::FitError>(())
+    /// ```
     pub standing: Option<&'a BoxTree>,
     /// Number of the frame. Soft filters turn their pattern by it, for temporal anti-aliasing; 0 in every frame keeps
     /// the same pattern.

@@ -7,11 +7,13 @@
 //! ```
 
 mod error;
+mod other_set;
+mod steps;
 
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
 use shadowfit::{
-    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, Scratch, ShadowFitter, Technique, ViewFrustum,
+    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, Scratch, Seen, ShadowFitter, Technique, ViewFrustum,
 };
 
 use crate::cached_maps::CachedMaps;
@@ -21,7 +23,11 @@ use crate::{
     ShadowPass, ShadowPiece, SunFrame, UpdateSchedule,
 };
 
+use other_set::OtherSet;
+use steps::StepState;
+
 pub use error::SunShadowsError;
+pub use steps::SunSteps;
 
 /// The shadows of one directional light: its maps, the parts of them that are kept, and what the last frames showed.
 ///
@@ -33,6 +39,9 @@ pub struct SunShadows {
     queue: wgpu::Queue,
     fitter: ShadowFitter,
     maps: CachedMaps,
+    steps: Option<StepState>,
+    /// The maps of the sun's next direction or of the one before, where steps cross-fade.
+    other: Option<OtherSet>,
     demand: Demand,
     last: Option<LastFrame>,
 }
@@ -128,11 +137,14 @@ impl SunShadows {
         descriptor: &ShadowMapDescriptor,
         texture: Option<&MapTexture>,
     ) -> Result<Self, ShadowMapError> {
+        let descriptor = ShadowMapDescriptor { cross_fades: false, ..*descriptor };
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
             fitter: ShadowFitter::default(),
-            maps: CachedMaps::new(device, descriptor, texture)?,
+            maps: CachedMaps::new(device, &descriptor, texture)?,
+            steps: None,
+            other: None,
             demand: Demand::new(device),
             last: None,
         })
@@ -176,18 +188,59 @@ impl SunShadows {
 
     /// Spreads redraws over frames; see [`UpdateSchedule`].
     pub fn set_schedule(&mut self, schedule: UpdateSchedule) {
-        self.maps.schedule = schedule;
+        self.each_set(|maps| maps.schedule = schedule);
     }
 
     /// Whether static casters are kept from frame to frame. They are by default. Pictures are the same either way
     /// but for 3 in 100,000 factors, at edges that were drawn with a matrix that is rounded otherwise.
     pub fn set_caching(&mut self, caching: bool) {
-        self.maps.caching = caching;
+        self.each_set(|maps| maps.caching = caching);
     }
 
     /// Which casters are drawn; see [`Culling`]. Pictures are the same either way.
     pub fn set_culling(&mut self, culling: Culling) {
-        self.maps.culling = culling;
+        self.each_set(|maps| maps.culling = culling);
+    }
+
+    fn each_set(&mut self, mut set: impl FnMut(&mut CachedMaps)) {
+        set(&mut self.maps);
+        self.other.iter_mut().for_each(|other| set(&mut other.maps));
+    }
+
+    /// Holds the maps of a sun that moves: its **light steps**. [`Self::update`] is given the true direction in each
+    /// frame, and makes the maps for a direction that it holds until a map's edge would be off by
+    /// [some texels](SunSteps::texels), so that what is drawn is kept in between. Shading goes on with the true
+    /// direction. `None`, as it is in the beginning, follows the sun in each frame.
+    ///
+    /// With a [fade](SunSteps::fade) there is a second set of maps, of as many bytes. When the sun steps, its maps are
+    /// drawn one by one, a map in each frame, while the old ones are read; then the look-up reads both for as many
+    /// frames as the fade has, and the new ones alone after that. Maps that cannot be kept are drawn all at once. While
+    /// a step is under way no other begins. A sun that is farther from its maps than 2° was set elsewhere: there is no
+    /// fade then, and all maps are drawn anew in that frame. So it is after a [cut](Self::cut).
+    ///
+    /// Returns whether the maps were recreated, as [`Self::set_technique`] does: where there is a fade now and was none,
+    /// or the other way round.
+    ///
+    /// # Errors
+    ///
+    /// [`SunShadowsError::Fit`] for a number of texels that makes no sense, and as [`Self::new`]. Everything stays as
+    /// it is then.
+    pub fn set_light_steps(&mut self, steps: Option<SunSteps>) -> Result<bool, SunShadowsError> {
+        if let Some(steps) = &steps {
+            steps.check()?;
+        }
+        let cross_fades = steps.is_some_and(|steps| steps.fade > 0);
+        let is_new = self.replace_maps(&ShadowMapDescriptor { cross_fades, ..*self.map().descriptor() })?;
+        self.steps = steps.map(|settings| match self.steps {
+            Some(state) => state.with_settings(settings),
+            None => StepState::new(settings),
+        });
+        Ok(is_new)
+    }
+
+    /// The light steps.
+    pub fn light_steps(&self) -> Option<SunSteps> {
+        self.steps.map(|state| state.settings)
     }
 
     /// Goes on with another technique, and returns whether the maps were recreated: the engine must then recreate its
@@ -201,6 +254,7 @@ impl SunShadows {
         let descriptor = ShadowMapDescriptor { first_binding, ..ShadowMapDescriptor::from(technique) };
         let is_new = self.set_descriptor(&descriptor)?;
         self.fitter.set_technique(technique);
+        self.other.iter_mut().for_each(|other| other.fitter.set_technique(technique));
         Ok(is_new)
     }
 
@@ -212,9 +266,11 @@ impl SunShadows {
     /// As [`Self::in_texture`].
     pub fn set_technique_in(&mut self, technique: &Technique, texture: &MapTexture) -> Result<(), SunShadowsError> {
         let first_binding = self.map().descriptor().first_binding;
-        let descriptor = ShadowMapDescriptor { first_binding, ..ShadowMapDescriptor::from(technique) };
+        let cross_fades = self.map().descriptor().cross_fades;
+        let descriptor = ShadowMapDescriptor { cross_fades, first_binding, ..ShadowMapDescriptor::from(technique) };
         self.recreate(&descriptor, Some(texture))?;
         self.fitter.set_technique(technique);
+        self.other.iter_mut().for_each(|other| other.fitter.set_technique(technique));
         Ok(())
     }
 
@@ -225,6 +281,12 @@ impl SunShadows {
     ///
     /// As [`Self::from_descriptor`].
     pub fn set_descriptor(&mut self, descriptor: &ShadowMapDescriptor) -> Result<bool, ShadowMapError> {
+        let cross_fades = self.map().descriptor().cross_fades;
+        self.replace_maps(&ShadowMapDescriptor { cross_fades, ..*descriptor })
+    }
+
+    /// Makes maps of another descriptor, unless it is that of the present ones.
+    fn replace_maps(&mut self, descriptor: &ShadowMapDescriptor) -> Result<bool, ShadowMapError> {
         let now = *self.map().descriptor();
         if *descriptor == now {
             return Ok(false);
@@ -232,7 +294,7 @@ impl SunShadows {
         descriptor.check(&self.device)?;
         // Where shadows end is told to the shaders in each frame.
         if (ShadowMapDescriptor { fade: now.fade, ..*descriptor }) == now {
-            self.maps.set_fade(descriptor.fade);
+            self.each_set(|maps| maps.set_fade(descriptor.fade));
             return Ok(false);
         }
         let texture = self.map().texture().cloned();
@@ -248,18 +310,23 @@ impl SunShadows {
     ) -> Result<(), ShadowMapError> {
         let mut maps = CachedMaps::new(&self.device, descriptor, texture)?;
         (maps.schedule, maps.caching, maps.culling) = (self.maps.schedule, self.maps.caching, self.maps.culling);
+        self.other = OtherSet::of(&maps);
         self.maps = maps;
+        self.end_step();
         Ok(())
     }
 
     /// Forgets all earlier frames and redraws all maps in the next one: when a new level begins.
     pub fn reset(&mut self) {
         self.cut();
+        self.steps.iter_mut().for_each(StepState::reset);
         self.maps.invalidate_all();
     }
 
-    /// Forgets the earlier views and what they showed: after a camera cut. Static casters stay in the maps.
+    /// Forgets the earlier views and what they showed: after a camera cut. Static casters stay in the maps. A step of
+    /// the sun that is under way ends with the next frame.
     pub fn cut(&mut self) {
+        self.end_step();
         self.fitter.reset();
         if let Some(pass) = &mut self.demand.pass {
             pass.reset();
@@ -269,17 +336,22 @@ impl SunShadows {
     /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
     /// metres, relative to an origin in world space.
     pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
-        self.maps.invalidate(aabb, origin);
+        self.each_set(|maps| maps.invalidate(aabb, origin));
     }
 
     /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
     pub fn invalidate_all(&mut self) {
-        self.maps.invalidate_all();
+        self.each_set(CachedMaps::invalidate_all);
+    }
+
+    /// Goes on with one set of maps, for the newest direction, from the next frame on.
+    fn end_step(&mut self) {
+        self.steps.iter_mut().for_each(StepState::cut);
     }
 
     /// Fits the maps to a frame, finds which parts must be drawn, and writes the uniforms. [`Self::passes`] then has
     /// the passes of this frame; they count as drawn from the next call on. It is [`Self::fit`] and [`Self::prepare`]
-    /// in one.
+    /// in one, for the direction that is held where the sun has [light steps](Self::set_light_steps).
     ///
     /// # Errors
     ///
@@ -289,9 +361,16 @@ impl SunShadows {
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
         self.skip();
         frame.check()?;
-        self.fit(&frame.input())?;
+        let step = self.step(frame)?;
+        let held = SunFrame { direction: step.now, ..*frame };
+        self.fit(&held.input())?;
         let fitted = *self.fitter.fitted();
-        Ok(self.prepare(queue, frame, &fitted)?)
+        self.prepare_present(queue, &held, &fitted)?;
+        self.update_other(queue, &held, &step).inspect_err(|_| {
+            // The passes of the other half are not drawn either.
+            self.invalidate_all();
+            self.skip();
+        })
     }
 
     /// Says that the sun gives nothing, instead of [`Self::update`]: at night, behind clouds, in a cellar. All factors
@@ -301,7 +380,7 @@ impl SunShadows {
     ///
     /// It is never guessed from the sun's direction: worlds without a ground are lit from below.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {
-        self.last = None;
+        self.skip();
         if !self.is_off() {
             self.cut();
             self.maps.turn_off(queue);
@@ -325,7 +404,7 @@ impl SunShadows {
         if let Some(pass) = &mut self.demand.pass
             && let Some(seen) = pass.take()?
         {
-            self.fitter.see(seen);
+            self.see(seen);
         }
         Ok(self.fitter.fit(input)?)
     }
@@ -346,6 +425,17 @@ impl SunShadows {
         maps: &[FittedMap],
     ) -> Result<(), ShadowMapError> {
         self.skip();
+        self.end_step();
+        self.prepare_present(queue, frame, maps)
+    }
+
+    /// [`Self::prepare`] of the maps that are read.
+    fn prepare_present(
+        &mut self,
+        queue: &wgpu::Queue,
+        frame: &SunFrame<'_>,
+        maps: &[FittedMap],
+    ) -> Result<(), ShadowMapError> {
         self.maps.update(queue, frame, maps)?;
         self.last = frame.views.first().map(|view| LastFrame { view: *view, direction: frame.direction });
         Ok(())
@@ -353,7 +443,7 @@ impl SunShadows {
 
     /// Leaves the frame without passes.
     fn skip(&mut self) {
-        self.maps.skip();
+        self.each_set(CachedMaps::skip);
         self.last = None;
     }
 
@@ -365,12 +455,16 @@ impl SunShadows {
     ///
     /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
     pub fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
-        self.maps.look_from(queue, view)
+        self.maps.look_from(queue, view)?;
+        if let Some((other, share)) = self.faded() {
+            self.maps.fade_from(queue, &other.maps, view, share);
+        }
+        Ok(())
     }
 
     /// The passes of this frame, in the order in which they must be drawn.
     pub fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
-        self.maps.passes()
+        self.all_passes()
     }
 
     /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
@@ -380,9 +474,11 @@ impl SunShadows {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         group: u32,
-        draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
     ) {
-        self.maps.render(encoder, group, draw);
+        for pass in self.passes() {
+            pass.render(encoder, group, &mut draw);
+        }
     }
 
     /// What a shader finds the casters of each piece by ([`culling_wgsl`](crate::culling_wgsl)), for engines that keep
@@ -401,13 +497,15 @@ impl SunShadows {
         group: u32,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'encoder> {
-        self.maps.begin_pass(encoder, pass, group, timestamps)
+        pass.begin(encoder, group, timestamps)
     }
 
     /// The rectangles that are drawn in this frame, in the order of the passes, for tools that show them. Some may
-    /// overlap.
+    /// overlap. While the sun [steps](Self::set_light_steps), those of both sets of maps.
     pub fn updates(&self) -> Vec<MapUpdate> {
-        self.maps.updates()
+        let mut updates = self.maps.updates();
+        updates.extend(self.other.iter().flat_map(|other| other.maps.updates()));
+        updates
     }
 
     /// Whether the static casters of a map, by its number, are kept for later frames.
@@ -430,20 +528,17 @@ impl SunShadows {
     /// [`SunShadowsError::Fit`] as [`prove`]; [`SunShadowsError::NoFrame`] before the first frame, and while the sun
     /// is [off](Self::turn_off).
     pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
-        let input = frame.input();
-        let mut storage = vec![DVec2::ZERO; input.scratch()];
         let mut proof = Err(SunShadowsError::NoFrame);
-        for (fitted, read) in self.fitted().iter().zip(self.maps()) {
-            // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
-            let map = FittedMap { projection: read.projection.relative_to(frame.origin), bias: read.bias, ..*fitted };
-            let technique = self.technique();
-            let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.projection))
-                .with_normal_offset(map.bias.normal_offset);
-            let found = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage))?;
-            if !found.is_proven() {
-                return Ok(found);
+        let faded = self.faded().map(|(other, _)| (&other.fitter, &other.maps));
+        for (fitter, maps) in [(&self.fitter, &self.maps)].into_iter().chain(faded) {
+            // Steps hold the direction.
+            let held = fitter.fitted().first().filter(|_| self.steps.is_some());
+            let direction = held.map_or(frame.direction, |map| map.projection.direction);
+            let found = prove_set(&SunFrame { direction, ..*frame }, fitter, maps.maps());
+            if !found.as_ref().is_ok_and(CoverageProof::is_proven) {
+                return found;
             }
-            proof = Ok(found);
+            proof = found;
         }
         proof
     }
@@ -483,6 +578,14 @@ impl SunShadows {
         Ok(pass.record(encoder, depth, &seen, None)?)
     }
 
+    /// Tells what a picture showed. One light serves for the next, a step away.
+    fn see(&mut self, seen: Seen) {
+        if let Some(other) = self.other.as_mut().filter(|_| self.steps.is_some_and(|steps| steps.has_other())) {
+            other.fitter.see(seen.clone());
+        }
+        self.fitter.see(seen);
+    }
+
     /// Whether the device can count the visible points of depth buffers: those of OpenGL cannot.
     pub fn can_record_demand(&self) -> bool {
         self.demand.is_supported
@@ -497,10 +600,32 @@ impl SunShadows {
     pub fn wait_for_demand(&mut self) -> Result<(), SunShadowsError> {
         let seen = self.demand.pass.as_mut().map_or(Ok(None), DemandPass::wait)?;
         if let Some(seen) = seen {
-            self.fitter.see(seen);
+            self.see(seen);
         }
         Ok(())
     }
+}
+
+/// Proves that no map of a set has a hole, for a frame that it was made for.
+fn prove_set(
+    frame: &SunFrame<'_>,
+    fitter: &ShadowFitter,
+    maps: &[FittedMap],
+) -> Result<CoverageProof, SunShadowsError> {
+    let mut storage = vec![DVec2::ZERO; frame.input().scratch()];
+    let (technique, mut proof) = (fitter.technique(), Err(SunShadowsError::NoFrame));
+    for (fitted, read) in fitter.fitted().iter().zip(maps) {
+        // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
+        let map = FittedMap { projection: read.projection.relative_to(frame.origin), bias: read.bias, ..*fitted };
+        let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.projection))
+            .with_normal_offset(map.bias.normal_offset);
+        let found = prove(&frame.input(), &map.projection, &query, &mut Scratch::new(&mut storage))?;
+        if !found.is_proven() {
+            return Ok(found);
+        }
+        proof = Ok(found);
+    }
+    proof
 }
 
 impl Demand {

@@ -106,6 +106,24 @@ pub struct ReceiverUniform {
     pub maps: [MapUniform; MAX_MAPS],
 }
 
+/// The uniform of a look-up that [cross-fades](ShadowMapDescriptor::cross_fades): `shadowfit_Fading` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FadingUniform {
+    /// The maps of the sun's present direction.
+    pub now: ReceiverUniform,
+    /// Those of the direction before, while they are faded out; none otherwise.
+    pub before: ReceiverUniform,
+    /// Share of the former in the factor, 0 to 1.
+    pub share: f32,
+    /// Layer of the first of the present maps.
+    pub first_layer: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+}
+
 impl CasterUniform {
     /// The uniform for a fit, with positions relative to `origin` (world space, metres).
     pub fn new(fit: &LightProjection, origin: DVec3) -> Self {
@@ -154,6 +172,12 @@ impl ReceiverUniform {
     /// The uniform for a light that gives nothing.
     pub fn off() -> Self {
         Self { is_off: 1, ..Self::default() }
+    }
+
+    /// The same with maps that are stored from a layer on.
+    pub(crate) fn in_layers(mut self, first: u32) -> Self {
+        self.maps.iter_mut().for_each(|map| map.layer += first);
+        self
     }
 
     /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by

@@ -207,6 +207,16 @@ impl Picture {
         self.0[y * SIDE as usize + x]
     }
 
+    /// All factors.
+    pub(super) fn values(&self) -> impl Iterator<Item = u8> {
+        self.0.iter().flatten().copied()
+    }
+
+    /// Those of one sun.
+    pub(super) fn of(&self, sun: usize) -> impl Iterator<Item = u8> {
+        self.0.iter().map(move |factors| factors[sun])
+    }
+
     /// The greatest difference from another picture.
     pub(super) fn difference(&self, other: &Self) -> u8 {
         let pixels = self.0.iter().flatten().zip(other.0.iter().flatten());
@@ -325,9 +335,9 @@ fn caster_pipeline(
 ) -> wgpu::RenderPipeline {
     let map = sun.map();
     let layout = device.layout(&[Some(map.caster_layout())]);
+    let (color, entry) = (map.color_target().map(Some), format!("fs_{prefix}"));
     let buffer =
         |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
-    let targets = [map.color_target()];
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: Some(&layout),
@@ -343,11 +353,11 @@ fn caster_pipeline(
         primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
-        fragment: targets[0].is_some().then_some(wgpu::FragmentState {
+        fragment: color.as_ref().map(|color| wgpu::FragmentState {
             module,
-            entry_point: Some(&format!("fs_{prefix}")),
+            entry_point: Some(&entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &targets,
+            targets: core::slice::from_ref(color),
         }),
         multiview_mask: None,
         cache: None,

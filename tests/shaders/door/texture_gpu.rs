@@ -215,7 +215,10 @@ fn gpu_a_texture_that_cannot_hold_the_maps_is_refused_by_name_and_value_and_the_
 
 #[test]
 fn gpu_a_texture_that_is_destroyed_or_another_device_s_is_refused_in_the_device_s_words() {
-    let [device, other] = [(); 2].map(|()| Device::from(software_gpu()));
+    let gpu = software_gpu();
+    let other = gpu.adapter.request_device(&wgpu::DeviceDescriptor::default());
+    let (other, queue) = pollster::block_on(other).expect("another device of the adapter");
+    let (device, other) = (Device::from(gpu), Device { device: other, queue });
     let quiet = Quiet::new(&device);
     let destroyed = texture(&device, &technique(), 4, |_| ());
     destroyed.destroy();

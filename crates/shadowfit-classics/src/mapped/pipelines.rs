@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use shadowfit_render::passes::{
-    ENCODED_FORMAT, InstanceNumber, Maker, PROBE_FORMAT, Shape, culled, depth, material_layout, part_buffers,
+    ENCODED_FORMAT, InstanceNumber, Maker, PROBE_FORMAT, Shape, Streams, culled, depth, material_layout, part_buffers,
 };
 use shadowfit_render::{Gpu, bindings};
 
@@ -12,9 +12,9 @@ use super::{SampleFormat, SampleFrame, StoredDepth, map, shaders};
 /// What a pipeline is for, with all that its states depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Use {
-    Caster(Option<wgpu::Face>),
-    Shaded(Option<wgpu::Face>),
-    Probe(Option<wgpu::Face>),
+    Caster(Option<wgpu::Face>, Streams),
+    Shaded(Option<wgpu::Face>, Streams),
+    Probe(Option<wgpu::Face>, Streams),
     Inset,
 }
 
@@ -68,12 +68,11 @@ impl SamplePipelines {
 
     fn make(&self, gpu: &Gpu, purpose: Use, frame: &SampleFrame) -> wgpu::RenderPipeline {
         let maker = Maker { device: &gpu.device, samples: self.samples };
-        let buffers = part_buffers(InstanceNumber::FirstTriangle);
-        let seen = |target: wgpu::TextureFormat, cull_mode, samples, (label, source, entry)| {
+        let seen = |target: wgpu::TextureFormat, (cull_mode, streams), samples, (label, source, entry)| {
             let module = maker.module(label, source);
             let layout = maker.layout(&[&self.uniform, self.map(frame.map.format), &self.material]);
             maker.pipeline(&Shape {
-                buffers: &buffers,
+                buffers: &part_buffers(InstanceNumber::FirstTriangle, streams),
                 targets: &[Some(target.into())],
                 primitive: culled(cull_mode),
                 depth: depth(true, wgpu::CompareFunction::GreaterEqual),
@@ -82,12 +81,12 @@ impl SamplePipelines {
             })
         };
         match purpose {
-            Use::Caster(cull_mode) => self.caster(&maker, frame, cull_mode),
-            Use::Shaded(cull_mode) => {
-                seen(ENCODED_FORMAT, cull_mode, self.samples, ("sample", shaders::shaded(frame), "fs_shaded"))
+            Use::Caster(cull_mode, streams) => self.caster(&maker, frame, (cull_mode, streams)),
+            Use::Shaded(faces, streams) => {
+                seen(ENCODED_FORMAT, (faces, streams), self.samples, ("sample", shaders::shaded(frame), "fs_shaded"))
             }
-            Use::Probe(cull_mode) => {
-                seen(PROBE_FORMAT, cull_mode, 1, ("sample's probe", shaders::probe(frame), "fs_probe"))
+            Use::Probe(faces, streams) => {
+                seen(PROBE_FORMAT, (faces, streams), 1, ("sample's probe", shaders::probe(frame), "fs_probe"))
             }
             Use::Inset => {
                 let format = frame.map.format;
@@ -101,7 +100,12 @@ impl SamplePipelines {
         }
     }
 
-    fn caster(&self, maker: &Maker<'_>, frame: &SampleFrame, cull_mode: Option<wgpu::Face>) -> wgpu::RenderPipeline {
+    fn caster(
+        &self,
+        maker: &Maker<'_>,
+        frame: &SampleFrame,
+        (cull_mode, streams): (Option<wgpu::Face>, Streams),
+    ) -> wgpu::RenderPipeline {
         let format = frame.map.format;
         let module = maker.module("sample's casters", shaders::caster());
         let layout = maker.layout(&[&self.uniform]);
@@ -111,7 +115,7 @@ impl SamplePipelines {
                 ("REVERSED", f64::from(frame.map.depth == StoredDepth::ReversedAtVertices)),
                 ("PACKED", f64::from(format == SampleFormat::Rgba8Packed)),
             ],
-            buffers: &part_buffers(InstanceNumber::FirstTriangle),
+            buffers: &part_buffers(InstanceNumber::FirstTriangle, streams),
             targets: &[Some(format.texture().into())],
             primitive: culled(cull_mode),
             depth: depth(true, wgpu::CompareFunction::LessEqual),

@@ -80,7 +80,7 @@ impl SampleRenderer {
         target: &RenderTarget,
     ) -> Result<(), SampleError> {
         let plan = self.prepare(gpu, scene, (frame, extras))?;
-        let shaded = |key: PartKey| Use::Shaded(seen_faces(frame, key));
+        let shaded = |key: PartKey| Use::Shaded(seen_faces(frame, key), key.streams);
         self.add(gpu, frame, &plan.seen, shaded);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.map_pass(gpu, &mut encoder, scene, (frame, &plan.casters));
@@ -114,7 +114,7 @@ impl SampleRenderer {
             return Ok(Err(ProbeError::NoPrimitiveIndex));
         }
         let plan = self.prepare(gpu, scene, (frame, extras))?;
-        let probed = |key: PartKey| Use::Probe(seen_faces(frame, key));
+        let probed = |key: PartKey| Use::Probe(seen_faces(frame, key), key.streams);
         self.add(gpu, frame, &plan.seen, probed);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.map_pass(gpu, &mut encoder, scene, (frame, &plan.casters));
@@ -184,11 +184,12 @@ impl SampleRenderer {
         (frame, casters): (&SampleFrame, &[Draw]),
     ) {
         let purpose = |key: PartKey| {
-            Use::Caster(match frame.map.faces {
+            let left_out = match frame.map.faces {
                 CasterFaces::All => None,
                 CasterFaces::Front => Some(key.back()),
                 CasterFaces::Back => Some(key.front()),
-            })
+            };
+            Use::Caster(left_out, key.streams)
         };
         self.add(gpu, frame, casters, purpose);
         let Some(map) = &self.map else { return };

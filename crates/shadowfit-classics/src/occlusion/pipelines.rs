@@ -170,7 +170,7 @@ impl Pipelines {
             Drawn::Classic | Drawn::Modern => [Some(target(ENCODED_FORMAT, blend)), None],
         };
         maker.pipeline(&Shape {
-            buffers: &part_buffers(InstanceNumber::FirstTriangle),
+            buffers: &part_buffers(InstanceNumber::FirstTriangle, key.streams),
             targets: &targets[..if drawn == Drawn::Surface { 2 } else { 1 }],
             primitive: culled(if drawn == Drawn::Back { Some(key.front()) } else { key.cull_mode() }),
             depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),

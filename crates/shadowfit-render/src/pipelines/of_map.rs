@@ -6,7 +6,7 @@ use shadowfit_wgpu::ShadowMap;
 
 use super::Layouts;
 use crate::maker::{
-    BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, culled, depth, instances, part_buffers, strips,
+    BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, caster_buffers, culled, depth, instances, part_buffers, strips,
 };
 use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
@@ -28,7 +28,8 @@ pub(crate) enum Drawn {
 pub(crate) struct MapPipelines {
     pub(crate) inset: wgpu::RenderPipeline,
     caster: wgpu::RenderPipeline,
-    caster_masked: wgpu::RenderPipeline,
+    /// Of parts with a surface of one element and of one for each vertex.
+    caster_masked: [wgpu::RenderPipeline; 2],
     /// Made when the first part is drawn that needs it.
     parts: HashMap<(Drawn, PartKey), wgpu::RenderPipeline>,
     modules: HashMap<Drawn, wgpu::ShaderModule>,
@@ -49,11 +50,12 @@ impl MapPipelines {
         };
         // What neither is cut out nor computes a depth or a colour needs no fragment stage.
         let plain_entry = Some(entry).filter(|entry| *entry != "fs_caster");
-        let caster_pipeline = |entry, masked| maker.caster(&caster_layout, &caster, (entry, masked), map);
+        let caster_pipeline =
+            |entry, masked, surface| maker.caster(&caster_layout, &caster, (entry, masked, surface), map);
         Self {
             inset: maker.inset(layouts, map),
-            caster: caster_pipeline(plain_entry, false),
-            caster_masked: caster_pipeline(Some(entry), true),
+            caster: caster_pipeline(plain_entry, false, false),
+            caster_masked: [false, true].map(|surface| caster_pipeline(Some(entry), true, surface)),
             parts: HashMap::new(),
             modules: HashMap::new(),
             block: None,
@@ -96,7 +98,8 @@ impl MapPipelines {
 
     /// Pipeline of the shadow pass. Casters are double-sided.
     pub(crate) fn caster(&self, part: &Part) -> &wgpu::RenderPipeline {
-        if PartKey::of(part).masked { &self.caster_masked } else { &self.caster }
+        let key = PartKey::of(part);
+        if key.masked { &self.caster_masked[usize::from(key.streams.surface)] } else { &self.caster }
     }
 }
 
@@ -132,7 +135,7 @@ impl Maker<'_> {
             Drawn::Shaded(_) => (if key.blended { &BLENDED_COLOR } else { &COLOR }, self.samples),
         };
         self.pipeline(&Shape {
-            buffers: &part_buffers(number),
+            buffers: &part_buffers(number, key.streams),
             targets,
             primitive: culled(key.cull_mode()),
             depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),
@@ -146,14 +149,14 @@ impl Maker<'_> {
         &self,
         layout: &wgpu::PipelineLayout,
         module: &wgpu::ShaderModule,
-        (entry, masked): (Option<&str>, bool),
+        (entry, masked, surface): (Option<&str>, bool, bool),
         map: &ShadowMap,
     ) -> wgpu::RenderPipeline {
         let color = [map.color_target()];
         self.pipeline(&Shape {
             entries: ("vs_caster", entry),
             constants: &[("MASKED", f64::from(masked))],
-            buffers: &part_buffers(InstanceNumber::FirstTriangle),
+            buffers: &caster_buffers(surface),
             targets: if color[0].is_some() { &color } else { &[] },
             primitive: map.primitive_state(),
             depth: Some(map.depth_stencil_state()),

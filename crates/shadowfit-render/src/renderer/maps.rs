@@ -65,8 +65,8 @@ impl Renderer {
             let part = &scene.parts[draw.part];
             pass.set_pipeline(self.pipelines.of_map.caster(part));
             pass.set_bind_group(1, &scene.materials[part.material], &[]);
-            pass.set_vertex_buffer(0, part.motion.slice(..));
-            pass.set_vertex_buffer(1, part.surface.slice(..));
+            pass.set_vertex_buffer(0, part.streams[0].slice(..));
+            pass.set_vertex_buffer(1, part.streams[3].slice(..));
             pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
             pass.set_index_buffer(part.caster_indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(draw.indices.clone(), 0, draw.instances.start as u32..draw.instances.end as u32);

@@ -39,6 +39,9 @@ impl Renderer {
     ) -> Plan {
         scene.begin_frame(frame.camera.eye);
         let shadow = (!frame.maps_stay).then(|| self.plan_maps(scene));
+        if shadow.is_some() {
+            self.note_maps(scene, frame);
+        }
         if frame.overlay == Overlay::Casters {
             let masks = self.sun.holders(&scene.casters());
             scene.set_holders(&masks);

@@ -31,8 +31,8 @@ pub(crate) struct Source {
     pub(crate) ignored_extensions: Vec<String>,
 }
 
-/// Reads and parses `path`.
-pub(crate) fn read(path: &Path) -> Result<Source, SceneError> {
+/// Reads and parses `path`. Between the two, `tell_json` is called with the length of the JSON, in bytes.
+pub(crate) fn read(path: &Path, tell_json: impl FnOnce(u64)) -> Result<Source, SceneError> {
     let bytes = read_file(path, MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
         path: path.to_owned(),
         reason,
@@ -45,6 +45,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, SceneError> {
         hint: "Export it again as glTF 2.0, or fetch the file again if it was cut short",
     };
     let (json, binary) = split(&bytes).map_err(malformed)?;
+    tell_json(json.len() as u64);
     let parsed = deserialize::from_slice::<Root>(json);
     if parsed.is_err() {
         // The JSON may be sound and only of another version, or use an extension's own layout.

@@ -85,7 +85,8 @@ fn complete(primitive: &mut Primitive, mode: Mode, look: &Look, notes: &mut Note
         None => primitive.tangents.clear(),
         Some(_) if !primitive.tangents.is_empty() && primitive.tangents.iter().all(usable) => {}
         Some([u, v]) => {
-            let uvs = primitive.uvs.iter().map(|uv| uv.extend(1.0));
+            let uv = |vertex: usize| primitive.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO).extend(1.0);
+            let uvs = (0..primitive.positions.len()).map(uv);
             let uvs: Vec<Vec2> = uvs.map(|uv| Vec2::new(u.dot(uv), v.dot(uv))).collect();
             surface::compute_tangents(primitive, &uvs);
         }
@@ -131,13 +132,12 @@ impl Attributes<'_> {
         Ok(values.into_iter().map(from).collect())
     }
 
-    /// Texture coordinates of a set, (0, 0) where it is absent.
+    /// Texture coordinates of a set, none where it is absent.
     fn uvs(&self, set: u32, notes: &mut Notes) -> Result<Vec<Vec2>, Problem> {
         let mut uvs = self.vectors(&Semantic::TexCoords(set), Vec2::from_array)?;
         let broken = uvs.iter_mut().filter(|uv| !uv.is_finite());
         let repaired = broken.map(|uv| *uv = Vec2::ZERO).count();
         notes.count(Tally::RepairedUvs, repaired);
-        uvs.resize(self.count, Vec2::ZERO);
         Ok(uvs)
     }
 

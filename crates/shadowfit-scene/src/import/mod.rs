@@ -13,6 +13,7 @@ mod material;
 mod mesh;
 mod nodes;
 mod notes;
+mod size;
 mod skin;
 mod surface;
 mod topology;
@@ -34,6 +35,7 @@ use self::material::Materials;
 use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
+pub use self::size::SceneSize;
 use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
 
@@ -55,22 +57,42 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`load_gltf`], and if the file has no such scene.
 pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
-    load_gltf_with_progress(path, scene, &|_| ())
+    load_gltf_with_progress(path, scene, &|_, _| ())
 }
 
-/// The same, and tells the share that is loaded now and then, from 0 to 1: nodes, with the meshes and images that they
-/// draw, out of all that there are.
+/// A step of loading a file, in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LoadStep {
+    /// The file is read.
+    Read,
+    /// Its JSON is parsed.
+    Parse,
+    /// Meshes, images and animations are decoded.
+    Decode,
+}
+
+/// The same, and tells each step before it begins, with what is known of the scene's size by then.
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
-pub fn load_gltf_with_progress(path: &Path, scene: Option<usize>, progress: &dyn Fn(f32)) -> Result<Scene, SceneError> {
-    let mut source = container::read(path)?;
+pub fn load_gltf_with_progress(
+    path: &Path,
+    scene: Option<usize>,
+    progress: &dyn Fn(LoadStep, &SceneSize),
+) -> Result<Scene, SceneError> {
+    let mut size = SceneSize::of_file(path);
+    progress(LoadStep::Read, &size);
+    let mut source = container::read(path, |json| {
+        size.json = json;
+        progress(LoadStep::Parse, &size);
+    })?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let binary = source.binary.take();
     let tree = nodes::collect(&source.root, scene).map_err(|problem| problem.at(path))?;
     check_not_empty(&source.root, &tree, path)?;
+    progress(LoadStep::Decode, &size.with_content(&source.root, &tree, folder));
     let reader = Reader::new(&source.root, binary, folder);
-    let mut imported = import(&source, &reader, tree, folder, progress).map_err(|problem| problem.at(path))?;
+    let mut imported = import(&source, &reader, tree, folder).map_err(|problem| problem.at(path))?;
     imported.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(imported)
 }
@@ -85,20 +107,14 @@ fn check_not_empty(root: &Root, tree: &Tree, path: &Path) -> Result<(), SceneErr
     Err(SceneError::Empty { path: path.to_owned(), reason: reason.to_owned(), hint })
 }
 
-fn import(
-    source: &Source,
-    reader: &Reader,
-    mut tree: Tree,
-    folder: &Path,
-    progress: &dyn Fn(f32),
-) -> Result<Scene, Problem> {
+fn import(source: &Source, reader: &Reader, mut tree: Tree, folder: &Path) -> Result<Scene, Problem> {
     let root = &source.root;
     let mut notes = Notes::default();
     if !source.ignored_extensions.is_empty() {
         notes.add(format!("extensions ignored: {}", source.ignored_extensions.join(", ")));
     }
     let mut nodes = std::mem::take(&mut tree.nodes);
-    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, (folder, progress), &mut notes)?;
+    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, folder, &mut notes)?;
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
     tree.nodes = nodes;
     let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
@@ -120,15 +136,13 @@ fn meshes<'a>(
     reader: &'a Reader<'a>,
     tree: &Tree,
     nodes: &mut [Node],
-    (folder, progress): (&'a Path, &dyn Fn(f32)),
+    folder: &'a Path,
     notes: &mut Notes,
 ) -> Result<(Vec<Mesh>, Materials<'a>), Problem> {
     let mut materials = Materials::new(root, reader, folder);
     let mut meshes = Vec::new();
     let mut loaded = HashMap::new();
-    let count = nodes.len();
-    for (done, (node, &index)) in nodes.iter_mut().zip(&tree.file_index).enumerate() {
-        progress(done as f32 / count as f32);
+    for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
         let Some(mesh) = root.nodes[index].mesh else { continue };
         node.mesh = match loaded.entry(mesh.value()) {
             Entry::Occupied(known) => Some(*known.get()),
@@ -139,7 +153,6 @@ fn meshes<'a>(
             }
         };
     }
-    progress(1.0);
     Ok((meshes, materials))
 }
 
@@ -192,12 +205,12 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
         .collect();
     let mut triangles = 0;
     for instance in scene.instances() {
-        let element = format!("nodes[{}]", tree.file_index[instance.node]);
+        let element = || format!("nodes[{}]", tree.file_index[instance.node]);
         let primitive: &Primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
         triangles += primitive.indices.len() / 3;
         if triangles > MAX_DRAWN_TRIANGLES {
             let reason = format!("with it the scene draws more than {MAX_DRAWN_TRIANGLES} triangles");
-            return Err(Problem::new(element, reason).hint("Split or simplify the scene"));
+            return Err(Problem::new(element(), reason).hint("Split or simplify the scene"));
         }
         let Some(bounds) = boxes[instance.mesh][instance.primitive] else { continue };
         let matrices = match scene.instance_skin(&instance) {
@@ -206,7 +219,7 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
         };
         if !matrices.iter().all(|&matrix| is_within_reach(bounds, matrix)) {
             let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
-            return Err(Problem::new(element, reason).hint("Scale the scene down"));
+            return Err(Problem::new(element(), reason).hint("Scale the scene down"));
         }
     }
     Ok(())

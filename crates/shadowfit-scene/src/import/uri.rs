@@ -36,13 +36,26 @@ pub(crate) fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> 
     if !metadata.is_file() {
         return Err("it is not a regular file".to_owned());
     }
-    let mut bytes = Vec::new();
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(max_bytes) + 1).unwrap_or(0));
     let file = File::open(path).map_err(|error| error.to_string())?;
     file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
     if bytes.len() as u64 > max_bytes {
         return Err(format!("it is larger than the limit of {max_bytes} bytes"));
     }
     Ok(bytes)
+}
+
+/// Bytes of a file; 0 where that is unknown.
+pub(crate) fn file_size(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |metadata| metadata.len())
+}
+
+/// About as many bytes as `uri` refers to; 0 where that is unknown.
+pub(crate) fn uri_size(folder: &Path, uri: &str) -> u64 {
+    match uri.strip_prefix("data:") {
+        Some(data) => data.len() as u64 / 4 * 3,
+        None => locate(folder, uri).map_or(0, |path| file_size(&path)),
+    }
 }
 
 fn decode_data(data: &str) -> Result<Vec<u8>, String> {

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use shadowfit_scene::{Scene, SceneError, load_gltf, load_gltf_with_progress};
+use shadowfit_scene::{LoadStep, Scene, SceneError, SceneSize, load_gltf, load_gltf_with_progress};
 
 use crate::build::{Build, TRIANGLE, write};
 
@@ -18,25 +18,34 @@ fn file(mesh: usize) -> String {
     build.json()
 }
 
+type Told = Vec<(LoadStep, SceneSize)>;
+
 /// Loads a file; with all that is told meanwhile.
-fn load(path: &std::path::Path) -> (Result<Scene, SceneError>, Vec<f32>) {
+fn load(path: &std::path::Path) -> (Result<Scene, SceneError>, Told) {
     let told = RefCell::new(Vec::new());
-    let scene = load_gltf_with_progress(path, None, &|share| told.borrow_mut().push(share));
+    let scene = load_gltf_with_progress(path, None, &|step, size| told.borrow_mut().push((step, *size)));
     (scene, told.into_inner())
 }
 
 #[test]
-fn progress_never_falls_ends_at_one_and_changes_nothing_of_the_scene() {
-    let path = write("whole", "whole.gltf", file(0).as_bytes());
+fn each_step_is_told_once_with_what_is_known_of_the_size_and_changes_nothing_of_the_scene() {
+    let text = file(0);
+    let path = write("whole", "whole.gltf", text.as_bytes());
     let (scene, told) = load(&path);
-    assert!(told.len() > 3 && told.is_sorted(), "{told:?}");
-    assert_eq!((told.first(), told.last()), (Some(&0.0), Some(&1.0)));
+    let (steps, sizes): (Vec<_>, Vec<_>) = told.into_iter().unzip();
+    assert_eq!(steps, [LoadStep::Read, LoadStep::Parse, LoadStep::Decode]);
+    let bytes = text.len() as u64;
+    assert_eq!(sizes[0], SceneSize { file: bytes, ..SceneSize::default() });
+    assert_eq!(sizes[1], SceneSize { json: bytes, ..sizes[0] });
+    assert_eq!(sizes[2], SceneSize { nodes: 5, triangles: 2, drawn: 3, ..sizes[1] });
     let silent = load_gltf(&path).expect("five nodes");
     assert_eq!(format!("{:?}", scene.expect("five nodes")), format!("{silent:?}"));
 }
 
 #[test]
-fn a_file_that_cannot_be_loaded_is_never_told_to_be_done() {
+fn the_size_of_a_file_that_cannot_be_loaded_is_what_it_claims() {
     let (scene, told) = load(&write("broken", "broken.gltf", file(7).as_bytes()));
-    assert!(scene.is_err() && told.iter().all(|share| *share < 1.0), "{told:?}");
+    let (step, size) = *told.last().expect("it was read");
+    assert!(scene.is_err());
+    assert_eq!((step, size.nodes, size.triangles, size.drawn), (LoadStep::Decode, 5, 2, 2));
 }

@@ -182,7 +182,7 @@ fn is_same_surface(at: &At<'_>, look_up: &LookUp<'_>, triangle: u32) -> bool {
 }
 
 fn instance(at: &At<'_>, triangle: u32) -> Option<u32> {
-    at.input.rays.triangles.get(triangle as usize).map(|triangle| triangle.instance)
+    at.input.rays.instance(triangle)
 }
 
 fn edge(at: &At<'_>) -> String {

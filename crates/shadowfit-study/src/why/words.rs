@@ -50,7 +50,7 @@ pub(super) fn place(camera: &PixelCamera, way: DVec3) -> &'static str {
 /// The name of a triangle's object, in quotes: that of the scene's node, of its nearest ancestor that has a name, or of
 /// the mesh. `None` where nothing has a name.
 pub(super) fn name(scene: &Scene, rays: &SceneRays, triangle: u32) -> Option<String> {
-    let instance = rays.triangles.get(triangle as usize)?.instance;
+    let instance = rays.instance(triangle)?;
     let instance = *scene.instances().get(instance as usize)?;
     let parent = |node: &usize| scene.nodes[*node].parent;
     let nodes = std::iter::successors(Some(instance.node), parent).map(|node| &scene.nodes[node].name);

@@ -107,6 +107,11 @@ impl Live {
         Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera, depth })
     }
 
+    /// The classes of the picture that was judged last: another texture for each.
+    pub(super) fn judged_view(&self) -> Option<wgpu::TextureView> {
+        self.judged.as_ref().map(|judged| judged.view.clone())
+    }
+
     /// The figures that came back last, at a time of the stage's clock in seconds.
     pub(super) fn figures(&self, clock: f32) -> Option<JudgedFigures> {
         let Sums { of, figures, .. } = self.sums.as_ref()?;
@@ -176,7 +181,7 @@ impl Live {
     /// Makes rays of the present pose, at once where that is quick, otherwise on a thread for a later frame. Returns
     /// whether they exist.
     fn pose_rays(&self, shot: &mut Shot<'_>) -> bool {
-        let is_small = shot.scene.latest_rays().is_some_and(|(rays, _)| rays.triangles.len() <= MOST_POSED);
+        let is_small = shot.scene.latest_rays().is_some_and(|(rays, _)| rays.tracer.len() <= MOST_POSED);
         if self.waits || is_small {
             shot.scene.rays();
             return true;

@@ -3,7 +3,7 @@
 use shadowfit::settings::CasterPolicy;
 use shadowfit::{DepthConvention, FittedMap, LightProjection, PerspectiveCamera, Seen, Technique};
 use shadowfit_params::Inputs;
-use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_study::{Evaluator, Judging, RayUse, View, atmosphere};
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
@@ -28,8 +28,23 @@ pub(super) struct Side {
     follows: bool,
     /// Camera of the picture that was drawn last, until its depth buffer is read.
     unread: Option<PerspectiveCamera>,
+    /// What was drawn last, where it is known.
+    pub(super) shown: Option<Shown>,
     /// Why the settings cannot be shown as they are.
     pub(super) problem: Option<String>,
+}
+
+/// All that a picture depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shown {
+    settings: Settings,
+    camera: PerspectiveCamera,
+    sight: f32,
+    blink: f32,
+    pose: u64,
+    maps: Vec<FittedMap>,
+    judged: Option<wgpu::TextureView>,
+    target: wgpu::Texture,
 }
 
 impl Side {
@@ -48,6 +63,7 @@ impl Side {
             live: Live::new(gpu),
             follows: false,
             unread: None,
+            shown: None,
             problem: None,
         })
     }
@@ -78,7 +94,7 @@ impl Side {
     /// Forgets all frames, for another scene.
     pub(super) fn scene_changed(&mut self) {
         self.sun_mut().reset();
-        self.fitted = None;
+        (self.fitted, self.shown) = (None, None);
         self.live.forget();
     }
 
@@ -192,6 +208,11 @@ impl Side {
                 Err(error) => self.problem = Some(format!("{error:#}")),
             }
         }
+        let shown = self.shown_by(shot, &maps, target);
+        if shown.is_some() && shown == self.shown {
+            return;
+        }
+        self.shown = shown;
         match shot.settings.view.mode {
             ViewMode::Outside => self.draw_outside(shot, (&fitted, &maps, false), target),
             ViewMode::Demand => self.draw_demand(shot, &fitted, &maps, target),
@@ -202,6 +223,23 @@ impl Side {
             self.unread = Some(view.camera);
             self.evaluator.note_view(&view, &maps);
         }
+    }
+
+    /// What a whole picture is made from, where pictures are made one by one: the same once more would only take time.
+    /// Views that show how the maps themselves were found or drawn go by more than that.
+    fn shown_by(&self, shot: &Shot<'_>, maps: &[FittedMap], target: &RenderTarget) -> Option<Shown> {
+        let is_known = !matches!(shot.settings.view.mode, ViewMode::Demand | ViewMode::Updates);
+        let is_alone = self.live.waits && !self.follows && shot.scissor.is_none();
+        (is_alone && is_known).then(|| Shown {
+            settings: *shot.settings,
+            camera: shot.camera,
+            sight: shot.sight,
+            blink: shot.blink,
+            pose: shot.scene.gpu_scene.pose(),
+            maps: maps.to_vec(),
+            judged: self.live.judged_view(),
+            target: target.texture().clone(),
+        })
     }
 
     /// Draws the camera's picture.
@@ -256,7 +294,7 @@ impl Side {
     fn take_statistics(&mut self, drawn: Result<Statistics, ShadowMapError>) {
         match drawn {
             Ok(statistics) => self.statistics = statistics,
-            Err(error) => self.problem = Some(error.to_string()),
+            Err(error) => (self.problem, self.shown) = (Some(error.to_string()), None),
         }
     }
 

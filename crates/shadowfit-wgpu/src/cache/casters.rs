@@ -3,7 +3,7 @@
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{Aabb, BoxRevision, BoxTree, Boxes};
 
-use super::identity::{Caster, pair};
+use super::identity::{Caster, pair, shift};
 
 /// Everything that casts shadows, by number: the index of its box.
 ///
@@ -142,43 +142,131 @@ impl KnownCasters {
     }
 
     fn update_listed(&mut self, casters: &Casters<'_>) -> Changes {
-        let Boxes { origin, boxes } = casters.boxes;
-        let keys = &casters.keys[..casters.keys.len().min(boxes.len())];
-        let (mut gone, mut come) = (Vec::new(), Vec::new());
-        let key = |keys: &[u64], number: usize| keys.get(number).copied();
-        let beyond = self.drawn.drain(boxes.len().min(self.drawn.len())..).zip(boxes.len()..);
-        gone.extend(beyond.map(|(aabb, number)| Caster { key: key(&self.keys, number), aabb, rounding: 0.0, number }));
-        self.drawn.resize(boxes.len(), WorldBox::EMPTY);
+        let count = casters.boxes.boxes.len();
         self.moving.clear();
-        let has_same_keys = self.keys == keys;
-        for (number, (aabb, drawn)) in boxes.iter().zip(&mut self.drawn).enumerate() {
-            let moves = casters.moves(number);
-            let now = if moves { WorldBox::EMPTY } else { WorldBox::new(aabb, origin) };
-            if moves {
-                self.moving.push(number as u32);
-            }
-            let rounding = rounding(aabb);
-            let are_keys_same = || match (key(&self.keys, number), key(keys, number)) {
-                (Some(before), Some(now)) => before == now,
-                _ => true,
-            };
-            if drawn.is_same(&now, rounding) && (has_same_keys || are_keys_same()) {
-                continue;
-            }
-            gone.push(Caster { key: key(&self.keys, number), aabb: *drawn, rounding: 0.0, number });
-            come.push(Caster { key: key(keys, number), aabb: now, rounding, number });
-            *drawn = now;
-        }
-        if !has_same_keys {
+        self.moving.extend((0..count as u32).zip(casters.moves).filter(|(_, moves)| **moves).map(|(number, _)| number));
+        let list = List { casters, keys: &casters.keys[..casters.keys.len().min(count)] };
+        let mut differ = Differences::default();
+        let kept = self.compare_in_place(&list, &mut differ);
+        self.compare_shifted(&list, kept, &mut differ);
+        if self.keys != list.keys {
             self.keys.clear();
-            self.keys.extend(keys);
+            self.keys.extend(list.keys);
         }
+        let Differences { mut gone, mut come, .. } = differ;
         gone.retain(|caster| !caster.aabb.is_empty());
         come.retain(|caster| !caster.aabb.is_empty());
         // One that is known by another number stays as it was drawn.
         pair(&mut gone, &mut come, |number, aabb| self.drawn[number] = aabb);
         let boxes = |list: Vec<Caster>| list.into_iter().map(|caster| caster.aabb).collect();
         Changes { gone: boxes(gone), come: boxes(come), is_all: false }
+    }
+
+    /// A caster of the last frame.
+    fn before(&self, number: usize) -> Option<Caster> {
+        let aabb = *self.drawn.get(number)?;
+        Some(Caster { key: self.keys.get(number).copied(), aabb, rounding: 0.0, number })
+    }
+
+    /// Compares the lists number by number, up to where something was put in or taken out; returns that number.
+    fn compare_in_place(&mut self, list: &List<'_>, differ: &mut Differences) -> usize {
+        let count = list.len().min(self.drawn.len());
+        let has_same_keys = self.keys == list.keys;
+        for number in 0..count {
+            let (aabb, rounding) = list.aabb(number);
+            if has_same_keys && self.drawn[number].is_same(&aabb, rounding) {
+                continue;
+            }
+            let (Some(before), Some(now)) = (self.before(number), list.get(number)) else { continue };
+            if before.is_same(&now) {
+                continue;
+            }
+            if differ.shift(|ahead| self.before(number + ahead), |ahead| list.get(number + ahead)).is_some() {
+                return number;
+            }
+            differ.gone.push(before);
+            differ.come.push(now);
+            self.drawn[number] = aabb;
+        }
+        count
+    }
+
+    /// Compares the lists from a number on, as one in which casters were put in and taken out.
+    fn compare_shifted(&mut self, list: &List<'_>, first: usize, differ: &mut Differences) {
+        let before: Vec<Caster> = (first..self.drawn.len()).filter_map(|number| self.before(number)).collect();
+        self.drawn.truncate(first);
+        let mut rest = &before[..];
+        while let Some(now) = list.get(self.drawn.len()) {
+            let number = self.drawn.len();
+            if let Some(same) = rest.first().filter(|before| before.is_same(&now)) {
+                self.drawn.push(same.aabb);
+                rest = &rest[1..];
+                continue;
+            }
+            let found = differ.shift(|ahead| rest.get(ahead).copied(), |ahead| list.get(number + ahead));
+            let [removed, inserted] = found.unwrap_or([1, 1]);
+            let (gone, after) = rest.split_at(removed.min(rest.len()));
+            differ.gone.extend(gone);
+            rest = after;
+            for now in (number..number + inserted).filter_map(|number| list.get(number)) {
+                self.drawn.push(now.aabb);
+                differ.come.push(now);
+            }
+        }
+        differ.gone.extend(rest);
+    }
+}
+
+/// The casters of a frame, and the keys of those that have one.
+struct List<'a> {
+    casters: &'a Casters<'a>,
+    keys: &'a [u64],
+}
+
+impl List<'_> {
+    fn len(&self) -> usize {
+        self.casters.boxes.boxes.len()
+    }
+
+    /// The box of a caster, empty for one that moves, and the metres by which the same one may differ.
+    fn aabb(&self, number: usize) -> (WorldBox, f64) {
+        let Boxes { origin, boxes } = self.casters.boxes;
+        if self.casters.moves(number) {
+            return (WorldBox::EMPTY, 0.0);
+        }
+        (WorldBox::new(&boxes[number], origin), rounding(&boxes[number]))
+    }
+
+    fn get(&self, number: usize) -> Option<Caster> {
+        (number < self.len()).then(|| {
+            let (aabb, rounding) = self.aabb(number);
+            Caster { key: self.keys.get(number).copied(), aabb, rounding, number }
+        })
+    }
+}
+
+/// Casters that only one of two lists has, by their numbers there.
+#[derive(Default)]
+struct Differences {
+    gone: Vec<Caster>,
+    come: Vec<Caster>,
+    /// Times that nothing was found ahead.
+    missed: usize,
+}
+
+/// Times that nothing is found ahead, after which lists count as being in different orders.
+const MAX_MISSED: usize = 256;
+
+impl Differences {
+    /// As [`shift`], unless the lists are in different orders.
+    fn shift(
+        &mut self,
+        before: impl Fn(usize) -> Option<Caster>,
+        now: impl Fn(usize) -> Option<Caster>,
+    ) -> Option<[usize; 2]> {
+        let found = if self.missed < MAX_MISSED { shift(before, now) } else { None };
+        self.missed += usize::from(found.is_none());
+        found
     }
 }
 
@@ -243,7 +331,7 @@ mod tests {
         assert_eq!(take(known, &moved, &[false, true], &[]), Changes::default());
         // It comes to rest, elsewhere; a static one is set elsewhere; the last one is gone.
         let rest = [cube(0.5, 0.0), moved[1]];
-        assert_eq!(take(known, &rest, &[], &[]), changes(&[boxes[2], boxes[0]], &rest));
+        assert_eq!(take(known, &rest, &[], &[]), changes(&[boxes[0], boxes[2]], &rest));
         assert_eq!(take(known, &[], &[], &[]), changes(&rest, &[]));
     }
 
@@ -324,7 +412,7 @@ mod tests {
         let eye = place + DVec3::new(30.0, 1.7, 50.0);
         let mut take = |origin, boxes: &[Aabb]| known.update(&Casters::fixed(Boxes { origin, boxes }), None);
         assert_eq!(take(eye, &relative(eye)).come.len(), 3);
-        for step in 1..200 {
+        for step in 1..200_u32 {
             let eye = eye + DVec3::new(0.013, 0.001, -0.027) * f64::from(step);
             let mut boxes = relative(eye);
             boxes.rotate_left(step as usize % 3);

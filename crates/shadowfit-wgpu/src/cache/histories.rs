@@ -228,8 +228,11 @@ impl World {
                 self.insert(self.number(number), centre, half);
             }
             Event::Copy(of, number) => {
-                let copy = Object { key: self.keys + 1, stands: None, ..self.objects[self.number(of)] };
-                self.keys += u64::from(self.frame.is_multiple_of(2));
+                let mut copy = Object { stands: None, ..self.objects[self.number(of)] };
+                if self.frame.is_multiple_of(2) {
+                    self.keys += 1;
+                    copy.key = self.keys;
+                }
                 self.objects.insert(self.number(number), copy);
             }
             Event::Remove(number) => drop(self.objects.remove(self.number(number))),

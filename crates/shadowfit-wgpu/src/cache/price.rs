@@ -49,6 +49,11 @@ impl Price {
     pub(super) fn is_worth(&self, rects: &[TexelRect], whole: u64) -> bool {
         rects.iter().map(|rect| self.of(rect.area())).sum::<f64>() < self.whole * whole as f64
     }
+
+    /// Whether so many texels cost less than the map as a whole, in as few rectangles as there are.
+    pub(super) fn may_be_worth(&self, texels: u64, whole: u64) -> bool {
+        self.texel * (texels as f64) < self.whole * whole as f64
+    }
 }
 
 #[cfg(test)]

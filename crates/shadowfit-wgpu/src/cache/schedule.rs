@@ -6,7 +6,8 @@ use shadowfit::settings::MAX_MAPS;
 ///
 /// A map that waits is read as it was drawn, with its own matrices. It never waits where a receiver would be left out
 /// or a caster lost: when the light has turned, or when its depth range no longer holds its receivers and casters. The
-/// map that holds the points outside all others does not wait when it has moved. Maps that are not kept never wait.
+/// map that holds the points outside all others does not wait when it has moved. Nor does a map wait that shows a static
+/// caster in view that is gone or elsewhere: what comes may be late, what goes never is. Maps that are not kept never wait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UpdateSchedule {
     /// Every map in every frame. The default.

@@ -84,6 +84,12 @@ impl ChangedTiles {
         set(&mut self.columns[as_usize(&columns)], &rows);
     }
 
+    /// Texels of all tiles that changed, of which no rectangles can have less.
+    pub(super) fn texels(&self) -> u64 {
+        let tiles: u32 = self.rows.iter().flatten().map(|word| word.count_ones()).sum();
+        u64::from(tiles) * u64::from(self.side * self.side)
+    }
+
     /// Rectangles around all that changed, in texels.
     pub(super) fn rects(&self, price: &Price) -> Vec<TexelRect> {
         let all = Block { columns: 0..self.columns.len() as u32, rows: 0..self.rows.len() as u32 };
@@ -99,7 +105,7 @@ impl ChangedTiles {
             leaves[best] = self.leaf(first, price);
             leaves.push(self.leaf(second, price));
         }
-        leaves.into_iter().map(|leaf| self.texels(&leaf.block)).collect()
+        leaves.into_iter().map(|leaf| self.texels_of(&leaf.block)).collect()
     }
 
     fn leaf(&self, block: Block, price: &Price) -> Leaf {
@@ -117,11 +123,11 @@ impl ChangedTiles {
     }
 
     fn price(&self, block: &Block, price: &Price) -> f64 {
-        price.of(self.texels(block).area())
+        price.of(self.texels_of(block).area())
     }
 
     /// The texels of a block.
-    fn texels(&self, block: &Block) -> TexelRect {
+    fn texels_of(&self, block: &Block) -> TexelRect {
         let min = UVec2::new(block.columns.start, block.rows.start) * self.side;
         let end = (UVec2::new(block.columns.end, block.rows.end) * self.side).min(self.size);
         TexelRect { min, size: end - min }
@@ -151,7 +157,7 @@ impl Block {
 }
 
 /// The changed tiles of some lines.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 struct Part {
     /// From the first line that has any to the last one.
     along: Range<u32>,
@@ -159,11 +165,12 @@ struct Part {
 }
 
 impl Part {
-    fn with(part: Option<Self>, line: u32, tiles: Range<u32>) -> Self {
-        let part = part.unwrap_or(Self { along: line..line + 1, across: tiles.clone() });
-        Self {
-            along: part.along.start.min(line)..part.along.end.max(line + 1),
-            across: part.across.start.min(tiles.start)..part.across.end.max(tiles.end),
+    const NONE: Self = Self { along: u32::MAX..0, across: u32::MAX..0 };
+
+    fn add(&mut self, line: u32, tiles: &Range<u32>) {
+        if !tiles.is_empty() {
+            self.along = self.along.start.min(line)..self.along.end.max(line + 1);
+            self.across = self.across.start.min(tiles.start)..self.across.end.max(tiles.end);
         }
     }
 
@@ -172,21 +179,34 @@ impl Part {
     }
 }
 
-/// The cut between two lines that leaves the least area.
+/// The cut between two lines that leaves the least area, if both sides have any.
 fn cut(lines: &[Line], across: &Range<u32>) -> Option<[Part; 2]> {
-    let extents: Vec<Option<Range<u32>>> = lines.iter().map(|line| extent(line, across)).collect();
-    let grown = |part: &mut Option<Part>, line: usize| {
-        if let Some(tiles) = extents[line].clone() {
-            *part = Some(Part::with(part.take(), line as u32, tiles));
+    let extents: Vec<Range<u32>> = lines.iter().map(|line| extent(line, across).unwrap_or(0..0)).collect();
+    let numbered = || extents.iter().enumerate().map(|(line, tiles)| (line as u32, tiles));
+    let mut after = Part::NONE;
+    let mut areas: Vec<u32> = numbered()
+        .rev()
+        .map(|(line, tiles)| {
+            after.add(line, tiles);
+            after.area()
+        })
+        .collect();
+    areas.reverse();
+    let mut before = Part::NONE;
+    let mut best = (u32::MAX, 0);
+    for ((line, tiles), after) in numbered().zip(areas.iter().skip(1)) {
+        before.add(line, tiles);
+        if before.area() > 0 && *after > 0 {
+            best = best.min((before.area() + after, line + 1));
         }
-        part.clone()
+    }
+    let (area, first) = best;
+    let part = |is_in: &dyn Fn(u32) -> bool| {
+        let mut part = Part::NONE;
+        numbered().filter(|(line, _)| is_in(*line)).for_each(|(line, tiles)| part.add(line, tiles));
+        part
     };
-    let mut after: Vec<Option<Part>> =
-        (0..lines.len()).rev().scan(None, |part, line| Some(grown(part, line))).collect();
-    after.reverse();
-    let before = (0..lines.len()).scan(None, |part, line| Some(grown(part, line)));
-    let cuts = before.zip(after.into_iter().skip(1)).filter_map(|(before, after)| Some([before?, after?]));
-    cuts.min_by_key(|[before, after]| before.area() + after.area())
+    (area < u32::MAX).then(|| [part(&|line| line < first), part(&|line| line >= first)])
 }
 
 /// The tiles of a line from the first to the last one that is set within a range.

@@ -9,6 +9,8 @@ use crate::layers::Opening;
 pub struct ShadowPass<'a> {
     pub(super) maps: &'a CachedMaps,
     pub(super) pass: &'a PassPlan,
+    /// Number of its plan's first piece, among those of all sets of maps.
+    first_piece: usize,
 }
 
 /// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
@@ -31,7 +33,7 @@ pub struct ShadowPiece<'a> {
 }
 
 impl<'a> ShadowPass<'a> {
-    /// Number of the map.
+    /// Number of the map. While the sun [steps](crate::SunShadows::set_light_steps) two maps have the same number.
     pub fn map(&self) -> usize {
         self.pass.map
     }
@@ -49,7 +51,35 @@ impl<'a> ShadowPass<'a> {
     /// Its parts.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
         let (plan, pass) = (&self.maps.plan, self.pass);
-        pass.pieces.clone().map(move |number| shadow_piece(plan, pass, number))
+        let first = self.first_piece;
+        pass.pieces.clone().map(move |piece| ShadowPiece { number: first + piece, ..shadow_piece(plan, pass, piece) })
+    }
+}
+
+impl ShadowPass<'_> {
+    /// Records the pass. `draw` is called for each part that has casters.
+    pub(crate) fn render(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: u32,
+        draw: &mut impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+    ) {
+        let mut opened = self.begin(encoder, group, None);
+        for piece in self.pieces().filter(|piece| !piece.casters.is_empty() || !piece.standing.is_empty()) {
+            piece.set(&mut opened);
+            draw(&mut opened, &piece);
+        }
+    }
+
+    /// Opens the pass: cleared or mended, with the map's matrix bound at `group`.
+    pub(crate) fn begin<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        group: u32,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'encoder> {
+        let CachedMaps { map, plan, layers, .. } = self.maps;
+        layers.begin(encoder, Opening { map, plan, group }, self.pass, timestamps)
     }
 }
 
@@ -82,39 +112,18 @@ impl CachedMaps {
         self.plan.clear();
     }
 
-    /// The passes of this frame, in the order in which they must be drawn.
-    pub(crate) fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
-        self.plan.passes.iter().map(|pass| ShadowPass { maps: self, pass })
+    /// Number of passes of this frame.
+    pub(crate) fn pass_count(&self) -> usize {
+        self.plan.passes.len()
     }
 
-    /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
-    /// pipeline and buffers, and draws the part's casters. The map's matrix is bound at `group`; viewport and scissor
-    /// rectangle are set, and must stay.
-    pub(crate) fn render(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        group: u32,
-        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
-    ) {
-        for pass in self.passes() {
-            let mut opened = self.begin_pass(encoder, &pass, group, None);
-            for piece in pass.pieces().filter(|piece| !piece.casters.is_empty() || !piece.standing.is_empty()) {
-                piece.set(&mut opened);
-                draw(&mut opened, &piece);
-            }
-        }
+    /// Number of the passes' pieces.
+    pub(crate) fn piece_count(&self) -> usize {
+        self.plan.pieces.len()
     }
 
-    /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
-    /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
-    pub(crate) fn begin_pass<'encoder>(
-        &self,
-        encoder: &'encoder mut wgpu::CommandEncoder,
-        pass: &ShadowPass<'_>,
-        group: u32,
-        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) -> wgpu::RenderPass<'encoder> {
-        let opening = Opening { map: &self.map, plan: &pass.maps.plan, group };
-        self.layers.begin(encoder, opening, pass.pass, timestamps)
+    /// One of the passes, in the order in which they must be drawn. `first_piece`: number of the first piece of all.
+    pub(crate) fn pass(&self, index: usize, first_piece: usize) -> ShadowPass<'_> {
+        ShadowPass { maps: self, pass: &self.plan.passes[index], first_piece }
     }
 }

@@ -102,7 +102,7 @@ impl CachedMaps {
     ///
     /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
     pub(crate) fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
-        if self.is_off { Ok(()) } else { self.map.prepare(queue, view, &self.maps) }
+        if self.is_off { Ok(()) } else { self.write_uniforms(queue, view) }
     }
 }
 

@@ -1,0 +1,67 @@
+//! How much there is to load: what a file says about itself before its content is decoded.
+
+use std::path::Path;
+
+use gltf::json::mesh::Semantic;
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Root, image, mesh};
+
+use super::nodes::Tree;
+use super::uri::{file_size, uri_size};
+
+/// The amounts that decide how long a file takes to be loaded and its scene to be made ready. They are what the file
+/// claims, and may be wrong where it cannot be loaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneSize {
+    /// Bytes of the file.
+    pub file: u64,
+    /// Bytes of JSON in it; 0 until it has been read.
+    pub json: u64,
+    /// Nodes of the scene; 0 until the JSON has been parsed, as all that follows.
+    pub nodes: u64,
+    /// Triangles of the meshes that it draws, each mesh once.
+    pub triangles: u64,
+    /// Triangles that it draws, every node counted.
+    pub drawn: u64,
+    /// Bytes of its images, as they are encoded.
+    pub images: u64,
+}
+
+impl SceneSize {
+    /// That of a file which has not been read.
+    pub(super) fn of_file(path: &Path) -> Self {
+        Self { file: file_size(path), ..Self::default() }
+    }
+
+    /// The same with what the JSON says about a scene.
+    pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: &Path) -> Self {
+        let mut is_counted = vec![false; root.meshes.len()];
+        let (mut all, mut drawn) = (0, 0);
+        for index in tree.file_index.iter().filter_map(|node| root.nodes[*node].mesh) {
+            let Some(mesh) = root.meshes.get(index.value()) else { continue };
+            let triangles: u64 = mesh.primitives.iter().map(|primitive| triangles(root, primitive)).sum();
+            drawn += triangles;
+            if !std::mem::replace(&mut is_counted[index.value()], true) {
+                all += triangles;
+            }
+        }
+        let images = root.images.iter().map(|image| encoded(root, image, folder)).sum();
+        Self { nodes: tree.nodes.len() as u64, triangles: all, drawn, images, ..self }
+    }
+}
+
+/// Triangles of a primitive, as if they were in a list.
+fn triangles(root: &Root, primitive: &mesh::Primitive) -> u64 {
+    let positions = || primitive.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
+    let accessor = primitive.indices.or_else(positions).and_then(|index| root.accessors.get(Index::value(&index)));
+    accessor.map_or(0, |accessor| accessor.count.0 / 3)
+}
+
+/// Bytes of an image; 0 where they are unknown.
+fn encoded(root: &Root, image: &image::Image, folder: &Path) -> u64 {
+    match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => uri_size(folder, uri),
+        (None, Some(view)) => root.buffer_views.get(view.value()).map_or(0, |view| view.byte_length.0),
+        (None, None) => 0,
+    }
+}

@@ -1,0 +1,204 @@
+//! A sun that moves all day: what its shadows cost, and how far an edge jumps from one frame to the next.
+
+use anyhow::{Context, Result};
+use glam::{DQuat, DVec3, Vec3};
+use shadowfit::PerspectiveCamera;
+use shadowfit_params::tool::LightSettings;
+use shadowfit_render::{Gpu, read_texture};
+use shadowfit_wgpu::SunSteps;
+
+use crate::Bench;
+use crate::edges::{Change, Factors, Surfaces};
+use crate::engine::{Engine, SIZE};
+use crate::fullscreen::Fullscreen;
+use crate::scene::BenchScene;
+use crate::table::{Table, ms};
+use crate::timer::Timer;
+
+/// Frames of the day, in frames that other parts time: a minute at 60 frames a second, with 240 of them.
+const FRAMES: usize = 15;
+const RATE: f64 = 60.0;
+
+/// Frames in which windows settle, after which a change is the sun's.
+const SETTLED: usize = 120;
+
+/// The hour at which it begins, and by how much the sun turns in a second, in radians.
+const HOUR: f32 = 10.0;
+const REAL: f64 = core::f64::consts::TAU / 86_400.0;
+
+/// A way to follow the sun.
+#[derive(Clone, Copy)]
+struct Way {
+    name: &'static str,
+    steps: Option<SunSteps>,
+}
+
+const AT_ONCE: SunSteps = SunSteps { texels: 1.0, fade: 0 };
+
+const WAYS: [Way; 4] = [
+    Way { name: "followed in each frame", steps: None },
+    Way { name: "steps", steps: Some(AT_ONCE) },
+    Way { name: "steps, a fade of 1 frame", steps: Some(AT_ONCE.with_fade(1)) },
+    Way { name: "steps, a fade of 30 frames", steps: Some(AT_ONCE.with_fade(30)) },
+];
+
+/// What a day took.
+#[derive(Default)]
+struct Taken {
+    /// Texels that each frame drew.
+    texels: Vec<f64>,
+    /// Time of the shadow passes, in milliseconds.
+    gpu: Vec<f64>,
+    change: Change,
+}
+
+/// The sun of a day.
+struct Sun {
+    morning: DVec3,
+    axis: DVec3,
+    /// Radians a second.
+    speed: f64,
+}
+
+impl Sun {
+    fn new(speed: f64) -> Self {
+        let at = |hour: f32| LightSettings { hour: Some(hour), ..LightSettings::default() }.direction().as_dvec3();
+        // The way of the sun is a great circle through the east.
+        Self { morning: at(HOUR).normalize(), axis: at(12.0).cross(at(18.0)).normalize(), speed }
+    }
+
+    fn direction(&self, frame: usize) -> Vec3 {
+        (DQuat::from_axis_angle(self.axis, self.speed * frame as f64 / RATE) * self.morning).as_vec3()
+    }
+}
+
+/// The picture of factors that a standing camera sees.
+struct Picture {
+    pass: Fullscreen,
+    surfaces: Surfaces,
+    before: Factors,
+}
+
+impl Picture {
+    fn new(gpu: &Gpu, engine: &Engine<'_>, camera: &PerspectiveCamera) -> Result<Self> {
+        let pass = Fullscreen::new(gpu, Some((engine.sun.map(), false)), camera, &engine.depth);
+        let bytes = read_texture(gpu, engine.depth.texture(), SIZE, 4).context("no depth came back")?;
+        let surfaces = Surfaces::new(&bytemuck::pod_collect_to_vec(&bytes), camera, engine.direction);
+        Ok(Self { pass, surfaces, before: Factors::new() })
+    }
+
+    /// What has changed since the frame before.
+    fn change(&mut self, gpu: &Gpu, engine: &Engine<'_>, timer: &mut Timer) -> Result<Change> {
+        timer.frame(gpu, |encoder, times| {
+            self.pass.record(encoder, Some(engine.sun.map()), times);
+            Ok(())
+        })?;
+        let now = read_texture(gpu, self.pass.color.texture(), SIZE, 1).context("no factors came back")?;
+        let before = core::mem::replace(&mut self.before, now);
+        Ok(if before.is_empty() { Change::default() } else { self.surfaces.change(&before, &self.before) })
+    }
+}
+
+/// A day in one way, seen from one place where nothing but the sun moves, or along the walk.
+fn day(bench: &Bench, scene: &BenchScene, (way, sun, walks): (Way, &Sun, bool)) -> Result<Taken> {
+    let gpu = &bench.gpu;
+    let mut engine = Engine::new(gpu, scene, &bench.technique())?;
+    engine.set_light_steps(way.steps)?;
+    if !walks {
+        engine.stand_still();
+    }
+    let (mut timer, mut taken) = (Timer::new(gpu), Taken::default());
+    let mut picture: Option<Picture> = None;
+    let warm_up = bench.warm_up().max(SETTLED);
+    for frame in 0..warm_up + bench.frames * FRAMES {
+        // The sun rises when the windows are settled.
+        engine.direction = sun.direction(frame.saturating_sub(warm_up));
+        let place = if walks { frame } else { 0 };
+        let camera = engine.camera(place);
+        engine.update(place)?;
+        let time = timer.frame(gpu, |encoder, times| {
+            engine.shadow_passes(encoder, Some(times));
+            Ok(())
+        })?;
+        timer.frame(gpu, |encoder, _| engine.seen_pass(encoder, &camera))?;
+        engine.sun.wait_for_demand()?;
+        if frame < warm_up {
+            continue;
+        }
+        let pieces = engine.sun.passes().flat_map(|pass| pass.pieces());
+        taken.texels.push(pieces.map(|piece| f64::from(piece.scissor[2]) * f64::from(piece.scissor[3])).sum());
+        taken.gpu.push(time);
+        if !walks {
+            let picture = match &mut picture {
+                Some(picture) => picture,
+                None => picture.insert(Picture::new(gpu, &engine, &camera)?),
+            };
+            taken.change = taken.change.max(picture.change(gpu, &engine, &mut timer)?);
+        }
+    }
+    Ok(taken)
+}
+
+/// All ways, at the sun's real speed and so fast that it steps once a second. On software adapters, whose times say
+/// little, only the fast one, and no walk.
+pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
+    let fast = 2.0 * f64::from(AT_ONCE.texels) / f64::from(bench.map);
+    let mut rows = Vec::new();
+    let suns = [(REAL, "real"), (fast, "fast")];
+    for (speed, name) in if bench.gpu.is_software() { &suns[1..] } else { &suns } {
+        for way in WAYS {
+            let sun = Sun::new(*speed);
+            let stands = day(bench, scene, (way, &sun, false))?;
+            let walk = if bench.gpu.is_software() { Taken::default() } else { day(bench, scene, (way, &sun, true))? };
+            rows.push(vec![
+                format!("{name}, {}", way.name),
+                millions(mean(&stands.texels)),
+                millions(greatest(&stands.texels)),
+                ms(mean(&stands.gpu)),
+                ms(greatest(&stands.gpu)),
+                ms(mean(&walk.gpu)),
+                ms(greatest(&walk.gpu)),
+                format!("{:.2} px", stands.change.jump),
+                format!("{:.2}", stands.change.factor),
+            ]);
+        }
+    }
+    let columns = [
+        "sun, way",
+        "texels, mean",
+        "most",
+        "GPU, mean",
+        "most",
+        "in the walk, mean",
+        "most",
+        "largest jump of an edge",
+        "of a factor",
+    ];
+    Ok(Table {
+        title: "A sun that moves all day",
+        note: format!(
+            "{:.0} seconds of the {} at 60 frames a second: texels drawn in a frame, time of the shadow passes, and the \
+             largest change between two frames in {} × {} pixels, seen from one place where only the sun moves; then \
+             the time along the walk, where every tenth node bobs. Real is 15° an hour, fast a step a second, {:.3}°.",
+            (bench.frames * FRAMES) as f64 / RATE,
+            scene.name,
+            SIZE[0],
+            SIZE[1],
+            fast.to_degrees()
+        ),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows,
+    })
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+fn millions(texels: f64) -> String {
+    format!("{:.3} M", texels / 1e6)
+}

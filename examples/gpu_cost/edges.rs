@@ -1,0 +1,161 @@
+//! How far the edges of shadows move in a picture from one frame to the next.
+//!
+//! An edge is where the factor crosses one half between two neighbouring pixels of one surface, with a place between
+//! them by linear interpolation. Its movement is the distance to the place where the same row (for edges that are
+//! steeper than 45° in the picture; else the same column) is crossed in the same direction in the next frame, times the
+//! cosine of the edge's slant, which makes it the distance across the edge, in pixels. Every fourth row and column is
+//! looked at. Shadows that come or go have no such place, and count in the change of the factor alone.
+
+use glam::{Mat4, Vec3};
+use shadowfit::{DepthConvention, PerspectiveCamera};
+
+use crate::engine::SIZE;
+
+/// Factors as bytes, row by row.
+pub(crate) type Factors = Vec<u8>;
+
+const HALF: f32 = 127.5;
+
+/// Least change of the factor over a pixel, in 255ths: what is softer is no edge to the eye.
+const LEAST_SLOPE: f32 = 12.0;
+
+/// Greatest movement along a row that counts as one edge's, in pixels. Shadows that come or go are none.
+const REACH: f32 = 16.0;
+
+/// Pixels around one that must show the same surface.
+const AROUND: isize = 2;
+
+/// Rows and columns from one that is looked at to the next.
+const LINES: usize = 4;
+
+/// Greatest second difference of a plane's reversed depth, as a share of it: that of f32 and slight curvature.
+const BENT: f32 = 1e-4;
+
+/// Least cosine between a surface's normal and the light's: beside it the factor is hidden by the shading.
+const LEAST_COSINE: f32 = 0.15;
+
+/// The pixels of a picture where edges are sought: on surfaces that face the light, away from silhouettes.
+pub(crate) struct Surfaces(Vec<bool>);
+
+/// What changed from one picture to the next.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Change {
+    /// Greatest movement of an edge, in pixels.
+    pub(crate) jump: f32,
+    /// Greatest change of a factor.
+    pub(crate) factor: f32,
+}
+
+impl Change {
+    /// The greater of each.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self { jump: self.jump.max(other.jump), factor: self.factor.max(other.factor) }
+    }
+}
+
+/// A place where a line of pixels crosses one half.
+#[derive(Clone, Copy)]
+struct Crossing {
+    at: f32,
+    is_rising: bool,
+    /// Cosine of the angle between the line and the edge's normal.
+    cosine: f32,
+}
+
+const WIDTH: usize = SIZE[0] as usize;
+const HEIGHT: usize = SIZE[1] as usize;
+
+/// Neighbours along a row and down a column.
+const ALONG: [usize; 2] = [1, WIDTH];
+
+impl Surfaces {
+    /// Those of a reversed depth buffer that a camera has filled, under light that travels in `direction`.
+    pub(crate) fn new(depths: &[f32], camera: &PerspectiveCamera, direction: Vec3) -> Self {
+        let [width, height] = SIZE.map(|side| side as f32);
+        let from_pixel = Mat4::from_cols_array_2d(&[
+            [2.0 / width, 0.0, 0.0, 0.0],
+            [0.0, -2.0 / height, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0, 1.0],
+        ]);
+        let world_from_pixel = camera.clip_from_world(DepthConvention::Reversed).inverse() * from_pixel;
+        let place = |index: usize| {
+            let pixel = Vec3::new((index % WIDTH) as f32, (index / WIDTH) as f32, depths[index]);
+            world_from_pixel.project_point3(pixel)
+        };
+        let is_plain = |index: usize| {
+            let is_flat = |step: usize| {
+                (depths[index - step] + depths[index + step] - 2.0 * depths[index]).abs() < BENT * depths[index]
+            };
+            let [right, down] = ALONG.map(|step| place(index + step) - place(index));
+            let normal = down.cross(right).normalize_or_zero();
+            ALONG.into_iter().all(is_flat) && normal.dot(-direction) > LEAST_COSINE
+        };
+        let inner = |index: usize, border: usize| {
+            let (x, y) = (index % WIDTH, index / WIDTH);
+            (border..WIDTH - border).contains(&x) && (border..HEIGHT - border).contains(&y)
+        };
+        let plain: Vec<bool> = (0..depths.len()).map(|index| inner(index, 1) && is_plain(index)).collect();
+        let around = |index: usize| {
+            let rows = (-AROUND..=AROUND).flat_map(|y| (-AROUND..=AROUND).map(move |x| y * WIDTH as isize + x));
+            rows.map(|offset| index.wrapping_add_signed(offset)).all(|index| plain[index])
+        };
+        Self((0..depths.len()).map(|index| inner(index, AROUND as usize + 1) && around(index)).collect())
+    }
+
+    /// What changed between two pictures.
+    pub(crate) fn change(&self, before: &Factors, now: &Factors) -> Change {
+        if before == now {
+            return Change::default();
+        }
+        let pairs = before.iter().zip(now).zip(&self.0).filter(|(_, is_seen)| **is_seen);
+        let factor = pairs.map(|((before, now), _)| before.abs_diff(*now)).max().unwrap_or_default();
+        let [mut old, mut new] = [Vec::new(), Vec::new()];
+        let mut jump = 0.0_f32;
+        for (along, lines, length) in [(0, HEIGHT, WIDTH), (1, WIDTH, HEIGHT)] {
+            for line in (0..lines).step_by(LINES) {
+                self.crossings(before, (along, line, length), &mut old);
+                self.crossings(now, (along, line, length), &mut new);
+                jump = jump.max(greatest_move(&old, &new));
+            }
+        }
+        Change { jump, factor: f32::from(factor) / 255.0 }
+    }
+
+    /// The crossings of a row or a column, in their order.
+    fn crossings(&self, factors: &Factors, (along, line, length): (usize, usize, usize), found: &mut Vec<Crossing>) {
+        found.clear();
+        let (step, across) = (ALONG[along], ALONG[1 - along]);
+        let value = |index: usize| f32::from(factors[index]);
+        for at in 0..length - 1 {
+            let index = line * across + at * step;
+            let (first, second) = (value(index), value(index + step));
+            if (first < HALF) == (second < HALF) || !self.0[index] || !self.0[index + step] {
+                continue;
+            }
+            let slope = second - first;
+            let beside = |index: usize| (value(index + across) - value(index - across)) * 0.5;
+            let slant = (beside(index) + beside(index + step)) * 0.5;
+            if slope.abs() >= LEAST_SLOPE && slope.abs() >= slant.abs() {
+                let cosine = slope.abs() / slope.hypot(slant);
+                let place = at as f32 + (HALF - first) / slope;
+                found.push(Crossing { at: place, is_rising: slope > 0.0, cosine });
+            }
+        }
+    }
+}
+
+/// The greatest movement of crossings that are each other's nearest in two frames.
+fn greatest_move(old: &[Crossing], new: &[Crossing]) -> f32 {
+    let nearest = |of: &Crossing, among: &[Crossing]| {
+        let like = among.iter().filter(|other| other.is_rising == of.is_rising);
+        like.copied().min_by(|a, b| (a.at - of.at).abs().total_cmp(&(b.at - of.at).abs()))
+    };
+    let moved = |crossing: &Crossing| {
+        let before = nearest(crossing, old)?;
+        let back = nearest(&before, new)?;
+        let distance = (crossing.at - before.at).abs();
+        (back.at == crossing.at && distance <= REACH).then_some(distance * crossing.cosine)
+    };
+    new.iter().filter_map(moved).fold(0.0, f32::max)
+}
