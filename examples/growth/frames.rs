@@ -21,11 +21,11 @@ struct Way {
 }
 
 const WAYS: [Way; 5] = [
-    Way { name: "all at rest", every: 0, walks: false },
-    Way { name: "the camera moves", every: 0, walks: true },
-    Way { name: "and 1% of the casters", every: 100, walks: true },
-    Way { name: "and 10% of them", every: 10, walks: true },
-    Way { name: "and all of them", every: 1, walks: true },
+    Way { name: "at rest", every: 0, walks: false },
+    Way { name: "camera moves", every: 0, walks: true },
+    Way { name: "1% move", every: 100, walks: true },
+    Way { name: "10% move", every: 10, walks: true },
+    Way { name: "all move", every: 1, walks: true },
 ];
 
 /// Sides of the maps, in texels, and numbers of them, and casters in the town that these are tried in.
@@ -35,10 +35,10 @@ const NUMBERS: [u32; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 const NUMBER: u32 = 4;
 const CASTERS: usize = 10_000;
 
-const NOTE: &str = "`windows-4`, told what was seen. `update` is the fit and all that follows up to the passes, nothing \
-                    of which is drawn; the columns after it are without the fit: median, worst, and the frame in which a \
-                    static caster comes. All casters in the list of the frame, and those that stand in a hierarchy \
-                    (`SunFrame::standing`).";
+const NOTE: &str = "`windows-4`, told what was seen; the camera walks in all rows but those at rest. `update` is the fit and \
+                    all that follows up to the passes, nothing of which is drawn; the columns after it are without the \
+                    fit: median, worst, and the frame after them in which one static caster more is there. *List* has all \
+                    casters in the frame's list; *hierarchy* has those that stand in a `BoxTree` (`SunFrame::standing`).";
 
 /// Casters that a scene of today's engines has, beside the powers of ten.
 const TYPICAL: usize = 30_000;

@@ -26,7 +26,7 @@ fn the_docs_show_every_picture_of_theirs_and_none_that_is_missing() {
     let is_picture = |name: &str| Path::new(name).extension().is_some_and(|ending| ending == "png" || ending == "svg");
     let shown: BTreeSet<String> =
         links.filter(|(name, _)| is_picture(name)).map(|(name, _)| format!("docs/images/{name}")).collect();
-    let folders = ["docs/images", "docs/images/maths", "docs/images/samples"];
+    let folders = ["docs/images", "docs/images/benchmarks", "docs/images/maths", "docs/images/samples"];
     let there = &files(&folders, ".png") | &files(&folders, ".svg");
     assert_eq!(shown, there, "shown, and there");
 }
