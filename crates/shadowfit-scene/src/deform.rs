@@ -1,7 +1,7 @@
 //! Morph targets and linear blend skinning on the CPU, as the glTF 2.0 specification defines them
 //! (sections 3.7.2.2 and 3.7.3): morph first, then skin; a skinned mesh ignores its node's transform.
 
-use glam::{Mat3, Mat4, Vec3, Vec4};
+use glam::{DVec3, Mat3, Mat4, Vec3, Vec4};
 
 use crate::{Instance, Pose, Primitive, Scene, Skin};
 
@@ -39,6 +39,27 @@ impl Pose {
             skin_vertices(&mut deformed, primitive, &self.world_from_mesh_by_joint(skin));
         }
         Some(deformed)
+    }
+
+    /// Corners of every triangle of an instance in their order, as [`Pose::triangles_from`] has them. `deformed` is what
+    /// [`Pose::deform`] gives for it.
+    pub fn corners_from<'a>(
+        &self,
+        scene: &'a Scene,
+        instance: &Instance,
+        deformed: Option<&'a Deformed>,
+        origin: DVec3,
+    ) -> impl ExactSizeIterator<Item = [Vec3; 3]> + use<'a> {
+        let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+        let mut world_from_local = self.world_from_instance(scene, instance);
+        let from_origin = (world_from_local.w_axis.truncate().as_dvec3() - origin).as_vec3();
+        world_from_local.w_axis = from_origin.extend(1.0);
+        let local = deformed.map_or(&primitive.positions, |deformed| &deformed.positions);
+        let mirrored = self.is_mirrored(scene, instance);
+        primitive.indices.as_chunks::<3>().0.iter().map(move |corners| {
+            let [a, b, c] = corners.map(|index| world_from_local.transform_point3(local[index as usize]));
+            if mirrored { [a, c, b] } else { [a, b, c] }
+        })
     }
 
     /// For each joint of a skin, world from the mesh's space for a vertex that this joint alone moves.

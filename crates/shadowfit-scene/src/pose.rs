@@ -3,7 +3,7 @@
 use glam::{DVec3, Mat4, Vec3};
 
 use crate::sample::{Sample, sample};
-use crate::{Deformed, Node, Scene, Transform};
+use crate::{Node, Scene, Transform};
 
 /// One primitive drawn at one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -159,27 +159,6 @@ impl Pose {
             triangles.extend(numbered);
         }
         triangles
-    }
-
-    /// Corners of every triangle of an instance in their order, as [`Pose::triangles_from`] has them. `deformed` is what
-    /// [`Pose::deform`] gives for it.
-    pub fn corners_from<'a>(
-        &self,
-        scene: &'a Scene,
-        instance: &Instance,
-        deformed: Option<&'a Deformed>,
-        origin: DVec3,
-    ) -> impl ExactSizeIterator<Item = [Vec3; 3]> + use<'a> {
-        let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-        let mut world_from_local = self.world_from_instance(scene, instance);
-        let from_origin = (world_from_local.w_axis.truncate().as_dvec3() - origin).as_vec3();
-        world_from_local.w_axis = from_origin.extend(1.0);
-        let local = deformed.map_or(&primitive.positions, |deformed| &deformed.positions);
-        let mirrored = self.is_mirrored(scene, instance);
-        primitive.indices.as_chunks::<3>().0.iter().map(move |corners| {
-            let [a, b, c] = corners.map(|index| world_from_local.transform_point3(local[index as usize]));
-            if mirrored { [a, c, b] } else { [a, b, c] }
-        })
     }
 
     /// World from a node, or the identity for one that does not exist.

@@ -3,9 +3,8 @@
 //! It follows from the structures of the `obvhs` crate, and a test compares it with what the allocator
 //! counts.
 
+use glam::Vec3;
 use obvhs::bvh2::node::Bvh2Node;
-
-use crate::tracer::Corners;
 
 /// Nodes for each triangle while the hierarchy is built: two for the tree of single triangles, and one
 /// in each of the two lists between which the builder moves what is not joined yet.
@@ -32,7 +31,7 @@ impl TracerMemory {
     pub(crate) fn of(triangles: usize) -> Self {
         let triangles = triangles as u64;
         let [triangle, node, index] =
-            [size_of::<Corners>(), size_of::<Bvh2Node>(), size_of::<u32>()].map(|bytes| bytes as u64);
+            [size_of::<[Vec3; 3]>(), size_of::<Bvh2Node>(), size_of::<u32>()].map(|bytes| bytes as u64);
         let building = triangle + NODES_BUILDING * node + CODE + INDICES_BUILDING * index;
         let kept = 3 * (triangle + index) + NODES_KEPT_FOR_3 * node;
         Self { building: triangles.saturating_mul(building), kept: triangles.saturating_mul(kept) / 3 }

@@ -245,7 +245,7 @@ impl Tracer {
 
 /// Corners of a triangle: a quarter less than the aligned ones that rays are tested against.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corners([Vec3; 3]);
+struct Corners([Vec3; 3]);
 
 impl Corners {
     /// All zero if one of them is not finite.
