@@ -112,7 +112,7 @@ impl SunShadows {
     /// `first_binding` is as in [`Self::with_first_binding`].
     ///
     /// Nothing but the layers from [`MapTexture::base_layer`] on is cleared, written or read, as many as the technique
-    /// has maps. They are kept from frame to frame: where something else writes them in between, [`Self::set_caching`]
+    /// has maps, and twice as many where [light steps](Self::set_light_steps) fade. They are kept from frame to frame: where something else writes them in between, [`Self::set_caching`]
     /// has to be off. [`Self::set_technique`] stays in the texture.
     ///
     /// # Errors

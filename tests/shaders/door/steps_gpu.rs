@@ -65,6 +65,9 @@ impl Day {
         self.sun.update(&self.device.queue, &frame).expect("a good frame");
         let proof = self.sun.prove(&frame).expect("a good frame");
         assert!(proof.is_proven(), "{proof:?}");
+        let numbers: Vec<usize> = self.sun.passes().flat_map(|pass| pass.pieces()).map(|piece| piece.number).collect();
+        assert_eq!(numbers, (0..numbers.len()).collect::<Vec<_>>(), "pieces of both sets have numbers of their own");
+        assert_eq!(self.sun.culling_pieces().count(), numbers.len());
         self.painter.draw(&self.device, &[(&self.sun, boxes)])
     }
 

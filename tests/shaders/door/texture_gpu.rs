@@ -5,6 +5,7 @@ use shadowfit::Technique;
 use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit_wgpu::{
     Casters, MapTexture, MapTextureError, ShadowMapDescriptor, ShadowMapError, SunFrame, SunShadows, SunShadowsError,
+    SunSteps,
 };
 
 use super::engine::{BOXES, Device, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
@@ -66,6 +67,37 @@ fn gpu_maps_in_a_texture_of_the_engine_s_give_the_picture_of_internal_ones() {
         }
     }
     quiet.assert("maps in textures");
+}
+
+#[test]
+fn gpu_a_sun_that_steps_fades_within_a_texture_of_the_engine_s_if_it_has_room_for_both_sets() {
+    let device = Device::from(software_gpu());
+    let quiet = Quiet::new(&device);
+    let technique = technique();
+    let steps = Some(SunSteps { texels: 3.0, fade: 4 });
+    let small = MapTexture { texture: texture(&device, &technique, 6, |_| ()), base_layer: 1 };
+    let mut refused = sun_in(&device, &technique, 0, &small);
+    let error = refused.set_light_steps(steps).expect_err("there is no room for a second set");
+    let layers = MapTextureError::Layers { texture: 6, base_layer: 1, maps: 8 };
+    assert!(matches!(&error, SunShadowsError::Map(ShadowMapError::Texture(why)) if *why == layers), "{error:?}");
+    assert_eq!(refused.light_steps(), None);
+
+    let large = MapTexture { texture: texture(&device, &technique, 9, |_| ()), base_layer: 1 };
+    let mut own = sun_in(&device, &technique, 0, &large);
+    let mut internal = SunShadows::new(&device.device, &device.queue, &technique).expect("maps");
+    for sun in [&mut own, &mut internal] {
+        sun.set_light_steps(steps).expect("there is room");
+    }
+    assert_eq!(own.map().texture(), Some(&large));
+    let painter = Painter::new(&device, &[(&own, "shadowfit")]);
+    for step in 0..16_u16 {
+        // It steps in the fourth frame.
+        let turned = shadowfit::glam::Vec3::X * if step < 3 { 0.0 } else { 0.03 };
+        let boxes = update(&device, &mut [(&mut own, SUN + turned), (&mut internal, SUN + turned)], step % 4);
+        let [own, internal] = [&own, &internal].map(|sun| painter.draw(&device, &[(sun, &boxes)]));
+        assert_eq!(own, internal, "frame {step}");
+    }
+    quiet.assert("steps in a texture");
 }
 
 /// Clears all layers of a texture to [`FILLED`].
