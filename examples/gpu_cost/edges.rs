@@ -97,7 +97,7 @@ impl Surfaces {
         };
         let plain: Vec<bool> = (0..depths.len()).map(|index| inner(index, 1) && is_plain(index)).collect();
         let around = |index: usize| {
-            let rows = (-AROUND..=AROUND).flat_map(|y| (-AROUND..=AROUND).map(move |x| y * WIDTH as isize + x));
+            let rows = (-AROUND..=AROUND).flat_map(|y| (-AROUND..=AROUND).map(move |x| y * WIDTH.cast_signed() + x));
             rows.map(|offset| index.wrapping_add_signed(offset)).all(|index| plain[index])
         };
         Self((0..depths.len()).map(|index| inner(index, AROUND as usize + 1) && around(index)).collect())

@@ -268,7 +268,7 @@ fn gpu_views_that_walk_are_covered_in_every_frame_of_a_day_and_few_maps_are_draw
         let eyes = [EYE + way, EYE + way + DVec3::X * 0.5];
         day.views = eyes.map(|eye| camera(eye).frustum().expect("a camera")).to_vec();
         day.draw(f32::from(frame) * 0.002);
-        let cleared = day.sun.passes().filter(|pass| pass.is_cleared()).count();
+        let cleared = day.sun.passes().filter(shadowfit_wgpu::ShadowPass::is_cleared).count();
         whole += cleared;
         most = most.max(cleared);
     }
