@@ -3,7 +3,7 @@
 use shadowfit::scroll::TexelRect;
 
 /// A rectangle's own cost, in texels: a clear, a viewport and a scissor rectangle, and those of its casters that lie in
-/// other rectangles too, such as the ground. 3 µs, in texels of 0.29 ns.
+/// other rectangles too, such as the ground. An estimate, 3 µs, in texels of 0.29 ns: plans hardly depend on it.
 ///
 /// A texel is what all others are counted in: four maps of 2048 × 2048 take 4.8 ms on the GPU when drawn anew (zdm2, in
 /// the tables of `docs/BENCHMARKS.md`), so it takes 0.29 ns, of which the clear is 0.07.
@@ -16,7 +16,8 @@ const CASTER: f64 = 600.0;
 /// The cost of testing one caster of the list against a rectangle, in texels: 70 µs for 10,000 boxes and four volumes.
 const CULLED: f64 = 6.0;
 
-/// What a texel costs that is also restored from the static casters' layer: read, and written once more.
+/// What a texel costs that is also restored from the static casters' layer: read, and written once more. An estimate:
+/// less than drawing it, more than clearing it.
 const RESTORED: f64 = 0.5;
 
 /// Prices of a map's parts in a frame.
