@@ -1,8 +1,8 @@
 //! Windows under a light that is rounded, that steps, and that goes through the vertical.
 
-use shadowfit::{FittedMap, FittedMaps};
 use shadowfit::glam::{DQuat, DVec3, Vec3, Vec4};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::{FittedMap, FittedMaps};
 
 use super::{Run, hits, street_view, town, windows};
 
