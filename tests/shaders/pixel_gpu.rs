@@ -12,8 +12,8 @@ use shadowfit_wgpu::ShadowMap;
 use super::pictures::{Pictures, SIZE, Seen, random};
 use super::read_back::bytes;
 
-/// Texels of the maps, each way.
-const SIDE: u32 = 256;
+/// Texels of the maps, each way: those of smaller ones are cheaper drawn anew than in strips.
+const SIDE: u32 = 512;
 
 fn technique(format: MapFormat) -> Technique {
     Technique::default().with_resolution(SIDE, SIDE).with_format(format)
