@@ -50,7 +50,7 @@ const FINEST: i32 = 20 * 8;
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
 /// Share of the cost in the best place that a window must hold to stay where it is.
-const HOLDS: f32 = 0.993;
+const HOLDS: f32 = 0.985;
 
 /// Share of what it held that a window must hold for its best place not to be looked for out of turn.
 const LOOKS: f32 = 0.99;
