@@ -265,16 +265,10 @@ impl<'a> Content<'a> {
                 squared.is_none_or(|squared| most >= squared)
             };
             if let Some(receivers) = &self.receivers {
-                let offset = receivers.origin - view.origin;
-                for (run, min, max) in self.receiver_groups.runs() {
-                    if !may_be_farther(&squared, min, max) {
-                        continue;
-                    }
-                    for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
-                        let (min, max) = moved(aabb, offset);
-                        squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
-                    }
-                }
+                let groups = &self.receiver_groups;
+                each_of_list(receivers, groups, view.origin, &mut squared, may_be_farther, |squared, min, max| {
+                    *squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                });
             }
             self.each_standing(&mut squared, may_be_farther, |squared, min, max| {
                 *squared = Some(of_corner(min + to_eye, max + to_eye).max(squared.unwrap_or(0.0)));
@@ -448,7 +442,8 @@ impl<'a> Content<'a> {
     }
 }
 
-/// Passes on the boxes of a list, relative to an origin, with a state, in the runs for whose bounds `is_new` is true.
+/// Passes on the boxes of a list, relative to an origin, with a state, in the runs for whose bounds, which are relative to
+/// that of the fit, `is_new` is true.
 fn each_of_list<S>(
     list: &Boxes,
     groups: &Groups,
