@@ -123,7 +123,7 @@ impl Walk {
         self.eye += (self.forward.with_y(0.0).normalize() * speed / 60.0).as_dvec3();
     }
 
-    fn camera(&self) -> PerspectiveCamera {
+    pub(super) fn camera(&self) -> PerspectiveCamera {
         PerspectiveCamera {
             eye: self.eye,
             forward: self.forward,
@@ -142,7 +142,7 @@ pub(super) struct Drawn {
     /// Depths of each map, as they are looked up.
     pub(super) maps: Vec<Vec<f32>>,
     /// The maps that are read.
-    read: Vec<FittedMap>,
+    pub(super) read: Vec<FittedMap>,
     pub(super) passes: usize,
     pub(super) cleared: usize,
     pub(super) texels: u64,

@@ -1,15 +1,16 @@
 //! The plan as data: random histories of a small world, drawn into simulated maps.
 //!
 //! A simulated map has a sample every 128 texels of its layer, which holds the set of casters that were drawn there. Each
-//! frame's plan is carried out on it: clears, restored parts, pieces. Maps that do not wait must then hold what is there
-//! now, and maps that wait nothing static that is gone.
+//! frame's plan is carried out on it: clears, restored parts, pieces. Maps that are kept must then hold all that stands
+//! still now, and what moves in view; maps that are drawn for one frame what is in view; and maps that wait nothing
+//! static that is gone.
 
 use std::sync::LazyLock;
 
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use shadowfit::Boxes;
-use shadowfit::glam::Vec3;
+use shadowfit::glam::{Vec3, Vec4};
 use shadowfit::settings::CasterPolicy;
 
 use super::fixtures::{SIDE, fitted};
@@ -101,6 +102,8 @@ enum Event {
     Light(usize),
     Distance(usize),
     Pan([f64; 2]),
+    /// What lies in view is all, or begins in this direction, in radians, as many metres away.
+    View(Option<[f32; 2]>),
     Invalidate(Index),
     InvalidateAll,
 }
@@ -134,6 +137,7 @@ fn event() -> impl Strategy<Value = Event> {
         1 => (0..3_usize).prop_map(Event::Light),
         1 => (0..2_usize).prop_map(Event::Distance),
         3 => [-6.0..6.0, -6.0..6.0].prop_map(Event::Pan),
+        2 => proptest::option::weighted(0.8, [0.0..7.0_f32, -30.0..20.0_f32]).prop_map(Event::View),
         1 => number().prop_map(Event::Invalidate),
         1 => Just(Event::InvalidateAll),
     ]
@@ -161,6 +165,7 @@ struct World {
     light: usize,
     distance: usize,
     place: DVec3,
+    view: Option<[f32; 2]>,
     frame: u32,
     cache: MapCache,
     plan: FramePlan,
@@ -183,6 +188,7 @@ impl World {
             light: 0,
             distance: 0,
             place: PLACE,
+            view: None,
             frame: 0,
             cache: MapCache { settings, ..MapCache::default() },
             plan: FramePlan::default(),
@@ -296,6 +302,7 @@ impl World {
             Event::Light(light) => self.light = *light,
             Event::Distance(distance) => self.distance = *distance,
             Event::Pan([x, z]) => self.place += DVec3::new(*x, 0.01 * x, *z),
+            Event::View(view) => self.view = *view,
             Event::Invalidate(number) => self.invalidate(self.number(*number)),
             Event::InvalidateAll => self.cache.reset(),
         }
@@ -326,6 +333,15 @@ impl World {
         self.cache.invalidate(&self.objects[number].aabb(self.place), self.place);
     }
 
+    /// The casters that can shadow something in view.
+    fn in_view(&self) -> CasterVolume {
+        let mut volume = CasterVolume::everywhere(self.place);
+        if let Some([angle, from]) = self.view.filter(|_| self.cache.settings.culling == Culling::Swept) {
+            (volume.planes[0], volume.count) = (Vec4::new(angle.cos(), 0.0, angle.sin(), -from), 1);
+        }
+        volume
+    }
+
     /// Carries out the plan of a frame, and compares what the maps hold.
     fn draw(&mut self) -> Result<(), TestCaseError> {
         let maps: Vec<FittedMap> =
@@ -352,7 +368,8 @@ impl World {
         let is_due = core::array::from_fn(|map| self.cache.shows_gone(map, &everywhere));
         let choice = self.cache.choose(&frame, is_due);
         let mut plan = core::mem::take(&mut self.plan);
-        self.cache.plan(&choice, &frame, &[], &mut plan);
+        let volumes = if self.cache.needs_volumes(&choice) { &[self.in_view(); MAPS][..] } else { &[] };
+        self.cache.plan(&choice, &frame, volumes, &mut plan);
         for pass in &plan.passes {
             self.carry_out(&plan, pass, &choice.maps[pass.map], &listed);
         }
@@ -407,10 +424,15 @@ impl World {
     fn compare(&self, index: usize, map: &FittedMap, waits: bool) -> Result<(), TestCaseError> {
         let (size, wrap) = (map.projection.resolution, self.cache.wrap(index));
         let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
+        let (in_view, is_kept) = (self.in_view(), self.cache.is_cached(index));
         let mut expected = vec![Sample::default(); self.shown[index].len()];
         for object in &self.objects {
             let aabb = object.aabb(self.place);
             if self.cache.settings.culling != Culling::Off && !volume.intersects_aabb(aabb.min, aabb.max) {
+                continue;
+            }
+            let is_needed = (is_kept && !object.moves) || in_view.intersects_aabb(aabb.min, aabb.max);
+            if !is_needed && !waits {
                 continue;
             }
             let parts = covered(map, &aabb, self.place).stored(wrap, size);
