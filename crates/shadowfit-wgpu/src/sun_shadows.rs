@@ -215,7 +215,8 @@ impl SunShadows {
     /// With a [fade](SunSteps::fade) there is a second set of maps, of as many bytes. When the sun steps, its maps are
     /// drawn one by one, a map in each frame, while the old ones are read; then the look-up reads both for as many
     /// frames as the fade has, and the new ones alone after that. Maps that cannot be kept are drawn all at once. While
-    /// a step is under way no other begins. A sun that is farther from its maps than 2° was set elsewhere: there is no
+    /// a step is under way no other begins, and windows follow [what is seen](Self::record_demand) in the new maps alone,
+    /// so that they fade in, too. A sun that is farther from its maps than 2° was set elsewhere: there is no
     /// fade then, and all maps are drawn anew in that frame. So it is after a [cut](Self::cut).
     ///
     /// Returns whether the maps were recreated, as [`Self::set_technique`] does: where there is a fade now and was none,
@@ -366,6 +367,10 @@ impl SunShadows {
         self.fit(&held.input())?;
         let fitted = *self.fitter.fitted();
         self.prepare_present(queue, &held, &fitted)?;
+        // What this frame shows serves the newest maps, also before they are read.
+        if let (Some(last), Some(steps)) = (&mut self.last, &self.steps) {
+            last.direction = steps.newest().unwrap_or(last.direction);
+        }
         self.update_other(queue, &held, &step).inspect_err(|_| {
             // The passes of the other half are not drawn either.
             self.invalidate_all();
@@ -578,12 +583,14 @@ impl SunShadows {
         Ok(pass.record(encoder, depth, &seen, None)?)
     }
 
-    /// Tells what a picture showed. One light serves for the next, a step away.
+    /// Tells what a picture showed to the maps of the newest direction. Those that are read before them, or are faded out,
+    /// keep their windows where they are: a window that is replaced while it is read changes the shadow from one frame to
+    /// the next.
     fn see(&mut self, seen: Seen) {
-        if let Some(other) = self.other.as_mut().filter(|_| self.steps.is_some_and(|steps| steps.has_other())) {
-            other.fitter.see(seen.clone());
+        match &mut self.other {
+            Some(other) if self.steps.is_some_and(|steps| steps.is_drawing()) => other.fitter.see(seen),
+            _ => self.fitter.see(seen),
         }
-        self.fitter.see(seen);
     }
 
     /// Whether the device can count the visible points of depth buffers: those of OpenGL cannot.

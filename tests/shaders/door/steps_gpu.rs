@@ -71,6 +71,27 @@ impl Day {
         self.painter.draw(&self.device, &[(&self.sun, boxes)])
     }
 
+    /// Lets the sun see a wall that fills the view, so many metres ahead.
+    fn see_wall(&mut self, metres: f32) {
+        let Device { device, queue } = &self.device;
+        let (camera, convention) = (camera(EYE), DepthConvention::Reversed);
+        let clip_from_world = camera.clip_from_world(convention);
+        let depth = self.device.depth_texture();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let load = wgpu::LoadOp::Clear(clip_from_world.project_point3(camera.forward * metres).z);
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth,
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        assert_eq!(self.sun.record_demand(&mut encoder, &depth, clip_from_world, convention), Ok(true));
+        queue.submit([encoder.finish()]);
+        self.sun.wait_for_demand().expect("a device");
+    }
+
     /// Texels that the last frame drew.
     fn drawn(&self) -> u32 {
         let pieces = self.sun.passes().flat_map(|pass| pass.pieces());
@@ -158,6 +179,32 @@ fn gpu_a_fade_draws_a_map_in_a_frame_then_goes_from_the_old_shadow_to_the_new_on
     }
     assert_eq!(day.draw(STEP), plain, "and stays there");
     assert_eq!(day.drawn(), 0);
+}
+
+#[test]
+fn gpu_windows_follow_what_is_seen_in_the_maps_that_are_not_read_yet_and_fade_in_with_them() {
+    const LONG: u32 = 30;
+    let mut day = Day::settled(&technique(), STEPS.with_fade(LONG));
+    let places = |day: &Day| day.sun.maps().iter().map(|map| map.anchor).collect::<Vec<_>>();
+    for _ in 0..150 {
+        day.draw(0.0);
+        day.see_wall(40.0);
+    }
+    let (mut pictures, before) = (vec![day.draw(0.0)], places(&day));
+    // From the first frame of the step on something nearer is seen.
+    for frame in 0..MAPS as u32 + LONG {
+        pictures.push(day.draw(STEP));
+        if frame < MAPS as u32 {
+            assert_eq!(places(&day), before, "frame {frame}");
+        } else {
+            assert_eq!(day.drawn(), 0, "frame {frame}");
+            let seen = day.sun.fitter().seen().expect("a picture").demand().space.direction;
+            assert!((seen - sun_at(STEP).normalize()).length() < 1e-6, "frame {frame}");
+        }
+        day.see_wall(20.0);
+    }
+    let changes: Vec<u8> = pictures.windows(2).map(|pair| pair[0].difference(&pair[1])).collect();
+    assert!(changes.iter().all(|change| *change <= 255 / LONG as u8 + 2), "{changes:?}");
 }
 
 #[test]

@@ -111,9 +111,14 @@ impl StepState {
         self.stage
     }
 
-    /// Whether there are two.
-    pub(super) fn has_other(&self) -> bool {
-        self.stage != Stage::Held
+    /// Whether the maps of the newest direction are drawn and not read yet.
+    pub(super) fn is_drawing(&self) -> bool {
+        matches!(self.stage, Stage::Drawing { .. })
+    }
+
+    /// The newest direction of maps, a unit vector.
+    pub(super) fn newest(&self) -> Option<Vec3> {
+        self.light.held
     }
 
     /// Ends a step: the next frame has one set of maps, for what is the newest direction then.

@@ -58,9 +58,20 @@ fn the_next_maps_are_drawn_one_by_one_then_faded_in_then_alone() {
         assert!(matches!(state.stage(), Stage::Fading { share, .. } if share == f32::from(frame) / 4.0));
     }
     let step = next(&mut state, 6.0 * ANGLE);
-    assert_eq!((is_at(step.now, 2.0 * ANGLE), step.other, state.has_other()), (true, None, false));
+    assert_eq!((is_at(step.now, 2.0 * ANGLE), step.other, state.stage()), (true, None, Stage::Held));
     // The sun is far enough for another step.
     assert!(next(&mut state, 6.0 * ANGLE).begins);
+}
+
+#[test]
+fn what_is_seen_serves_the_newest_direction_from_the_first_frame_of_a_step_on() {
+    let mut state = held(4);
+    assert!(!state.is_drawing() && state.newest().is_some_and(|newest| is_at(newest, 0.0)));
+    for frame in 0..MAPS + 5 {
+        next(&mut state, 1.5 * ANGLE);
+        assert_eq!(state.is_drawing(), frame < MAPS, "frame {frame}");
+        assert!(state.newest().is_some_and(|newest| is_at(newest, 1.5 * ANGLE)), "frame {frame}");
+    }
 }
 
 #[test]
