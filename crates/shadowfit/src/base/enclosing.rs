@@ -71,6 +71,12 @@ impl<'a> HullBuilder<'a> {
         }) && (0..8).all(|i| centre.dot(DIRECTIONS[i]) + half.dot(DIRECTIONS[i].abs()) <= self.reach[i])
     }
 
+    /// Whether a rectangle along the axes, given by its middle and half its size, lies inside the points' bounds.
+    pub(crate) fn reaches_around(&self, centre: DVec2, half: DVec2) -> bool {
+        // Every other direction is an axis.
+        (0..8).step_by(2).all(|i| centre.dot(DIRECTIONS[i]) + half.dot(DIRECTIONS[i].abs()) <= self.reach[i])
+    }
+
     /// Adds a point.
     ///
     /// # Errors

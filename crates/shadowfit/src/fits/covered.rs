@@ -47,7 +47,7 @@ impl<'a> Covered<'a> {
             Covers::Corners => Self::corners(rule, content, axes, range),
             Covers::Sphere => Self::sphere(rule, content, axes, range),
             Covers::Views | Covers::Receivers => {
-                let hull = LightHull::of(rule.form.covers, content, axes, range, points)?;
+                let hull = LightHull::of((rule.form.covers, Detail::Outline), content, axes, range, points)?;
                 Ok(Self::hull(rule, content, &hull, range))
             }
         }
@@ -186,17 +186,27 @@ pub(crate) struct LightHull<'a> {
     pub(crate) is_empty: bool,
 }
 
+/// What a hull is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Detail {
+    /// All of it.
+    Outline,
+    /// The bounds of its outline along the axes, which are found much faster: the outline may lack corners.
+    Bounds,
+}
+
 /// Collects a light hull.
 struct Collector<'a> {
     axes: LightAxes,
+    detail: Detail,
     hull: HullBuilder<'a>,
     z: (f64, f64),
     farthest_squared: f64,
 }
 
 impl<'a> Collector<'a> {
-    fn new(axes: LightAxes, points: &'a mut [DVec2]) -> Self {
-        Self { axes, hull: HullBuilder::new(points), z: (f64::MAX, f64::MIN), farthest_squared: 0.0 }
+    fn new(axes: LightAxes, detail: Detail, points: &'a mut [DVec2]) -> Self {
+        Self { axes, detail, hull: HullBuilder::new(points), z: (f64::MAX, f64::MIN), farthest_squared: 0.0 }
     }
 
     fn push(&mut self, p: DVec3) -> Result<(), FitError> {
@@ -216,6 +226,13 @@ impl<'a> Collector<'a> {
         if centre.z - half.z < self.z.0 || centre.z + half.z > self.z.1 {
             return false;
         }
+        let far = min.abs().max(max.abs());
+        if self.detail == Detail::Bounds
+            && far.dot(far) <= self.farthest_squared
+            && self.hull.reaches_around(centre.truncate(), half.truncate())
+        {
+            return true;
+        }
         self.hull.holds_rectangle(centre.truncate(), half.truncate())
             || box_corners(min, max).into_iter().all(|corner| self.hull.holds(self.axes.project(corner).truncate()))
     }
@@ -229,21 +246,21 @@ impl<'a> Collector<'a> {
 impl<'a> LightHull<'a> {
     /// The hull of what a rule covers.
     pub(crate) fn of(
-        covers: Covers,
+        (covers, detail): (Covers, Detail),
         content: &Content,
         axes: LightAxes,
         range: Range,
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
         match covers {
-            Covers::Receivers => Self::of_receivers(content, axes, range, points),
+            Covers::Receivers => Self::of_receivers(detail, content, axes, range, points),
             Covers::Views | Covers::Sphere | Covers::Corners => Self::of_views(content, axes, range, points),
         }
     }
 
     /// The hull of the views' slices.
     fn of_views(content: &Content, axes: LightAxes, range: Range, points: &'a mut [DVec2]) -> Result<Self, FitError> {
-        let mut collector = Collector::new(axes, points);
+        let mut collector = Collector::new(axes, Detail::Outline, points);
         content.corners(range).try_for_each(|corner| collector.push(corner))?;
         collector.finish(false).checked()
     }
@@ -251,6 +268,7 @@ impl<'a> LightHull<'a> {
     /// The hull of the receivers' boxes clipped to the views' slices; that of the slices themselves
     /// where no boxes are known or none is in view.
     pub(crate) fn of_receivers(
+        detail: Detail,
         content: &Content,
         axes: LightAxes,
         range: Range,
@@ -259,7 +277,7 @@ impl<'a> LightHull<'a> {
         if !content.knows_receivers() {
             return Self::of_views(content, axes, range, points);
         }
-        let mut collector = Collector::new(axes, points);
+        let mut collector = Collector::new(axes, detail, points);
         let is_new = |collector: &Collector, min, max| !collector.holds(min, max);
         content.receivers_in(range, &mut collector, is_new, |collector, _, slice, (min, max)| {
             if collector.holds(min, max) { Ok(()) } else { slice.clip(min, max, &mut |p| collector.push(p)) }

@@ -23,7 +23,7 @@ use crate::base::checks::UNIT;
 use crate::base::{FitError, box_corners, checks};
 use crate::bias::{HARDWARE_SNAP, Reach};
 use crate::content::Content;
-use crate::fits::covered::LightHull;
+use crate::fits::covered::{Detail, LightHull};
 use crate::fits::{Covers, FitInput, LightProjection, Scratch};
 use crate::light::{LightAxes, Outline, OutlineScratch};
 use crate::map::FittedMap;
@@ -211,7 +211,7 @@ pub fn prove(
             let (corners, distance) = whole_map(fit, &axes, offset);
             nearest(Outline::new(&axes, &corners, raster_reach(fit, distance)))
         } else {
-            let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
+            let hull = LightHull::of((Covers::Receivers, Detail::Outline), &content, axes, range, points)?;
             nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
         };
         if by < 0.0 {

@@ -133,14 +133,13 @@ impl Sizes {
 fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
     for (index, view) in content.views().enumerate() {
         let slabs = Slabs::new(&view, bins);
-        content.each_receiver(
-            index,
-            extents,
-            |_, _, _, _| true,
-            |extents, depths, min, max| {
-                collect_box(extents, &slabs, directions, depths, min, max);
-            },
-        );
+        let is_new = |extents: &[Dop; BINS], depths, min, max| {
+            let (low, high) = directions.extent(min, max, HIERARCHY);
+            slabs.reached(depths).any(|bin| !extents[bin].holds(&low, &high))
+        };
+        content.each_receiver(index, extents, is_new, |extents, depths, min, max| {
+            collect_box(extents, &slabs, directions, depths, min, max);
+        });
     }
 }
 
@@ -154,7 +153,7 @@ fn collect_box(
     max: DVec3,
 ) {
     let reached = slabs.reached(depths);
-    let (low, high) = directions.extent(min, max);
+    let (low, high) = directions.extent(min, max, 0.0);
     // Bins whose extent the box cannot widen, the first at 1.
     let mut is_held = [true; BINS + 2];
     let mut are_all_held = true;
@@ -265,9 +264,10 @@ impl Directions {
         along
     }
 
-    /// Least and greatest coordinates of a box along all directions.
-    fn extent(&self, min: DVec3, max: DVec3) -> ([f32; DIRECTIONS], [f32; DIRECTIONS]) {
+    /// Least and greatest coordinates of a box along all directions, widened by a share of its farthest coordinates.
+    fn extent(&self, min: DVec3, max: DVec3, share: f32) -> ([f32; DIRECTIONS], [f32; DIRECTIONS]) {
         let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+        let half = half + (centre.abs() + half).element_sum() * share;
         let (mut low, mut high) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
         for i in 0..DIRECTIONS {
             let along = self.x[i] * centre.x + self.y[i] * centre.y + self.z[i] * centre.z;
@@ -277,6 +277,10 @@ impl Directions {
         (low, high)
     }
 }
+
+/// Share of its coordinates by which a box is widened so that its extent surely holds those of the boxes in it, as they
+/// are rounded.
+const HIERARCHY: f32 = 32.0 * f32::EPSILON;
 
 /// The planes between the bins, as one view has them.
 pub(super) struct Slabs {

@@ -21,7 +21,7 @@ use crate::base::checks::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::content::{Content, MAX_SPHERE_VIEWS};
 use crate::fits;
-use crate::fits::covered::LightHull;
+use crate::fits::covered::{Detail, LightHull};
 use crate::fits::rectangle::Rectangle;
 use crate::fits::{Constraint, FitInput, FitRule, Frame, Snapping, Volume, near_plane};
 use crate::light::grid::Grid;
@@ -65,7 +65,7 @@ impl Holder<'_, '_> {
         };
         let is_of_light = |held: &HeldMap| held.is_of(&self.frame.light.axes(rule.form.roll), rule);
         let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
-        let needed = self.needed(&held, rule, slice, points)?;
+        let needed = self.needed(&held, Detail::Bounds, slice, points)?;
         let Some(kept) = self.keep(&held, &needed, rule) else {
             return self.make(&fresh(points)?, rule, slice, points);
         };
@@ -73,7 +73,8 @@ impl Holder<'_, '_> {
         let waste = f64::from(self.settings.max_waste);
         let held_size = held.texel * rule.usable();
         let held_area = held_size.x * held_size.y;
-        if held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste {
+        let is_small = |needed: &Needed| held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste;
+        if is_small(&needed) || rule.serves_all && is_small(&self.needed(&held, Detail::Outline, slice, points)?) {
             return Ok(kept);
         }
         let fresh = fresh(points)?;
@@ -120,9 +121,13 @@ impl Holder<'_, '_> {
         Some(kept)
     }
 
-    /// What must be covered and where the near plane must be, along the held axes.
-    fn needed(&self, held: &HeldMap, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
-        let hull = LightHull::of(rule.form.covers, self.frame.content, held.axes, slice, points)?;
+    /// What must be covered and where the near plane must be, along the held axes. Its area may come out too small
+    /// where no more than bounds are asked for.
+    fn needed(&self, held: &HeldMap, detail: Detail, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
+        let rule = self.frame.rule;
+        // Casters are looked for over the outline, or else over the whole map.
+        let detail = if rule.serves_all { detail } else { Detail::Outline };
+        let hull = LightHull::of((rule.form.covers, detail), self.frame.content, held.axes, slice, points)?;
         let extent = (held.texel * held.resolution).max_element();
         let rounding = (hull.farthest + extent) * ROUNDING;
         let pad = rounding + rule.margin;
@@ -202,7 +207,7 @@ impl Holder<'_, '_> {
         let origin = self.frame.input.views[0].origin;
         let grid = volume.snap(origin, rule);
         let mut map = HeldMap::new(&volume, grid, rule, fresh);
-        let needed = self.needed(&map, rule, slice, points)?;
+        let needed = self.needed(&map, Detail::Bounds, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
         let (z, near_set_by) = self.depths(&map, &needed, rule);
         let now = (z.0 + anchor, z.1 + anchor);

@@ -54,7 +54,7 @@ pub(crate) fn place(
     points: &mut [DVec2],
 ) -> Result<(PlacedMaps, HeldSlices), FitError> {
     // 1. Where one slice ends and the next begins.
-    let splits = Chooser { frame, settings }.held_or_chosen(before.map(|before| before.splits))?;
+    let splits = Chooser::new(frame, settings).held_or_chosen(before.map(|before| before.splits))?;
     // 2. The volumes of their maps: new ones, or those of the frame before while they serve.
     let mut placer = Placer { frame, settings, splits: splits.splits, points };
     let mut held = HeldSlices { splits, maps: [None; MAX_MAPS], depths: [None; MAX_MAPS] };
@@ -70,7 +70,7 @@ pub(crate) fn place(
 
 /// The fewest slices that are enough; see [`fewest_maps`](crate::fewest_maps).
 pub(crate) fn fewest(frame: &Frame, settings: &Slices, waste: f64) -> u32 {
-    Chooser { frame, settings }.fewest(waste)
+    Chooser::new(frame, settings).fewest(waste)
 }
 
 /// Places the slices of a frame.

@@ -30,39 +30,34 @@ const MEAN: f64 = 0.01;
 /// are all worse.
 const PER_CLASS: f64 = 0.5;
 
-/// Bins at which the maps begin; the last one's end follows.
-pub(super) struct BinSplits {
-    pub(super) bins: [usize; MAX_MAPS + 1],
-    /// The bound that was reached: log2 of map width per view depth.
-    pub(super) quality: f64,
-}
-
-/// The best splits into `count` maps.
-pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> BinSplits {
+/// Bins at which the best splits into `count` maps begin; the last one's end follows.
+pub(super) fn best(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> [usize; MAX_MAPS + 1] {
     let search = Search::new(bins, weights, sizes);
-    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| bins.count * i.min(count) / count);
-    let known = search.quantile(&even[..=count]);
-    let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
-    BinSplits { bins: search.best(count, bound), quality: bound }
+    search.best(count, search.least_bound(count, None))
 }
 
-/// The bound that given splits reach.
-pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, splits: &[usize]) -> f64 {
-    Search::new(bins, weights, sizes).quantile(splits)
+/// Whether the bound that given splits reach is at most `waste` times that of the best ones.
+pub(super) fn is_near_best(bins: &Bins, weights: &Weights, sizes: &Sizes, splits: &[usize], waste: f64) -> bool {
+    let search = Search::new(bins, weights, sizes);
+    let least = search.quantile(splits) - libm::log2(waste);
+    search.least_bound(splits.len() - 1, Some(least)) >= least
 }
 
 /// The fewest maps whose best splits reach a bound `waste` times that of `count` maps.
 pub(super) fn fewest(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize, waste: f64) -> usize {
-    let bound = least_quantile(bins, weights, sizes, count).quality + libm::log2(waste);
     let search = Search::new(bins, weights, sizes);
+    let bound = search.least_bound(count, None) + libm::log2(waste);
     (1..count).find(|fewer| search.is_feasible(*fewer, bound)).unwrap_or(count)
 }
 
-/// The least number above which a condition holds, between one where it may not and one where it
-/// does.
-fn bisect(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+/// The least number above which a condition holds, between one where it may not and one where it does; no closer than
+/// to tell on which side of `enough` it lies.
+fn bisect(low: f64, high: f64, enough: Option<f64>, mut holds: impl FnMut(f64) -> bool) -> f64 {
     let (mut low, mut high) = (low, high);
     for _ in 0..STEPS {
+        if enough.is_some_and(|enough| low >= enough || high < enough) {
+            break;
+        }
         let middle = (low + high) * 0.5;
         if holds(middle) { high = middle } else { low = middle }
     }
@@ -80,32 +75,6 @@ struct Search<'a> {
     classes: usize,
     /// Bins by which each class shifts the needed texel size.
     shifts: [f64; CLASSES],
-}
-
-/// Weights over a bound of runs of bins, each computed when it is first asked for.
-struct OverTable<'a> {
-    search: &'a Search<'a>,
-    bound: f64,
-    /// By first bin and number of bins less one.
-    weights: [[f64; BINS]; BINS],
-}
-
-/// A weight that has not been asked for.
-const UNKNOWN: f64 = f64::MAX;
-
-impl<'a> OverTable<'a> {
-    #[expect(clippy::large_stack_arrays, reason = "32 KiB, for the time that it takes to choose splits")]
-    fn new(search: &'a Search<'a>, bound: f64) -> Self {
-        Self { search, bound, weights: [[UNKNOWN; BINS]; BINS] }
-    }
-
-    fn over(&mut self, first: usize, end: usize) -> f64 {
-        let weight = &mut self.weights[first][end - first - 1];
-        if *weight == UNKNOWN {
-            *weight = self.search.over(first, end, self.bound);
-        }
-        *weight
-    }
 }
 
 impl<'a> Search<'a> {
@@ -133,8 +102,15 @@ impl<'a> Search<'a> {
         let high = f64::from(largest) - self.bins.log_near + PER_CLASS * CLASSES as f64;
         let over = |bound: f64| runs().map(|(first, end)| self.over(first, end, bound)).sum::<f64>();
         // One more octave for each halving keeps the same precision as the search's.
-        let coarse = bisect(high - WIDEST, high, |bound| over(bound) <= OVER);
-        bisect(coarse - WIDEST / f64::from(1_u32 << STEPS), coarse, |bound| over(bound) <= OVER)
+        let coarse = bisect(high - WIDEST, high, None, |bound| over(bound) <= OVER);
+        bisect(coarse - WIDEST / f64::from(1_u32 << STEPS), coarse, None, |bound| over(bound) <= OVER)
+    }
+
+    /// The least bound that splits into `count` maps reach, [as closely](bisect) as is `enough`.
+    fn least_bound(&self, count: usize, enough: Option<f64>) -> f64 {
+        let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| self.bins.count * i.min(count) / count);
+        let known = self.quantile(&even[..=count]);
+        bisect(known - OCTAVES, known, enough, |bound| self.is_feasible(count, bound))
     }
 
     /// Weight of the points of a run that lie over the bound. It grows with the run.
@@ -160,65 +136,59 @@ impl<'a> Search<'a> {
 
     /// Whether any splits leave no more than the allowed share over a bound.
     fn is_feasible(&self, count: usize, bound: f64) -> bool {
-        let mut least = [f64::MAX; BINS + 1];
-        least[0] = 0.0;
-        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
-        for map in 0..count {
-            let mut next = [f64::MAX; BINS + 1];
-            for (first, before) in least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before <= OVER)
-            {
-                for (end, next) in next.iter_mut().enumerate().take(bins + 1).skip(first + 1) {
-                    let total = before + table.over(first, end);
+        let bins = self.bins.count;
+        // By number of maps and the bin at which they end.
+        let mut least = [[f64::MAX; BINS + 1]; MAX_MAPS + 1];
+        least[0][0] = 0.0;
+        for first in 0..bins {
+            // Weights of the runs from here, each computed when it is first asked for.
+            let (mut over, mut known) = ([0.0; BINS + 1], first);
+            for map in 0..count {
+                let before = least[map][first];
+                if before > OVER {
+                    continue;
+                }
+                for (end, least) in least[map + 1].iter_mut().enumerate().take(bins + 1).skip(first + 1) {
+                    if end > known {
+                        (over[end], known) = (self.over(first, end, bound), end);
+                    }
+                    let total = before + over[end];
                     if total > OVER {
                         break;
                     }
-                    *next = next.min(total);
+                    *least = least.min(total);
                 }
             }
-            least = next;
         }
-        least[bins] <= OVER
+        least[count][bins] <= OVER
     }
 
     /// The splits that leave the least weight over the bound and, of those, have the least error.
     fn best(&self, count: usize, bound: f64) -> [usize; MAX_MAPS + 1] {
-        let mut least = [f64::MAX; BINS + 1];
-        least[0] = 0.0;
-        let mut from = [[0_u8; BINS + 1]; MAX_MAPS];
-        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
-        for (map, from) in from.iter_mut().enumerate().take(count) {
-            let mut next = [f64::MAX; BINS + 1];
-            // The last map holds all that is left.
-            let nearest_end = if map + 1 == count { bins } else { 0 };
-            for (first, before) in
-                least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before < f64::MAX)
-            {
-                for end in (first + 1).max(nearest_end)..=bins {
-                    let error = MEAN * self.error(first, end);
-                    // No weight is below 0.
-                    if before + error - NOTHING >= next[end] {
-                        continue;
-                    }
-                    let total = before + table.over(first, end) + error;
-                    if total < next[end] {
-                        (next[end], from[end]) = (total, first as u8);
+        let bins = self.bins.count;
+        // By number of maps and the bin at which they end, with that at which the last one begins.
+        let mut least = [[(f64::MAX, 0); BINS + 1]; MAX_MAPS + 1];
+        least[0][0].0 = 0.0;
+        for first in 0..bins {
+            for end in first + 1..=bins {
+                let (over, error) = (self.over(first, end, bound), MEAN * self.error(first, end));
+                for map in 0..count {
+                    let total = least[map][first].0 + over + error;
+                    if total < least[map + 1][end].0 {
+                        least[map + 1][end] = (total, first);
                     }
                 }
             }
-            least = next;
         }
         let mut splits = [bins; MAX_MAPS + 1];
         let mut end = bins;
         for map in (0..count).rev() {
-            end = usize::from(from[map][end]);
+            end = least[map + 1][end].1;
             splits[map] = end;
         }
         splits
     }
 }
-
-/// More than the rounding of a weight.
-const NOTHING: f64 = 1e-12;
 
 /// Octaves that the bound of given splits is searched in.
 const WIDEST: f64 = 64.0;

@@ -3,6 +3,8 @@
 //! Each map gets a range of view depths of its own. Fixed schemes place the splits by depth alone;
 //! content-aware schemes place them where the most visible pixels gain.
 
+use core::cell::OnceCell;
+
 use crate::base::checks::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::fits::{Covers, Frame};
@@ -12,7 +14,7 @@ use crate::view::{Range, RayCount};
 
 use super::bins::{BINS, Bins, Splits, Weights, even, weights_of_boxes, weights_of_histogram};
 use super::extents::{Maps, Sizes, slice_bin};
-use super::optimise::{self, BinSplits, least_quantile, quantile};
+use super::optimise;
 
 /// The splits of a fixed scheme over a range of view depths: `count` maps.
 ///
@@ -49,11 +51,26 @@ const COMPARE_EVERY: u32 = 8;
 
 /// Chooses the splits of a frame.
 pub(super) struct Chooser<'a, 'b> {
-    pub(super) frame: &'a Frame<'a, 'b>,
-    pub(super) settings: &'a Slices,
+    frame: &'a Frame<'a, 'b>,
+    settings: &'a Slices,
+    /// Made once, whether held splits are compared with the best ones, new ones are chosen, or both.
+    estimate: OnceCell<Estimate>,
 }
 
-impl Chooser<'_, '_> {
+/// What the best splits follow from.
+struct Estimate {
+    bins: Bins,
+    /// What is visible in each bin.
+    weights: Weights,
+    /// How large the map of any run of bins would be.
+    sizes: Sizes,
+}
+
+impl<'a, 'b> Chooser<'a, 'b> {
+    pub(super) fn new(frame: &'a Frame<'a, 'b>, settings: &'a Slices) -> Self {
+        Self { frame, settings, estimate: OnceCell::new() }
+    }
+
     /// This frame's splits: held ones while they serve.
     pub(super) fn held_or_chosen(&self, held: Option<HeldSplits>) -> Result<HeldSplits, FitError> {
         let is_held = self.settings.stabilise != Stabilise::Off;
@@ -137,13 +154,12 @@ impl Chooser<'_, '_> {
 
     /// The best splits for what is visible.
     fn by_content(&self, spread: (f64, f64)) -> Splits {
-        let bins = self.bins(spread);
-        let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
-        let BinSplits { bins: chosen, .. } = least_quantile(&bins, &weights, &sizes, self.settings.count as usize);
+        let Estimate { bins, weights, sizes } = self.estimate(spread);
+        let chosen = optimise::best(bins, weights, sizes, self.settings.count as usize);
         let mut splits = [0.0; MAX_MAPS + 1];
-        let (beyond, mut next) = (self.read_beyond(&bins), 0);
+        let (beyond, mut next) = (self.read_beyond(bins), 0);
         for (split, bin) in splits.iter_mut().zip(chosen) {
-            let bin = slice_bin(&bins, bin, beyond).max(next);
+            let bin = slice_bin(bins, bin, beyond).max(next);
             *split = bins.start(bin) as f32;
             // Each map has a slice of its own.
             next = bin + 1;
@@ -190,21 +206,27 @@ impl Chooser<'_, '_> {
             // Without bounds the far end is what the splits have to reach.
             return is_near(bounded.0, held.0) && (bounded == now || is_near(bounded.1, held.1));
         }
-        let bins = self.bins(now);
-        let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
-        let best = least_quantile(&bins, &weights, &sizes, count);
+        let Estimate { bins, weights, sizes } = self.estimate(now);
         let mut chosen = [bins.count; MAX_MAPS + 1];
         for (bin, split) in chosen.iter_mut().zip(splits).take(count) {
             *bin = bins.nearest(f64::from(*split));
-            *bin = if *bin == 0 { 0 } else { (*bin + self.read_beyond(&bins)).min(bins.count) };
+            *bin = if *bin == 0 { 0 } else { (*bin + self.read_beyond(bins)).min(bins.count) };
         }
-        quantile(&bins, &weights, &sizes, &chosen[..=count]) <= best.quality + libm::log2(waste)
+        optimise::is_near_best(bins, weights, sizes, &chosen[..=count], waste)
     }
 
     /// The fewest maps whose best splits reach `waste` times the bound of the full count.
     pub(super) fn fewest(&self, waste: f64) -> u32 {
-        let bins = self.bins(self.spread());
-        optimise::fewest(&bins, &self.weights(&bins), &self.sizes(&bins), self.settings.count as usize, waste) as u32
+        let Estimate { bins, weights, sizes } = self.estimate(self.spread());
+        optimise::fewest(bins, weights, sizes, self.settings.count as usize, waste) as u32
+    }
+
+    /// What the best splits over the given depths follow from.
+    fn estimate(&self, spread: (f64, f64)) -> &Estimate {
+        self.estimate.get_or_init(|| {
+            let bins = self.bins(spread);
+            Estimate { bins, weights: self.weights(&bins), sizes: self.sizes(&bins) }
+        })
     }
 
     /// How large the map of any run of bins would be.
