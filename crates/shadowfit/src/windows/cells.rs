@@ -19,13 +19,17 @@ pub(super) type PerCell = [f32; MAX_CELLS];
 /// surfaces seen at grazing angles ask for arbitrarily fine texels.
 const FINEST: f32 = 0.02;
 
+/// A little more than one, by which cells that lie in a rectangle but for rounding do so wholly. What rounding would
+/// leave of them has no place: it would be all that the last of many windows are put by.
+const INSIDE: f64 = 1.0 + 1e-5;
+
 /// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
 /// at a time are computed with.
 pub(super) struct Cells {
     /// Middles, relative to the origin of the fit, in metres of the plane.
     pub(super) x: PerCell,
     pub(super) y: PerCell,
-    /// Halves of the sides, in metres, and one over the sides.
+    /// Halves of the sides, in metres, and one over the sides, times [`INSIDE`].
     pub(super) half: PerCell,
     per_side: PerCell,
     /// Numbers of points, or shares of them.
@@ -163,7 +167,7 @@ impl Cells {
             }
             let (middle, half, texel) = space.cell(*index as usize);
             let texel = (texel as f32).max(finest * space.texel);
-            let (middle, half, per_side) = ((middle + offset).as_vec2(), half as f32, (0.5 / half) as f32);
+            let (middle, half, per_side) = ((middle + offset).as_vec2(), half as f32, (INSIDE * 0.5 / half) as f32);
             let cost = weight * super::cost_of(1.0 / texel);
             // Sums over all cells stay finite: a grid that was never filled may hold any numbers.
             let moment = (middle.abs().max_element() + half + 1.0) * cost * MAX_CELLS as f32;
@@ -262,7 +266,8 @@ pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
     enter(&mut sums, cells, left, (corner, pitch));
     sum_rows(&mut sums, 1);
     sum_rows(&mut sums, 4);
-    let (mut most, mut at) = (f32::MIN, (0, 0));
+    // Around the middle, where nothing is left.
+    let (mut most, mut at) = (0.0, ((RASTER - ACROSS) / 2, (RASTER - ACROSS) / 2));
     for (y, row) in sums[..PLACES].iter().enumerate() {
         let row = sum_columns::<4>(&sum_columns::<1>(row));
         let highest = row[..PLACES].iter().fold(f32::MIN, |highest, sum| greater(*sum, highest));

@@ -19,8 +19,9 @@
 //! from the world's origin in f64. So a window moves by whole texels, and what is in two frames of it is
 //! rasterised alike. Depth ranges are held too. Under a low sun ground is foreshortened along one axis, so
 //! texels are finer up the light's plane than along the horizon, by the sine of the light's elevation to the
-//! power of 0.62, at least a quarter, rounded to eighths of an octave; the roll follows the horizon of
-//! [`up`](crate::settings::MapSettings::up) then, and the shortest arc from straight down where
+//! power of 0.55, at least a quarter, rounded to eighths of an octave. The roll follows the horizon of
+//! [`up`](crate::settings::MapSettings::up) then, turned by an angle whose tangent is 0.45 of that ratio, so that
+//! shadows of upright edges run across the columns of texels; it is the shortest arc from straight down where
 //! texels are square.
 //!
 //! **Sharp.** Each visible point asks for a texel that is as wide as the point's pixel along its
@@ -30,10 +31,10 @@
 //! the sum of s^(-3/2) over the points inside, those in finer windows left out, is greatest, whatever
 //! its texels; all places are compared by sums over a raster. The sizes are searched one at a time, frame
 //! after frame, in a background plan, and in a second one that is restarted regularly. A window that is drawn
-//! moves as little as it can, when it holds less than 98.5% of what it could. One of them is replaced by its
-//! counterpart in the background plan when all of them together cost 1.35 times as much as the plan; this limit
-//! falls to 1.1 within a second (at 60 frames a second) after the last replacement. Several are replaced at once
-//! only in the frame in which the first demand grid arrives.
+//! moves as little as it can, when it holds less than 99.3% of what it could. One of them, or some that
+//! follow one another, are replaced by their counterparts in the background plan when all of them together cost
+//! 1.35 times as much as the plan; this limit falls to 1.1 within a second (at 60 frames a second) after the last
+//! replacement. As many as it takes are replaced at once only in the frame in which the first demand grid arrives.
 //!
 //! **Whole.** The last window holds the boxes of all receivers in view, and every window's depth range
 //! holds all receivers' and casters' boxes over it, seen or not: what stands still need not be drawn

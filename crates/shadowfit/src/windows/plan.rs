@@ -50,7 +50,7 @@ const FINEST: i32 = 20 * 8;
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
 /// Share of the cost in the best place that a window must hold to stay where it is.
-const HOLDS: f32 = 0.985;
+const HOLDS: f32 = 0.993;
 
 /// Share of what it held that a window must hold for its best place not to be looked for out of turn.
 const LOOKS: f32 = 0.99;
@@ -146,38 +146,40 @@ impl Planner<'_> {
         }
     }
 
-    /// The drawn windows, while they cost no more than the best plan times `most`. Beyond that some are replaced by
-    /// their counterparts in it: with `at_once` as many as it takes to be nearly as good, else a single one with
-    /// other texels, the one that gains most. Where none gains, the one that loses least makes way for others.
+    /// The drawn windows, while they cost no more than the best plan times `most`. Beyond that some that follow one
+    /// another are replaced by their counterparts in it, those that gain most: once, or `at_once` until it is nearly as
+    /// good. Most often that is a single one; but its texels must lie between those of its neighbours.
     pub(super) fn follow(&self, drawn: Plan, target: &Plan, most: f32, at_once: bool) -> Plan {
         let found = self.cost(target);
-        let mut cost = self.cost(&drawn);
-        if cost <= found * most {
-            return drawn;
-        }
-        let mut plan = drawn;
-        while cost > found * SERVES {
-            let readers = self.readers(&plan);
-            let mut best: Option<(f32, Plan)> = None;
-            for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
-                let mut other = plan;
-                (other.steps[i], other.rects[i]) = (target.steps[i], target.rects[i]);
-                let is_new = if at_once { other != plan } else { other.steps != plan.steps };
-                // What is gained for each point whose texels change.
-                let gain = (cost - self.cost(&other)) / (readers + FEW);
-                let may_be = is_new && self.is_in_order(&other.steps) && (gain > 0.0 || !at_once);
-                if may_be && best.is_none_or(|(most, _)| gain > most) {
-                    best = Some((gain, other));
-                }
-            }
-            let Some((_, other)) = best else { return if at_once { *target } else { plan } };
-            plan = other;
-            if !at_once {
-                return plan;
-            }
-            cost = self.cost(&plan);
+        let (mut plan, mut cost, mut limit) = (drawn, self.cost(&drawn), most);
+        while cost > found * limit {
+            let Some((other, its)) = self.replaced(&plan, cost, target) else { return plan };
+            (plan, cost, limit) = (other, its, if at_once { SERVES } else { f32::MAX });
         }
         plan
+    }
+
+    /// A plan with some windows of another one that follow one another, and its cost: those with which it gains most.
+    fn replaced(&self, plan: &Plan, cost: f32, target: &Plan) -> Option<(Plan, f32)> {
+        let readers = self.readers(plan);
+        let mut best: Option<(f32, (Plan, f32))> = None;
+        for first in 0..self.count - 1 {
+            let (mut other, mut changed) = (*plan, FEW);
+            for i in first..self.count - 1 {
+                (other.steps[i], other.rects[i]) = (target.steps[i], target.rects[i]);
+                changed += readers[i];
+                if !self.is_in_order(&other.steps) {
+                    continue;
+                }
+                let its = self.cost(&other);
+                // What is gained for each point whose texels change.
+                let gain = (cost - its) / changed;
+                if gain > 0.0 && best.is_none_or(|(most, _)| gain > most) {
+                    best = Some((gain, (other, its)));
+                }
+            }
+        }
+        best.map(|(_, replaced)| replaced)
     }
 
     /// Shares of the points that read each window.

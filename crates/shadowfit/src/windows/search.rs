@@ -3,7 +3,7 @@
 //! Three plans are kept: the windows that are drawn, the best plan found so far, and a second search that is
 //! restarted from scratch whenever it has tried all its changes. Nobody sees the two searches. Drawn windows
 //! keep their texels and move as little as they can; only where the best plan is better by enough, one of them
-//! is replaced by its counterpart there.
+//! is replaced by its counterpart there, or some that follow one another.
 
 use glam::DVec3;
 

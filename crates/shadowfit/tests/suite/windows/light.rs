@@ -1,8 +1,8 @@
 //! Windows under a light that is rounded, that steps, and that goes through the vertical.
 
-use shadowfit::FittedMaps;
-use shadowfit::glam::{DQuat, DVec3, Vec3};
+use shadowfit::glam::{DQuat, DVec3, Vec3, Vec4};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::{FittedMap, FittedMaps};
 
 use super::{Run, hits, street_view, town, windows};
 
@@ -105,6 +105,36 @@ fn nothing_is_uncovered_where_light_and_camera_leap() {
         for hit in hits(&view, world.origin, &world.boxes, f64::MAX) {
             let free = maps[5].projection.free_texels(view.eye + hit.point);
             assert!(free.is_some_and(|free| free > 2.0), "{free:?} texels in frame {frame}");
+        }
+    }
+}
+
+/// Rows that an edge climbs for each column of texels, or columns that it passes for each row: the lesser one. A filter
+/// of 5 × 5 evens out the error of edges that have neither near to 0.
+fn slant(map: &FittedMap, edge: DVec3) -> f64 {
+    let rows = map.projection.light_from_world.transpose();
+    let texel = map.projection.texel_size.as_dvec2();
+    let along = |row: Vec4, side: f64| (row.truncate().as_dvec3().dot(edge) / side).abs();
+    let (across, up) = (along(rows.x_axis, texel.x), along(rows.y_axis, texel.y));
+    (across / up).min(up / across)
+}
+
+/// Tangent of the angle by which texels are turned, over their height by their width.
+const TURN: f64 = 0.45;
+
+#[test]
+fn shadows_of_upright_edges_run_across_the_columns_of_texels() {
+    let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.1, -1.0));
+    for elevation in [5.0_f64, 15.0, 25.0, 35.0, 45.0, 60.0] {
+        for azimuth in [0.0_f64, 37.0, 90.0, 200.0] {
+            let (e, a) = (elevation.to_radians(), azimuth.to_radians());
+            let toward = DVec3::new(e.cos() * a.sin(), e.sin(), e.cos() * a.cos());
+            let maps = Run::new(town(), &windows(4, 1024)).frame(&view, -toward.as_vec3());
+            let texel = maps[0].projection.texel_size;
+            let shape = f64::from(texel.y / texel.x);
+            let (upright, level) = (slant(&maps[0], DVec3::Y), slant(&maps[0], DVec3::Y.cross(toward)));
+            assert!((upright - shape * shape * TURN).abs() < 1e-3, "{upright} at {elevation}° with texels 1 : {shape}");
+            assert!((level - TURN).abs() < 1e-3, "{level} at {elevation}°");
         }
     }
 }

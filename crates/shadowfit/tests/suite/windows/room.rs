@@ -73,12 +73,12 @@ const STAY: usize = 90;
 /// Frames that a fitter has which begins anew, until its search has ended.
 const ANEW: usize = 90;
 
-/// Greatest 95% quantile of pixels per texel over that of a fitter that begins anew.
-const LIMIT: f64 = 1.25;
+/// Greatest 95% quantile of pixels per texel over that of a fitter that begins anew. What is drawn may cost 1.1 to 1.35
+/// times the best plan before it is replaced; that cost is a mean, so that the quantile may differ by more.
+const LIMIT: f64 = 1.45;
 
-/// The same for eight windows, whose search takes longer: 1.47 is what they reach in the worst station, and two of six
-/// are above the limit of four.
-const LIMIT_OF_EIGHT: f64 = 1.5;
+/// The same for the geometric mean of all stations.
+const MEAN_LIMIT: f64 = 1.1;
 
 #[test]
 fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
@@ -88,7 +88,7 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
     let tower = street_view(DVec3::new(0.0, 25.0, 30.0), Vec3::new(-0.5, -0.2, 1.0));
     let stations =
         [("table", table), ("corner", corner), ("plain", plain), ("height", tower), ("plain", plain), ("table", table)];
-    let mut failures = Vec::new();
+    let (mut failures, mut logs) = (Vec::new(), Vec::new());
     for (light, count) in
         [(Vec3::new(0.5, -0.8, 0.3), 4), (Vec3::new(0.8, -0.4, 0.3), 4), (Vec3::new(0.5, -0.8, 0.3), 8)]
     {
@@ -115,10 +115,13 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
             let line =
                 format!("{count} windows, {name}: {first:.2} on arrival, {last:.2} after {STAY} frames, of {fresh:.2}");
             println!("{line}");
-            let limit = if count == 4 { LIMIT } else { LIMIT_OF_EIGHT };
-            failures.extend((last > limit).then_some(line));
+            failures.extend((last > LIMIT).then_some(line));
+            logs.push(last.ln());
             from = to;
         }
     }
+    let mean = (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+    println!("{mean:.3} on average");
+    failures.extend((mean > MEAN_LIMIT).then(|| format!("{mean:.2} on average")));
     assert!(failures.is_empty(), "far less sharp than what begins anew: {failures:#?}");
 }
