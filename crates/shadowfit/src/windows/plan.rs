@@ -20,6 +20,19 @@ pub(super) struct Plan {
     pub(super) rects: [Rect; MAX_MAPS],
 }
 
+impl Plan {
+    /// Takes a window from another plan.
+    fn replace(&mut self, window: usize, other: &Self) {
+        (self.steps[window], self.rects[window]) = (other.steps[window], other.rects[window]);
+    }
+
+    /// This plan with a window of another one.
+    fn replaced(mut self, window: usize, other: &Self) -> Self {
+        self.replace(window, other);
+        self
+    }
+}
+
 /// Compares and changes plans.
 pub(super) struct Planner<'a> {
     pub(super) cells: &'a Cells,
@@ -146,40 +159,53 @@ impl Planner<'_> {
         }
     }
 
-    /// The drawn windows, while they cost no more than the best plan times `most`. Beyond that some that follow one
-    /// another are replaced by their counterparts in it, those that gain most: once, or `at_once` until it is nearly as
-    /// good. Most often that is a single one; but its texels must lie between those of its neighbours.
-    pub(super) fn follow(&self, drawn: Plan, target: &Plan, most: f32, at_once: bool) -> Plan {
+    /// The drawn windows, as many of them replaced by their counterparts in the best plan as it takes to be nearly as
+    /// good.
+    pub(super) fn follow_at_once(&self, drawn: Plan, target: &Plan) -> Plan {
         let found = self.cost(target);
-        let (mut plan, mut cost, mut limit) = (drawn, self.cost(&drawn), most);
-        while cost > found * limit {
-            let Some((other, its)) = self.replaced(&plan, cost, target) else { return plan };
-            (plan, cost, limit) = (other, its, if at_once { SERVES } else { f32::MAX });
+        let mut plan = drawn;
+        while self.cost(&plan) > found * SERVES {
+            let Some(run) = self.worth_most(&plan, target) else { return plan };
+            for i in run {
+                plan.replace(i, target);
+            }
         }
         plan
     }
 
-    /// A plan with some windows of another one that follow one another, and its cost: those with which it gains most.
-    fn replaced(&self, plan: &Plan, cost: f32, target: &Plan) -> Option<(Plan, f32)> {
-        let readers = self.readers(plan);
-        let mut best: Option<(f32, (Plan, f32))> = None;
+    /// The drawn windows, while they cost no more than the best plan times `most`, and whether there is more to do. Beyond
+    /// that one is replaced by its counterpart in the best plan. Its texels must lie between those of its neighbours, so
+    /// that it may take some that follow one another to gain: then it goes on in the next frames.
+    pub(super) fn follow(&self, drawn: Plan, target: &Plan, most: f32) -> (Plan, bool) {
+        if self.cost(&drawn) <= self.cost(target) * most {
+            return (drawn, false);
+        }
+        let Some(run) = self.worth_most(&drawn, target) else { return (drawn, false) };
+        let replaced = run.clone().map(|i| drawn.replaced(i, target));
+        // Of windows that all become coarser it is the coarsest, of those that become finer the finest.
+        let may_be = replaced.filter(|plan| *plan != drawn && self.is_in_order(&plan.steps));
+        let best = may_be.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
+        (best.unwrap_or(drawn), run.len() > 1)
+    }
+
+    /// Those windows that follow one another with whose counterparts in another plan most is gained for each point whose
+    /// texels change; `None` where nothing is.
+    fn worth_most(&self, plan: &Plan, target: &Plan) -> Option<Range<usize>> {
+        let (cost, readers) = (self.cost(plan), self.readers(plan));
+        let mut best: Option<(f32, Range<usize>)> = None;
         for first in 0..self.count - 1 {
             let (mut other, mut changed) = (*plan, FEW);
-            for i in first..self.count - 1 {
-                (other.steps[i], other.rects[i]) = (target.steps[i], target.rects[i]);
-                changed += readers[i];
-                if !self.is_in_order(&other.steps) {
-                    continue;
-                }
-                let its = self.cost(&other);
-                // What is gained for each point whose texels change.
-                let gain = (cost - its) / changed;
-                if gain > 0.0 && best.is_none_or(|(most, _)| gain > most) {
-                    best = Some((gain, (other, its)));
+            for (i, readers) in readers.iter().enumerate().take(self.count - 1).skip(first) {
+                other.replace(i, target);
+                changed += readers;
+                let gain = (cost - self.cost(&other)) / changed;
+                let is_better = gain > 0.0 && best.as_ref().is_none_or(|(most, _)| gain > *most);
+                if is_better && self.is_in_order(&other.steps) {
+                    best = Some((gain, first..i + 1));
                 }
             }
         }
-        best.map(|(_, replaced)| replaced)
+        best.map(|(_, run)| run)
     }
 
     /// Shares of the points that read each window.

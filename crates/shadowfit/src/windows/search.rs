@@ -3,7 +3,7 @@
 //! Three plans are kept: the windows that are drawn, the best plan found so far, and a second search that is
 //! restarted from scratch whenever it has tried all its changes. Nobody sees the two searches. Drawn windows
 //! keep their texels and move as little as they can; only where the best plan is better by enough, one of them
-//! is replaced by its counterpart there, or some that follow one another.
+//! is replaced by its counterpart there, or some are in as many frames.
 
 use glam::DVec3;
 
@@ -151,10 +151,20 @@ impl<'a> Search<'a> {
     fn draw(&mut self, is_told: bool) {
         let Progress { next, holds, age, .. } = &mut self.progress;
         self.planner.keep(&mut self.drawn, holds, *next);
-        let longer = SERVES_LONGER * (1.0 - f32::from(*age) / f32::from(OLD));
-        let most = SERVES + if is_told { 0.0 } else { longer };
-        let followed = self.planner.follow(self.drawn, &self.best, most, is_told);
-        *age = if followed == self.drawn { age.saturating_add(1).min(OLD) } else { 0 };
+        let most = SERVES + SERVES_LONGER * (1.0 - f32::from(*age) / f32::from(OLD));
+        let (followed, goes_on) = if is_told {
+            (self.planner.follow_at_once(self.drawn, &self.best), false)
+        } else {
+            self.planner.follow(self.drawn, &self.best, most)
+        };
+        *age = if followed == self.drawn {
+            age.saturating_add(1).min(OLD)
+        } else if goes_on {
+            // As if nothing had been replaced for long, until it is done.
+            OLD
+        } else {
+            0
+        };
         self.drawn = followed;
     }
 
