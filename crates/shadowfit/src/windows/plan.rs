@@ -152,7 +152,14 @@ impl Planner<'_> {
             let share = |rect: &Rect| if all > 0.0 { self.held(rect, &left) / all } else { 1.0 };
             let is_turn = turn as usize % (self.count - 1) == i;
             if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
-                plan.rects[i] = self.kept(&plan.rects[i], &left);
+                let mut moved = *plan;
+                moved.rects[i] = self.kept(&plan.rects[i], &left);
+                // Two windows do not change places for what a coarser one holds already.
+                let way = (moved.rects[i].min - plan.rects[i].min).abs();
+                let is_leap = way.cmpgt(plan.rects[i].size * 0.5).any();
+                if !is_leap || self.cost(&moved) < self.cost(plan) {
+                    *plan = moved;
+                }
                 *holds = share(&plan.rects[i]);
             }
             self.take(&plan.rects[i], &mut left);
