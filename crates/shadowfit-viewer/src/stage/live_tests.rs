@@ -1,5 +1,6 @@
 //! When pictures are judged, and of which one the figures are: by the GPU in each frame, and by threads now and then.
 
+use shadowfit::Technique;
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{AdapterChoice, FlyInput, Gpu, MapUpdate, RenderTarget, UpdateContent};
 use shadowfit_scene::builtin::default_scene;
@@ -80,8 +81,8 @@ fn gpu_a_picture_that_is_waited_for_has_its_figures_at_once() {
 #[test]
 fn gpu_a_view_that_stands_still_is_judged_again_when_its_maps_change() {
     let (mut stage, target) = stage(false);
-    // With more windows it matters more what is visible: those of a first frame do not serve.
-    stage.settings.technique = stage.settings.technique.with_count(8);
+    // Tight maps follow whatever was seen, where windows stay while they serve.
+    stage.settings.technique = Technique::preset("focused-4").expect("a preset").with_resolution(256, 256);
     stage.side.live.waits = true;
     draw(&mut stage, &target);
     let maps = |stage: &Stage| stage.side.evaluator.drawn_fits().to_vec();
