@@ -1,0 +1,227 @@
+//! Meshes that are skinned or morphed: passes that read their positions from the engine's vertex buffer, and fit their
+//! hierarchy to them.
+
+use crate::device::{WORKGROUP_THREADS, group, layout, storage};
+use crate::error::{RayError, VertexBufferLack};
+use crate::mesh::RayMesh;
+use crate::placed::Placed;
+use crate::records::{RefitUniform, TriangleRecord};
+use crate::wgsl::refit_wgsl;
+
+/// Uniforms of dispatches begin at multiples of this, in bytes: the greatest alignment that WebGPU allows a device to
+/// ask for.
+const UNIFORM_STEP: u64 = 256;
+/// Bytes of a position.
+const POSITION: u64 = 12;
+
+/// Positions in a vertex buffer: three `f32` each, in the space of the mesh, in metres.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexBuffer<'a> {
+    /// The buffer, with the usage `STORAGE`.
+    pub buffer: &'a wgpu::Buffer,
+    /// Where the first position begins, in bytes; a multiple of 4.
+    pub offset: u64,
+    /// From one position to the next one, in bytes; a multiple of 4, at least 12.
+    pub stride: u32,
+}
+
+/// The passes' pipelines.
+#[derive(Debug)]
+pub(crate) struct RefitPass {
+    layout: wgpu::BindGroupLayout,
+    triangles: wgpu::ComputePipeline,
+    level: wgpu::ComputePipeline,
+}
+
+/// What a refit of one mesh needs.
+#[derive(Debug)]
+pub(crate) struct Deforming {
+    vertices: u64,
+    /// Three vertices a triangle, in leaf order.
+    indices: wgpu::Buffer,
+    uniforms: wgpu::Buffer,
+    /// The dispatches: triangles, and then levels, deepest first.
+    steps: Vec<RefitUniform>,
+    bound: Option<Bound>,
+}
+
+/// The bind group of the last refit, and what it binds.
+#[derive(Debug)]
+struct Bound {
+    buffers: [wgpu::Buffer; 3],
+    window: [u64; 2],
+    group: wgpu::BindGroup,
+}
+
+impl RefitPass {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: true,
+            min_binding_size: None,
+        };
+        let types = [uniform, storage(true), storage(true), storage(false), storage(false)];
+        let layout = layout(device, wgpu::ShaderStages::COMPUTE, &types);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("shadowfit rays refit"),
+            source: wgpu::ShaderSource::Wgsl(refit_wgsl().into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("shadowfit rays refit"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = |entry| {
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        };
+        Self { triangles: pipeline("move_triangles"), level: pipeline("fit_level"), layout }
+    }
+
+    /// Records the refit of a mesh, whose triangles and nodes are in these buffers.
+    pub(crate) fn record(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        deforming: &mut Deforming,
+        (scene, vertices): ([&wgpu::Buffer; 2], &VertexBuffer<'_>),
+    ) -> Result<(), RayError> {
+        let limits = device.limits();
+        let window = window(vertices, deforming.vertices, &limits)?;
+        deforming.bind(device, &self.layout, scene, (vertices.buffer, window));
+        let step = &mut deforming.steps[0];
+        let read = ((vertices.offset - window[0]) as u32 / 4, vertices.stride / 4);
+        if (step.offset, step.stride) != read {
+            (step.offset, step.stride) = read;
+            queue.write_buffer(&deforming.uniforms, 0, bytemuck::bytes_of(step));
+        }
+        let Some(bound) = &deforming.bound else { return Ok(()) };
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("shadowfit rays refit"),
+            timestamp_writes: None,
+        });
+        for (number, step) in deforming.steps.iter().enumerate() {
+            pass.set_pipeline(if number == 0 { &self.triangles } else { &self.level });
+            pass.set_bind_group(0, &bound.group, &[(number as u64 * UNIFORM_STEP) as u32]);
+            let [columns, rows] = groups(step.count, limits.max_compute_workgroups_per_dimension);
+            pass.dispatch_workgroups(columns, rows, 1);
+        }
+        Ok(())
+    }
+}
+
+impl Deforming {
+    /// What a mesh that lies in a scene will need.
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &RayMesh, placed: &Placed) -> Self {
+        let step = |first: u32, count: u32| RefitUniform { first, count, ..RefitUniform::default() };
+        let ends = mesh.hierarchy.levels.iter().skip(1).copied().chain([placed.nodes.len() as u32]);
+        let levels = mesh.hierarchy.levels.iter().zip(ends);
+        let mut steps = vec![step(placed.triangles.start, placed.triangles.len() as u32)];
+        steps.extend(levels.map(|(first, end)| step(placed.nodes.start + first, end - first)));
+        steps[1..].reverse();
+        let vertices_of = |triangle: &TriangleRecord| mesh.vertices_of(triangle.index);
+        let mut indices: Vec<[u32; 3]> = mesh.triangles.iter().map(vertices_of).collect();
+        // An empty buffer cannot be bound.
+        if indices.is_empty() {
+            indices.push([0; 3]);
+        }
+        let uniform_bytes = steps.len() as u64 * UNIFORM_STEP;
+        let uniforms = buffer(device, "refit steps", uniform_bytes, wgpu::BufferUsages::UNIFORM);
+        for (number, step) in (0..).zip(&steps) {
+            queue.write_buffer(&uniforms, number * UNIFORM_STEP, bytemuck::bytes_of(step));
+        }
+        let bytes = bytemuck::cast_slice(&indices);
+        let index_buffer = buffer(device, "refit indices", bytes.len() as u64, wgpu::BufferUsages::STORAGE);
+        queue.write_buffer(&index_buffer, 0, bytes);
+        Self { vertices: mesh.vertices() as u64, indices: index_buffer, uniforms, steps, bound: None }
+    }
+
+    /// Bytes of its own buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.indices.size() + self.uniforms.size()
+    }
+
+    /// Makes the bind group, unless the last refit had the same buffers.
+    fn bind(
+        &mut self,
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        [triangles, nodes]: [&wgpu::Buffer; 2],
+        (vertices, window): (&wgpu::Buffer, [u64; 2]),
+    ) {
+        let is_same = |bound: &Bound| bound.window == window && bound.buffers.each_ref() == [vertices, triangles, nodes];
+        if self.bound.as_ref().is_some_and(is_same) {
+            return;
+        }
+        let part = |buffer, offset, size| {
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset, size: wgpu::BufferSize::new(size) })
+        };
+        let resources = [
+            part(&self.uniforms, 0, size_of::<RefitUniform>() as u64),
+            part(vertices, window[0], window[1]),
+            self.indices.as_entire_binding(),
+            triangles.as_entire_binding(),
+            nodes.as_entire_binding(),
+        ];
+        let group = group(device, layout, &resources);
+        self.bound = Some(Bound { buffers: [vertices, triangles, nodes].map(Clone::clone), window, group });
+    }
+}
+
+/// Offset and size of the part of a vertex buffer that is bound, in bytes.
+fn window(vertices: &VertexBuffer<'_>, count: u64, limits: &wgpu::Limits) -> Result<[u64; 2], RayError> {
+    let VertexBuffer { buffer, offset, stride } = *vertices;
+    let lacks = |lack| Err(RayError::Vertices(lack));
+    if !buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
+        return lacks(VertexBufferLack::Usage(buffer.usage()));
+    }
+    if !offset.is_multiple_of(4) || !stride.is_multiple_of(4) || u64::from(stride) < POSITION {
+        return lacks(VertexBufferLack::Alignment { offset, stride });
+    }
+    let length = count.saturating_sub(1).saturating_mul(stride.into()).saturating_add(POSITION);
+    let needed = offset.saturating_add(length);
+    if needed > buffer.size() {
+        return lacks(VertexBufferLack::Size { size: buffer.size(), needed });
+    }
+    let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
+    let first = offset / alignment * alignment;
+    let limit = limits.max_storage_buffer_binding_size;
+    if needed - first > limit {
+        return Err(RayError::TooLarge { what: "vertices of a deforming mesh", bytes: needed - first, limit });
+    }
+    Ok([first, needed - first])
+}
+
+/// Columns and rows of workgroups for a number of threads, since one row of them may be too short.
+fn groups(threads: u32, limit: u32) -> [u32; 2] {
+    let all = threads.div_ceil(WORKGROUP_THREADS);
+    let columns = all.min(limit);
+    [columns, all.div_ceil(columns.max(1))]
+}
+
+fn buffer(device: &wgpu::Device, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let usage = usage | wgpu::BufferUsages::COPY_DST;
+    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_workgroups_than_a_row_holds_stand_in_rows_that_hold_all_threads() {
+        for (threads, wanted) in [(0, [0, 0]), (1, [1, 1]), (256, [1, 1]), (257, [2, 1]), (256 * 65_535, [65_535, 1])] {
+            assert_eq!(groups(threads, 65_535), wanted, "{threads}");
+        }
+        let [columns, rows] = groups(u32::MAX, 65_535);
+        assert_eq!((columns, rows), (65_535, 257));
+        assert!(u64::from(columns) * u64::from(rows) * u64::from(WORKGROUP_THREADS) >= u64::from(u32::MAX));
+    }
+}

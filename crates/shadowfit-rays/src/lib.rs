@@ -1,0 +1,34 @@
+//! An engine's triangles as a bounding volume hierarchy on the GPU, traced by its own shaders: whether anything stands
+//! between a point and the sun.
+//!
+//! [`RayMesh`] is the hierarchy of one mesh, built on the CPU; [`RayScene`] holds meshes, and their instances of the
+//! frame, in six storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
+//! has. Positions are in metres, in `f32` relative to an origin that the engine chooses.
+
+mod cut_out;
+mod deform;
+mod device;
+mod error;
+mod hierarchy;
+mod instance;
+mod mesh;
+mod placed;
+mod pool;
+pub mod records;
+mod scene;
+mod top;
+mod wgsl;
+
+pub use cut_out::{AlphaImage, CutMaterial, CutOut, Wrap};
+pub use deform::VertexBuffer;
+pub use error::{RayError, VertexBufferLack};
+pub use glam;
+pub use instance::{RayInstance, Sides};
+pub use mesh::{RayMemory, RayMesh};
+pub use placed::{ImageId, MeshId};
+pub use scene::RayScene;
+pub use wgsl::{RayWgslOptions, rays_wgsl, refit_wgsl};
+
+/// Levels that the shaders' stack can follow: those of the hierarchy of instances and of a mesh together. A balanced
+/// hierarchy of 2^32 triangles has 33.
+pub const MAX_DEPTH: usize = 64;

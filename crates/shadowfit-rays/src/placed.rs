@@ -1,0 +1,90 @@
+//! The meshes of a scene: where each lies in the buffers, by numbers that are never used twice.
+
+use core::ops::Range;
+
+use glam::Vec3;
+
+use crate::deform::Deforming;
+use crate::records::NO_ROOT;
+
+/// A mesh of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MeshId {
+    place: u32,
+    generation: u32,
+}
+
+impl MeshId {
+    /// No mesh.
+    pub(crate) const NONE: Self = Self { place: u32::MAX, generation: u32::MAX };
+}
+
+/// An image of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageId {
+    /// Where it begins among the words of all images.
+    pub(crate) first: u32,
+    pub(crate) generation: u32,
+}
+
+/// Where a mesh lies.
+#[derive(Debug)]
+pub(crate) struct Placed {
+    pub(crate) nodes: Range<u32>,
+    pub(crate) triangles: Range<u32>,
+    pub(crate) cut_outs: Range<u32>,
+    /// Levels of its hierarchy.
+    pub(crate) depth: usize,
+    /// The box around it, in its own space.
+    pub(crate) bounds: [Vec3; 2],
+    pub(crate) deforming: Option<Deforming>,
+}
+
+impl Placed {
+    /// Its first node.
+    pub(crate) fn root(&self) -> u32 {
+        if self.nodes.is_empty() { NO_ROOT } else { self.nodes.start }
+    }
+}
+
+/// All meshes.
+#[derive(Debug, Default)]
+pub(crate) struct Meshes {
+    /// With the number of meshes that each place had before.
+    places: Vec<(u32, Option<Placed>)>,
+    free: Vec<u32>,
+}
+
+impl Meshes {
+    pub(crate) fn add(&mut self, mesh: Placed) -> MeshId {
+        let place = self.free.pop().unwrap_or_else(|| {
+            self.places.push((0, None));
+            self.places.len() as u32 - 1
+        });
+        let (generation, stored) = &mut self.places[place as usize];
+        *stored = Some(mesh);
+        MeshId { place, generation: *generation }
+    }
+
+    pub(crate) fn remove(&mut self, id: MeshId) -> Option<Placed> {
+        let (generation, stored) = self.places.get_mut(id.place as usize)?;
+        let mesh = stored.take_if(|_| *generation == id.generation)?;
+        *generation += 1;
+        self.free.push(id.place);
+        Some(mesh)
+    }
+
+    pub(crate) fn get(&self, id: MeshId) -> Option<&Placed> {
+        let (generation, mesh) = self.places.get(id.place as usize)?;
+        mesh.as_ref().filter(|_| *generation == id.generation)
+    }
+
+    pub(crate) fn get_mut(&mut self, id: MeshId) -> Option<&mut Placed> {
+        let (generation, mesh) = self.places.get_mut(id.place as usize)?;
+        mesh.as_mut().filter(|_| *generation == id.generation)
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Placed> {
+        self.places.iter().filter_map(|(_, mesh)| mesh.as_ref())
+    }
+}

@@ -1,0 +1,97 @@
+//! The records that the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's
+//! reflection.
+
+/// Stands for no mesh where a root is expected.
+pub const NO_ROOT: u32 = u32::MAX;
+
+/// A node of a hierarchy: of a mesh, in its own space, or of the instances.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct NodeRecord {
+    /// Least corner of its box, in metres.
+    pub least: [f32; 3],
+    /// Triangles of a leaf, or its one instance; 0 for an inner node.
+    pub count: u32,
+    /// Greatest corner of its box, in metres.
+    pub most: [f32; 3],
+    /// First triangle of a leaf, or its instance; first of the two children of an inner node.
+    pub first: u32,
+}
+
+/// A triangle, in leaf order.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TriangleRecord {
+    /// First corner, in the space of its mesh, in metres.
+    pub a: [f32; 3],
+    /// Index of its cut-out plus 1, 0 for none.
+    pub cut_out: u32,
+    /// Second corner.
+    pub b: [f32; 3],
+    /// Its own index in its mesh.
+    pub index: u32,
+    /// Third corner.
+    pub c: [f32; 3],
+    /// Unused.
+    pub padding: u32,
+}
+
+/// A [`RayInstance`](crate::RayInstance).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct InstanceRecord {
+    /// First row of mesh from world.
+    pub row_x: [f32; 4],
+    /// Second row.
+    pub row_y: [f32; 4],
+    /// Third row.
+    pub row_z: [f32; 4],
+    /// First node of its mesh; [`NO_ROOT`] where rays pass it by.
+    pub root: u32,
+    /// [`Sides`](crate::Sides) as a number.
+    pub sides: u32,
+    /// The engine's own number.
+    pub custom: u32,
+    /// Unused.
+    pub padding: u32,
+}
+
+/// A [`CutOut`](crate::CutOut).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct CutOutRecord {
+    /// Texture coordinates of the first corner.
+    pub uv_a: [f32; 2],
+    /// Texture coordinates of the second corner.
+    pub uv_b: [f32; 2],
+    /// Texture coordinates of the third corner.
+    pub uv_c: [f32; 2],
+    /// Alpha of the material.
+    pub base_alpha: f32,
+    /// Least alpha that is opaque.
+    pub cutoff: f32,
+    /// Alpha of the corners.
+    pub alphas: [f32; 3],
+    /// Where its image begins among the words of all images, plus 1; 0 for none.
+    pub image: u32,
+    /// [`Wrap`](crate::Wrap) across and down.
+    pub wrap: [u32; 2],
+    /// 1 where the nearest texel is taken.
+    pub nearest: u32,
+    /// Unused.
+    pub padding: u32,
+}
+
+/// What one dispatch of a refit does.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct RefitUniform {
+    /// First node of the level, or first triangle.
+    pub first: u32,
+    /// Nodes of the level, or triangles.
+    pub count: u32,
+    /// Where the first position begins in the bound vertices, in words.
+    pub offset: u32,
+    /// From one position to the next one, in words.
+    pub stride: u32,
+}

@@ -1,0 +1,288 @@
+
+struct shadowfit_rays_Instance {
+    // Rows of mesh from world.
+    row_x: vec4<f32>,
+    row_y: vec4<f32>,
+    row_z: vec4<f32>,
+    // First node of its mesh, or NONE.
+    root: u32,
+    // 0 both, 1 front, 2 back.
+    sides: u32,
+    custom: u32,
+    padding: u32,
+}
+
+struct shadowfit_rays_CutOut {
+    uv_a: vec2<f32>,
+    uv_b: vec2<f32>,
+    uv_c: vec2<f32>,
+    base_alpha: f32,
+    cutoff: f32,
+    alphas: vec3<f32>,
+    // Where its image begins, plus 1; 0 for none.
+    image: u32,
+    wrap: vec2<u32>,
+    nearest: u32,
+    padding: u32,
+}
+
+// Where a ray meets a triangle.
+struct shadowfit_RayHit {
+    // Index of the instance.
+    instance: u32,
+    // The instance's own number.
+    custom: u32,
+    // The triangle's own index in its mesh.
+    triangle: u32,
+    // Its place among the triangles of the scene.
+    slot: u32,
+    // Of the second and third corner.
+    weights: vec2<f32>,
+    // In metres.
+    distance: f32,
+}
+
+struct shadowfit_rays_Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    // 1 / direction, times a factor that no comparison of distances along one ray depends on.
+    inverses: vec3<f32>,
+}
+
+// Depths are compared with this before anything is uploaded.
+const SHADOWFIT_RAYS_STACK: u32 = MAX_DEPTHu;
+const SHADOWFIT_RAYS_NONE: u32 = 0xffffffffu;
+// Greater than any distance that matters, in metres.
+const SHADOWFIT_RAYS_FAR: f32 = 3.0e38;
+// Share of the longest component below which a direction is parallel to a slab: its inverse times a kilometre, in
+// micrometres, is still finite.
+const SHADOWFIT_RAYS_PARALLEL: f32 = 1e-29;
+// A box ends by this factor later than f32 finds: four roundings (T. Ize, "Robust BVH Ray Traversal", 2013).
+const SHADOWFIT_RAYS_LATER: f32 = 1.0000005;
+
+@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_top: array<shadowfit_rays_Node>;
+@group(GROUP) @binding(1) var<storage, read> shadowfit_rays_instances: array<shadowfit_rays_Instance>;
+@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_nodes: array<shadowfit_rays_Node>;
+@group(GROUP) @binding(3) var<storage, read> shadowfit_rays_triangles: array<shadowfit_rays_Triangle>;
+@group(GROUP) @binding(4) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
+// Of each image its width, its height, and four texels a word, the first one lowest.
+@group(GROUP) @binding(5) var<storage, read> shadowfit_rays_images: array<u32>;
+
+fn shadowfit_rays_ray(origin: vec3<f32>, direction: vec3<f32>) -> shadowfit_rays_Ray {
+    let size = abs(direction);
+    let scaled = direction / max(max(size.x, size.y), size.z);
+    let nearly = vec3<f32>(SHADOWFIT_RAYS_PARALLEL);
+    let signed = select(nearly, -nearly, (bitcast<vec3<u32>>(scaled) >> vec3<u32>(31u)) != vec3<u32>(0u));
+    return shadowfit_rays_Ray(origin, direction, 1.0 / select(scaled, signed, abs(scaled) < nearly));
+}
+
+// The ray in the space of an instance's mesh. Its direction is not of unit length, so that distances stay in metres.
+fn shadowfit_rays_in_mesh(instance: u32, ray: shadowfit_rays_Ray) -> shadowfit_rays_Ray {
+    let x = shadowfit_rays_instances[instance].row_x;
+    let y = shadowfit_rays_instances[instance].row_y;
+    let z = shadowfit_rays_instances[instance].row_z;
+    let at = ray.origin;
+    let along = ray.direction;
+    return shadowfit_rays_ray(
+        vec3<f32>(dot(x.xyz, at) + x.w, dot(y.xyz, at) + y.w, dot(z.xyz, at) + z.w),
+        vec3<f32>(dot(x.xyz, along), dot(y.xyz, along), dot(z.xyz, along)),
+    );
+}
+
+fn shadowfit_rays_meets(least: vec3<f32>, most: vec3<f32>, ray: shadowfit_rays_Ray) -> bool {
+    let a = (least - ray.origin) * ray.inverses;
+    let b = (most - ray.origin) * ray.inverses;
+    let near = min(a, b);
+    let far = max(a, b);
+    let enter = max(max(near.x, near.y), near.z);
+    let leave = min(min(far.x, far.y), far.z);
+    return leave * SHADOWFIT_RAYS_LATER >= enter && leave >= 0.0;
+}
+
+// Whether a ray meets the box of a node, of the top level or of a mesh.
+fn shadowfit_rays_meets_node(is_top: bool, node: u32, ray: shadowfit_rays_Ray) -> bool {
+    if is_top {
+        return shadowfit_rays_meets(shadowfit_rays_top[node].least, shadowfit_rays_top[node].most, ray);
+    }
+    return shadowfit_rays_meets(shadowfit_rays_nodes[node].least, shadowfit_rays_nodes[node].most, ray);
+}
+
+fn shadowfit_rays_remainder(index: i32, size: i32) -> i32 {
+    let rest = index % size;
+    return select(rest, rest + size, rest < 0);
+}
+
+fn shadowfit_rays_wrapped(index: i32, size: i32, wrap: u32) -> i32 {
+    switch wrap {
+        case 0u: { return shadowfit_rays_remainder(index, size); }
+        case 1u: { return clamp(index, 0, size - 1); }
+        default: {
+            let folded = shadowfit_rays_remainder(index, size * 2);
+            return min(folded, size * 2 - 1 - folded);
+        }
+    }
+}
+
+fn shadowfit_rays_alpha_at(image: u32, wrap: vec2<u32>, corner: vec2<i32>) -> f32 {
+    let width = shadowfit_rays_images[image];
+    let x = shadowfit_rays_wrapped(corner.x, i32(width), wrap.x);
+    let y = shadowfit_rays_wrapped(corner.y, i32(shadowfit_rays_images[image + 1u]), wrap.y);
+    let texel = u32(y) * width + u32(x);
+    return f32((shadowfit_rays_images[image + 2u + texel / 4u] >> (texel % 4u * 8u)) & 255u) / 255.0;
+}
+
+fn shadowfit_rays_alpha(image: u32, wrap: vec2<u32>, nearest: bool, uv: vec2<f32>) -> f32 {
+    let size = vec2<f32>(f32(shadowfit_rays_images[image]), f32(shadowfit_rays_images[image + 1u]));
+    // Whole numbers of this size and their neighbours fit i32, and f32 has no fractions there.
+    let limit = vec2<f32>(1073741824.0);
+    let position = clamp(uv * size - 0.5, -limit, limit);
+    let weight = position - floor(position);
+    let corner = vec2<i32>(floor(position));
+    if nearest {
+        return shadowfit_rays_alpha_at(image, wrap, corner + vec2<i32>(weight >= vec2<f32>(0.5)));
+    }
+    let upper = mix(
+        shadowfit_rays_alpha_at(image, wrap, corner),
+        shadowfit_rays_alpha_at(image, wrap, corner + vec2<i32>(1, 0)),
+        weight.x,
+    );
+    let lower = mix(
+        shadowfit_rays_alpha_at(image, wrap, corner + vec2<i32>(0, 1)),
+        shadowfit_rays_alpha_at(image, wrap, corner + 1),
+        weight.x,
+    );
+    return mix(upper, lower, weight.y);
+}
+
+// Whether a triangle with holes is opaque at a point with these weights of its second and third corner.
+fn shadowfit_rays_is_opaque(cut_out: shadowfit_rays_CutOut, second_third: vec2<f32>) -> bool {
+    let weights = vec3<f32>(1.0 - second_third.x - second_third.y, second_third);
+    var alpha = cut_out.base_alpha * dot(cut_out.alphas, weights);
+    if cut_out.image != 0u {
+        let uv = cut_out.uv_a * weights.x + cut_out.uv_b * weights.y + cut_out.uv_c * weights.z;
+        alpha *= shadowfit_rays_alpha(cut_out.image - 1u, cut_out.wrap, cut_out.nearest != 0u, uv);
+    }
+    return alpha >= cut_out.cutoff;
+}
+
+// Weights of the second and third corner at a point of a triangle, by areas.
+fn shadowfit_rays_weights(triangle: shadowfit_rays_Triangle, point: vec3<f32>) -> vec2<f32> {
+    let edge1 = triangle.b - triangle.a;
+    let edge2 = triangle.c - triangle.a;
+    let to_point = point - triangle.a;
+    let normal = cross(edge1, edge2);
+    let area = dot(normal, normal);
+    return vec2<f32>(dot(cross(to_point, edge2), normal), dot(cross(edge1, to_point), normal)) / area;
+}
+
+// Whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle
+// Intersection", 1997, in the form of the obvhs crate: a weight of minus zero misses).
+fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
+    let triangle = shadowfit_rays_triangles[slot];
+    let e1 = triangle.a - triangle.b;
+    let e2 = triangle.c - triangle.a;
+    // Opposite to the normal of the front.
+    let n = cross(e1, e2);
+    let c = triangle.a - ray.origin;
+    let r = cross(ray.direction, c);
+    let determinant = dot(n, ray.direction);
+    if determinant == 0.0 {
+        return false;
+    }
+    let inverse_determinant = 1.0 / determinant;
+    let u = dot(r, e2) * inverse_determinant;
+    let v = dot(r, e1) * inverse_determinant;
+    let w = 1.0 - u - v;
+    let signs = (bitcast<u32>(u) | bitcast<u32>(v) | bitcast<u32>(w)) & 0x80000000u;
+    let distance = dot(n, c) * inverse_determinant;
+    if signs != 0u || !(distance >= 0.0 && distance < SHADOWFIT_RAYS_FAR) {
+        return false;
+    }
+    // Rays go toward the light: it sees the front where the normal goes along with them.
+    let sides = shadowfit_rays_instances[instance].sides;
+    if sides != 0u && (determinant > 0.0) == (sides == 1u) {
+        return false;
+    }
+    let weights = shadowfit_rays_weights(triangle, ray.origin + ray.direction * distance);
+    if triangle.cut_out != 0u && !shadowfit_rays_is_opaque(shadowfit_rays_cut_outs[triangle.cut_out - 1u], weights) {
+        return false;
+    }
+    let custom = shadowfit_rays_instances[instance].custom;
+    return shadowfit_rays_counts(shadowfit_RayHit(instance, custom, triangle.index, slot, weights, distance));
+}
+
+fn shadowfit_rays_blocks_any(first: u32, count: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
+    for (var slot = first; slot < first + count; slot++) {
+        if shadowfit_rays_blocks(slot, instance, ray) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether anything stands on a ray from a point, relative to the origin of the scene, in metres, along a unit direction.
+fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
+    let world = shadowfit_rays_ray(origin, direction);
+    if !shadowfit_rays_meets_node(true, 0u, world) {
+        return false;
+    }
+    var ray = world;
+    var stack: array<u32, SHADOWFIT_RAYS_STACK>;
+    var height = 0u;
+    // The instance whose mesh the ray is in, and the height of the stack where it was entered.
+    var instance = SHADOWFIT_RAYS_NONE;
+    var entered = 0u;
+    var current = 0u;
+    loop {
+        let is_top = instance == SHADOWFIT_RAYS_NONE;
+        var next = SHADOWFIT_RAYS_NONE;
+        var first = 0u;
+        var count = 0u;
+        if is_top {
+            first = shadowfit_rays_top[current].first;
+            count = shadowfit_rays_top[current].count;
+        } else {
+            first = shadowfit_rays_nodes[current].first;
+            count = shadowfit_rays_nodes[current].count;
+        }
+        if count == 0u {
+            let goes_left = shadowfit_rays_meets_node(is_top, first, ray);
+            if shadowfit_rays_meets_node(is_top, first + 1u, ray) {
+                next = first + 1u;
+            }
+            if goes_left {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = first;
+            }
+        } else if is_top {
+            let root = shadowfit_rays_instances[first].root;
+            if root != SHADOWFIT_RAYS_NONE {
+                let inside = shadowfit_rays_in_mesh(first, world);
+                if shadowfit_rays_meets_node(false, root, inside) {
+                    ray = inside;
+                    instance = first;
+                    entered = height;
+                    next = root;
+                }
+            }
+        } else if shadowfit_rays_blocks_any(first, count, instance, ray) {
+            return true;
+        }
+        if next == SHADOWFIT_RAYS_NONE {
+            if height == 0u {
+                return false;
+            }
+            if instance != SHADOWFIT_RAYS_NONE && height == entered {
+                instance = SHADOWFIT_RAYS_NONE;
+                ray = world;
+            }
+            height--;
+            next = stack[height];
+        }
+        current = next;
+    }
+    return false;
+}
