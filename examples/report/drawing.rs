@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::settings::{BiasSettings, Edges, FilterKind, MapFormat};
 use shadowfit_params::{self as params, Inputs};
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::{Judging, NamedTechnique};
@@ -29,6 +29,9 @@ pub(crate) struct Drawing {
                 clears planes with the filter]"
     )]
     bias: Option<String>,
+    /// Trace edges, with N rays for each pixel that the maps are not sure of; 0 filters them [default: the technique's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=64))]
+    rays: Option<u32>,
     /// Store depths in a colour texture of 32-bit floats, compared by hand
     #[arg(long)]
     color_format: bool,
@@ -78,7 +81,8 @@ impl Drawing {
 
     /// Whether something of the techniques is asked for.
     pub(crate) fn changes_techniques(&self) -> bool {
-        self.filter.is_some() || self.bias.is_some() || self.color_format || !self.set.is_empty()
+        let has_look_up = self.filter.is_some() || self.bias.is_some() || self.color_format;
+        has_look_up || self.rays.is_some() || !self.set.is_empty()
     }
 
     /// A technique with what is asked for changed.
@@ -92,6 +96,7 @@ impl Drawing {
         if self.color_format {
             technique.format = MapFormat::R32Float;
         }
+        technique.edges = self.edges().unwrap_or(technique.edges);
         for assignment in &self.set {
             let (id, value) = assignment
                 .split_once('=')
@@ -105,6 +110,11 @@ impl Drawing {
 
     pub(crate) fn filter(&self) -> FilterKind {
         self.filter.unwrap_or(FilterKind::Pcf5x5)
+    }
+
+    /// How edges come out, if that is asked for.
+    pub(crate) fn edges(&self) -> Option<Edges> {
+        self.rays.map(|samples| if samples == 0 { Edges::Filtered } else { Edges::Traced { samples } })
     }
 
     pub(crate) fn format(&self) -> MapFormat {

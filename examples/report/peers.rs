@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, MapSelection};
+use shadowfit::settings::{BiasSettings, Edges, FilterKind, MapFormat, MapSelection};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, Technique};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
@@ -122,7 +122,8 @@ impl Pictures {
         let fits = files.iter().zip(&args.fits).map(|(file, path)| {
             let maps = file.maps_in_order(ranking.scenarios(), path)?;
             let maps: Vec<Vec<FitMap>> = maps.into_iter().map(<[FitMap]>::to_vec).collect();
-            let descriptor = descriptor(ranking.scenarios(), file, &maps, filter, args.drawing.format());
+            let look_up = (filter, args.drawing.format(), args.drawing.edges().unwrap_or_default());
+            let descriptor = descriptor(ranking.scenarios(), file, &maps, look_up);
             let descriptor = descriptor.with_context(|| format!("{}: cannot be drawn", path.display()))?;
             let evaluator = evaluator(&gpu, &descriptor, judging);
             let evaluator = evaluator.with_context(|| format!("{}: cannot be drawn", path.display()))?;
@@ -183,8 +184,7 @@ fn descriptor(
     scenarios: &Scenarios,
     file: &FitFile,
     maps: &[Vec<FitMap>],
-    filter: FilterKind,
-    format: MapFormat,
+    (filter, format, edges): (FilterKind, MapFormat, Edges),
 ) -> Result<ShadowMapDescriptor> {
     let most = maps.iter().map(Vec::len).max().unwrap_or(0);
     let mut resolution = [*shadowfit_wgpu::RESOLUTIONS.start(); 2];
@@ -204,6 +204,7 @@ fn descriptor(
         filter,
         softness: Technique::default().softness,
         selection: choice(maps),
+        edges,
         depth,
         depth_clamp: file.depth_clamp,
         ..ShadowMapDescriptor::default()

@@ -156,7 +156,8 @@ impl Deforming {
         [triangles, nodes]: [&wgpu::Buffer; 2],
         (vertices, window): (&wgpu::Buffer, [u64; 2]),
     ) {
-        let is_same = |bound: &Bound| bound.window == window && bound.buffers.each_ref() == [vertices, triangles, nodes];
+        let is_same =
+            |bound: &Bound| bound.window == window && bound.buffers.each_ref() == [vertices, triangles, nodes];
         if self.bound.as_ref().is_some_and(is_same) {
             return;
         }

@@ -73,9 +73,8 @@ pub(crate) fn group(
     resources: &[wgpu::BindingResource<'_>],
 ) -> wgpu::BindGroup {
     let resources = (0u32..).zip(resources);
-    let entries: Vec<_> = resources
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-        .collect();
+    let entries: Vec<_> =
+        resources.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() }).collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(LABEL), layout, entries: &entries })
 }
 

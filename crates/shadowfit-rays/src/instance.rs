@@ -27,6 +27,9 @@ pub struct RayInstance {
     pub mesh: MeshId,
     /// From the mesh's own space to the world's axes in metres, relative to the origin that is given with it.
     pub world_from_mesh: Affine3A,
+    /// Least and greatest corner of a box that holds it in this frame, in world axes, in metres, relative to the same
+    /// origin; `None` for that of its mesh, transformed. What deforms is traced the faster the less its box holds beside it.
+    pub bounds: Option<[Vec3; 2]>,
     /// Which of its triangles block the light.
     pub sides: Sides,
     /// A number of the engine's own, which its WGSL is told of a hit.
@@ -36,13 +39,16 @@ pub struct RayInstance {
 impl RayInstance {
     /// An instance whose triangles block the light from both sides, and whose own number is 0.
     pub const fn new(mesh: MeshId, world_from_mesh: Affine3A) -> Self {
-        Self { mesh, world_from_mesh, sides: Sides::Both, custom: 0 }
+        Self { mesh, world_from_mesh, bounds: None, sides: Sides::Both, custom: 0 }
     }
 
     /// The record, and the box around the instance; `None` where it cannot be met.
     pub(crate) fn placed(&self, root: u32, bounds: [Vec3; 2]) -> Option<(InstanceRecord, [Vec3; 2])> {
         let mesh_from_world = inverse(&self.world_from_mesh).filter(|_| root != NO_ROOT)?;
-        let bounds = world_bounds(&self.world_from_mesh, &mesh_from_world, bounds);
+        let bounds = match self.bounds {
+            Some(bounds) => widened(&self.world_from_mesh, &mesh_from_world, bounds),
+            None => world_bounds(&self.world_from_mesh, &mesh_from_world, bounds),
+        };
         let rows = mesh_from_world.matrix3.transpose();
         let offset = mesh_from_world.translation;
         let row = |row: Vec3A, offset: f32| row.extend(offset).to_array();
@@ -87,10 +93,16 @@ const ROUNDINGS: f32 = 8.0;
 fn world_bounds(world: &Affine3A, mesh: &Affine3A, [least, most]: [Vec3; 2]) -> [Vec3; 2] {
     let [least, most] = [least, most].map(Vec3A::from);
     let centre = world.transform_point3a((least + most) * 0.5);
+    let half = world.matrix3.abs() * ((most - least) * 0.5);
+    widened(world, mesh, [(centre - half).into(), (centre + half).into()])
+}
+
+/// A box in the world with what rounding may add.
+fn widened(world: &Affine3A, mesh: &Affine3A, [least, most]: [Vec3; 2]) -> [Vec3; 2] {
+    let [least, most] = [least, most].map(Vec3A::from);
     let (world_size, mesh_size) = (world.matrix3.abs(), mesh.matrix3.abs());
-    let half = world_size * ((most - least) * 0.5);
-    let reach = centre.abs() + half;
+    let reach = least.abs().max(most.abs());
     let there_and_back = world_size * (mesh_size * reach + mesh.translation.abs()) + world.translation.abs();
     let margin = (reach + there_and_back) * (ROUNDINGS * f32::EPSILON);
-    [(centre - half - margin).into(), (centre + half + margin).into()]
+    [(least - margin).into(), (most + margin).into()]
 }

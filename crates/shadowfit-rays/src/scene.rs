@@ -388,8 +388,7 @@ impl RayScene {
     /// Makes the bind group again if a buffer is another one.
     fn rebind(&mut self) -> Result<(), RayError> {
         let pools = [&self.nodes, &self.triangles, &self.cut_outs, &self.images].map(|pool| pool.records.buffer());
-        let now =
-            [self.top_nodes.buffer(), self.instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
+        let now = [self.top_nodes.buffer(), self.instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
         if self.bound.each_ref() != now {
             let bound = now.map(Clone::clone);
             self.group = caught(&self.device, || bind(&self.device, &self.layout, &bound))?;

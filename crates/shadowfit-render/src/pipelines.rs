@@ -15,7 +15,9 @@ pub(crate) use of_map::{Drawn, MapPipelines};
 /// Bind group layouts of this crate.
 #[derive(Debug)]
 pub(crate) struct Layouts {
-    /// A uniform: of a frame, or of a pass that needs no frame.
+    /// The uniform of a frame, and the factors of its picture.
+    pub(crate) frame: wgpu::BindGroupLayout,
+    /// The uniform of a pass that needs no frame.
     pub(crate) uniform: wgpu::BindGroupLayout,
     pub(crate) material: wgpu::BindGroupLayout,
 }
@@ -36,7 +38,10 @@ pub(crate) struct Pipelines {
 impl Layouts {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let floats = wgpu::TextureSampleType::Float { filterable: false };
+        let of_frame = [bindings::UNIFORM, bindings::texture(floats, false)];
         Self {
+            frame: bindings::layout(device, "frame", visibility, &of_frame),
             uniform: bindings::layout(device, "uniform", visibility, &[bindings::UNIFORM]),
             material: material_layout(device),
         }
@@ -73,7 +78,7 @@ impl Maker<'_> {
     }
 
     fn sky(&self, layouts: &Layouts, constants: &[(&str, f64)]) -> wgpu::RenderPipeline {
-        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("sky", shaders::sky()));
+        let (layout, module) = (self.layout(&[&layouts.frame]), self.module("sky", shaders::sky()));
         self.pipeline(&Shape {
             depth: depth(false, wgpu::CompareFunction::GreaterEqual),
             samples: self.samples,
@@ -83,7 +88,7 @@ impl Maker<'_> {
     }
 
     fn lines(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
-        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("lines", shaders::lines()));
+        let (layout, module) = (self.layout(&[&layouts.frame]), self.module("lines", shaders::lines()));
         let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4, 2 => Float32x3, 3 => Float32x4];
         self.pipeline(&Shape {
             buffers: &[Some(instances::<[LineVertex; 2]>(&attributes))],
@@ -95,7 +100,7 @@ impl Maker<'_> {
     }
 
     fn quads(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
-        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("quads", shaders::quads()));
+        let (layout, module) = (self.layout(&[&layouts.frame]), self.module("quads", shaders::quads()));
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
         self.pipeline(&Shape {
             buffers: &[Some(instances::<QuadVertex>(&attributes))],

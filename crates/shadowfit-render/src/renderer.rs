@@ -1,5 +1,6 @@
 //! One frame: shadow passes, shaded pass, and what lies over the picture.
 
+mod edges;
 mod known;
 mod maps;
 mod over;
@@ -23,6 +24,8 @@ use crate::uniform::{FrameUniform, InsetVertex, LineVertex, QuadVertex};
 use crate::vertex_buffer::VertexBuffer;
 use crate::{Gpu, Inset, Line, Quad, bindings};
 
+use edges::Edges;
+pub(crate) use edges::NORMAL_FORMAT;
 use known::KnownMaps;
 use plan::Plan;
 
@@ -35,6 +38,7 @@ pub struct Renderer {
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
+    edges: Edges,
     judged: JudgedInput,
     lines: VertexBuffer,
     insets: VertexBuffer,
@@ -66,8 +70,8 @@ impl Renderer {
         sun.set_caching(false);
         let pipelines = Pipelines::new(device, &layouts, sun.map(), samples);
         let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
-        let resources = [frame_uniform.as_entire_binding()];
-        let frame_group = bindings::group(device, "frame", &layouts.uniform, &resources);
+        let edges = Edges::new(gpu)?;
+        let frame_group = frame_group(device, &layouts, &frame_uniform, edges.factors());
         Ok(Self {
             layouts,
             pipelines,
@@ -75,6 +79,7 @@ impl Renderer {
             samples,
             frame_uniform,
             frame_group,
+            edges,
             judged: JudgedInput::new(device),
             lines: VertexBuffer::new(device, "lines"),
             insets: VertexBuffer::new(device, "insets"),
@@ -121,9 +126,9 @@ impl Renderer {
             return Ok(());
         }
         // What the shaders read from uniforms may differ; the greatest radius of a filter is a constant in them.
-        let ShadowMapDescriptor { resolution, fade, softness, .. } = *descriptor;
+        let ShadowMapDescriptor { resolution, fade, softness, edges, .. } = *descriptor;
         let softness = softness.with_ceiling(old.softness.ceiling);
-        let same_shaders = ShadowMapDescriptor { resolution, fade, softness, ..old } == *descriptor;
+        let same_shaders = ShadowMapDescriptor { resolution, fade, softness, edges, ..old } == *descriptor;
         if !same_shaders {
             let maker = Maker { device: &gpu.device, samples: self.samples };
             self.pipelines.of_map = MapPipelines::new(&maker, &self.layouts, self.sun.map());
@@ -159,6 +164,7 @@ impl Renderer {
         let plan = self.prepare(gpu, scene, (frame, Drawn::Shaded(frame.overlay)), target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
+        self.resolve_edges(gpu, &mut encoder, scene, (frame, &plan), (target.size, self.samples));
         self.scene_pass(gpu, &mut encoder, scene, &plan, target);
         self.over_pass(gpu, &mut encoder, frame, &plan, target);
         self.timer.resolve(&mut encoder);
@@ -206,6 +212,7 @@ impl Renderer {
         self.timer.begin_probe(gpu, frame.maps_stay);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
+        self.resolve_edges(gpu, &mut encoder, scene, (&frame, &plan), (targets.size, 1));
         self.probe_pass(&mut encoder, scene, &plan, targets, true);
         self.timer.resolve(&mut encoder);
         gpu.submit([encoder.finish()]);
@@ -236,4 +243,14 @@ impl Renderer {
         self.quads.write(gpu, &frame.quads.iter().map(Quad::vertex).collect::<Vec<QuadVertex>>());
         Ok(self.plan(gpu, scene, frame, (&uniform, size)))
     }
+}
+
+fn frame_group(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    uniform: &wgpu::Buffer,
+    factors: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(factors)];
+    bindings::group(device, "frame", &layouts.frame, &resources)
 }

@@ -7,6 +7,7 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use bytemuck::cast_slice;
 use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use shadowfit::Aabb;
+use shadowfit_rays::{RayError, RayScene};
 use shadowfit_scene::{AlphaMode, Deformed, Instance, Pose, Primitive, Scene};
 use shadowfit_wgpu::Casters;
 
@@ -14,6 +15,7 @@ use crate::Gpu;
 use crate::casters::{CasterDraw, Cluster, SceneCasters, clustered, transformed};
 use crate::maker::{INSTANCES, Streams};
 use crate::material::upload_materials;
+use crate::rays::{RayPart, SceneRays};
 use crate::uniform::InstanceData;
 
 /// A scene that can be drawn.
@@ -33,6 +35,8 @@ pub struct GpuScene {
     pub(crate) instance_buffer: wgpu::Buffer,
     /// Number of the pose, unlike that of any other pose of any scene.
     pose: u64,
+    /// Made when edges are traced for the first time.
+    rays: Option<SceneRays>,
 }
 
 /// Numbers of poses that were given away.
@@ -54,6 +58,8 @@ pub(crate) struct Part {
     pub(crate) alpha: AlphaMode,
     pub(crate) double_sided: bool,
     pub(crate) mirrored: bool,
+    /// Whether its vertices move.
+    deforms: bool,
     local_bounds: Option<Aabb>,
     members: Vec<usize>,
 }
@@ -122,6 +128,7 @@ impl GpuScene {
             holders: Vec::new(),
             instance_buffer: instance_buffer(&gpu.device, count.max(1)),
             pose: 0,
+            rays: None,
         };
         gpu_scene.set_pose(gpu, scene, pose);
         gpu_scene
@@ -158,6 +165,52 @@ impl GpuScene {
                 transformed(&clusters[cluster].bounds, &instance.world_from_mesh)
             }
         });
+        // What rays cannot follow is not traced.
+        if self.rays.is_some() && self.pose_rays(gpu).is_err() {
+            self.rays = None;
+        }
+    }
+
+    /// Makes the casters ready for rays on the GPU, unless they are. `origin` is the world position near the scene that they
+    /// are relative to, in metres; `scene` is the one that this was made from.
+    ///
+    /// # Errors
+    ///
+    /// [`RayError`] for a scene that is too large for the device, and one without compute shaders.
+    pub fn make_rays(&mut self, gpu: &Gpu, scene: &Scene, origin: DVec3) -> Result<(), RayError> {
+        if self.rays.is_some() {
+            return Ok(());
+        }
+        let part = |part: &Part| {
+            let instance = &self.instances[part.members[0]].instance;
+            let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+            RayPart { primitive, deforms: part.deforms }
+        };
+        self.rays = Some(SceneRays::new(gpu, scene, origin, self.parts.iter().map(part))?);
+        let posed = self.pose_rays(gpu);
+        if posed.is_err() {
+            self.rays = None;
+        }
+        posed
+    }
+
+    /// The casters for rays, if they were [made](Self::make_rays).
+    pub fn rays(&self) -> Option<&RayScene> {
+        self.rays.as_ref().map(|rays| &rays.scene)
+    }
+
+    /// Moves the casters for rays to the present pose.
+    fn pose_rays(&mut self, gpu: &Gpu) -> Result<(), RayError> {
+        let Some(rays) = &mut self.rays else { return Ok(()) };
+        let (parts, instances) = (&self.parts, &self.instances);
+        let of_part = |(index, part): (usize, &Part)| part.members.iter().map(move |member| (index, *member)).collect();
+        let members = parts.iter().enumerate().flat_map(|part| -> Vec<(usize, usize)> { of_part(part) });
+        rays.set_instances(members.map(|(part, member)| {
+            let instance = &instances[member];
+            (part, instance.world_from_mesh, parts[part].deforms.then_some(instance.bounds))
+        }))?;
+        let deformed = parts.iter().enumerate().filter(|(_, part)| part.deforms);
+        rays.refit(gpu, deformed.map(|(index, part)| (index, &part.streams[0])))
     }
 
     /// Number of the pose that was set last, unlike that of any other pose of any scene.
@@ -311,8 +364,10 @@ impl Part {
         };
         let buffer = |usage, bytes: &[u8]| filled_buffer(gpu, usage, bytes);
         let vertex = |bytes: &[u8]| buffer(wgpu::BufferUsages::VERTEX, bytes);
+        // Passes fit what deforms to them for rays.
+        let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
         let streams = [
-            vertex(cast_slice(positions)),
+            buffer(wgpu::BufferUsages::VERTEX | read, cast_slice(positions)),
             vertex(cast_slice(normals)),
             vertex(if has.tangents { cast_slice(tangents) } else { bytemuck::bytes_of(&Vec4::ZERO) }),
             vertex(cast_slice(&surface(primitive, has))),
@@ -332,6 +387,7 @@ impl Part {
             alpha: material.alpha,
             double_sided: material.double_sided,
             mirrored,
+            deforms,
             local_bounds: Aabb::from_points(primitive.positions.iter().copied()),
             members: Vec::new(),
         }

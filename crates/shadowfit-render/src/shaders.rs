@@ -3,12 +3,17 @@
 use core::fmt::Write as _;
 
 use shadowfit_params::figures::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
+use shadowfit_wgpu::resolve::resolved_wgsl;
 use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
 use crate::Overlay;
 
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
+
+/// Bind group of the frame, and in it the binding of the picture's factors.
+const FRAME_GROUP: u32 = 0;
+const FACTORS_BINDING: u32 = 1;
 
 /// Bind group of the shadow map in the shaded pass.
 pub const SHADOW_GROUP: u32 = 1;
@@ -49,6 +54,7 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     [
         FRAME,
         &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)),
+        &resolved_wgsl(&WgslOptions::group(FRAME_GROUP), FACTORS_BINDING),
         &material(2),
         REFLECTANCE,
         include_str!("shaders/scene.wgsl"),
@@ -60,6 +66,11 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
 /// must come first.
 pub fn probe(shadow_map: &ShadowMapDescriptor) -> String {
     ["enable primitive_index;\n", &scene(shadow_map), include_str!("shaders/probe.wgsl")].concat()
+}
+
+/// The pass that draws what edges are resolved from, with the groups of the shaded one.
+pub fn surfaces(shadow_map: &ShadowMapDescriptor) -> String {
+    [&scene(shadow_map), include_str!("shaders/surfaces.wgsl")].concat()
 }
 
 /// What clears a part of a picture.

@@ -12,6 +12,10 @@ pub(crate) enum Pass {
     /// Into a map, by its number.
     Shadow(usize),
     Probe,
+    /// Depths and normals that edges are resolved from.
+    Surfaces,
+    /// The resolve pass.
+    Edges,
     Scene,
     /// The shaded pass of a further picture of maps that a frame before it drew.
     Again,
@@ -31,6 +35,8 @@ pub struct PassTimes {
     pub maps_ms: [Option<f32>; MAX_MAPS],
     /// The probe pass.
     pub probe_ms: Option<f32>,
+    /// The passes that edges are resolved by: depths and normals, and rays.
+    pub edges_ms: Option<f32>,
     /// The shaded pass.
     pub scene_ms: Option<f32>,
 }
@@ -57,6 +63,8 @@ impl Pass {
         match self {
             Self::Shadow(map) => SHADOW_LABELS[map % MAX_MAPS],
             Self::Probe => "probe",
+            Self::Surfaces => "surfaces",
+            Self::Edges => "edges",
             Self::Scene => "scene",
             Self::Again => "scene again",
         }
@@ -76,6 +84,10 @@ impl PassTimes {
             shadow_ms: maps_ms.into_iter().flatten().reduce(|sum, map| sum + map),
             maps_ms,
             probe_ms: milliseconds(Pass::Probe),
+            edges_ms: match (milliseconds(Pass::Surfaces), milliseconds(Pass::Edges)) {
+                (Some(surfaces), Some(edges)) => Some(surfaces + edges),
+                _ => None,
+            },
             scene_ms: milliseconds(Pass::Scene),
         };
         let is_whole = results.iter().any(|result| result.label == Pass::Scene.label());

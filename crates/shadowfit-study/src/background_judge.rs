@@ -304,6 +304,7 @@ mod tests {
             descriptor: ShadowMapDescriptor::default(),
             counted: vec![true],
             before: None,
+            traced: None,
         }
     }
 

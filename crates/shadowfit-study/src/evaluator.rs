@@ -6,11 +6,12 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use shadowfit::FittedMap;
 use shadowfit_render::{
-    Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics,
+    Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RayError, RenderTarget, Renderer, Statistics,
 };
 use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::ShadowMapError;
+use shadowfit_wgpu::resolve::EdgeResult;
 
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
@@ -59,10 +60,17 @@ impl Evaluator {
         frame: &Frame<'_>,
         picture: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
+        // Without rays edges are filtered, and the renderer says so.
+        let _rays = self.make_rays(gpu, scene);
         let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, frame, picture)?;
         self.drawn.clear();
         self.drawn.extend_from_slice(frame.maps);
         Ok(drawn)
+    }
+
+    /// Makes a scene ready for rays, where edges are traced.
+    fn make_rays(&self, gpu: &Gpu, scene: &mut PreparedScene) -> Result<(), RayError> {
+        if self.renderer.shadow_map().descriptor().edges.are_traced() { scene.make_gpu_rays(gpu) } else { Ok(()) }
     }
 
     /// Begins to read triangle and shadow factor of a pixel of a view, and the depths around a texel of a map, without
@@ -148,6 +156,8 @@ impl Evaluator {
         }
         let seen = self.draw_probe(gpu, scene, view, maps, None)?;
         let pixels = seen.read(gpu)?.pixels;
+        let traced = self.renderer.edge_result() == EdgeResult::Traced;
+        let traced = self.renderer.take_edge_counts().filter(|_| traced);
         let before = self.frame_before(gpu, scene, view)?;
         self.note_view(view, maps);
         let job = JudgeJob {
@@ -159,6 +169,7 @@ impl Evaluator {
             descriptor: *self.renderer.shadow_map().descriptor(),
             counted: scene.counted_instances(self.judging.subject_only),
             before,
+            traced,
         };
         Ok((job, seen))
     }
@@ -316,6 +327,7 @@ impl Evaluator {
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
         let atmosphere = view.atmosphere();
         let frame = Frame { choice, ..view.frame(maps, &atmosphere) };
+        self.make_rays(gpu, scene)?;
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)
     }

@@ -7,6 +7,7 @@ use shadowfit::FittedMap;
 use shadowfit_render::ProbePixel;
 use shadowfit_truth::{Judged, MapsBefore, Truth, crawl, judge_while};
 use shadowfit_wgpu::ShadowMapDescriptor;
+use shadowfit_wgpu::resolve::ResolveCounts;
 
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
@@ -45,6 +46,8 @@ pub struct JudgeJob {
     pub counted: Vec<bool>,
     /// The frame before; `None` where crawl is not measured.
     pub before: Option<FrameBefore>,
+    /// How many of its pixels were traced; `None` where edges are filtered.
+    pub traced: Option<ResolveCounts>,
 }
 
 impl JudgeJob {
@@ -74,6 +77,9 @@ impl JudgeJob {
         let seen = picture_maps(&measured, maps, descriptor);
         let counts = |triangle| rays.instance(triangle).is_some_and(|instance| self.counted[instance as usize]);
         let mut judged = judge_while(&rays.tracer, truth, &seen, &factors, counts, goes_on)?;
+        if let Some(counts) = &self.traced {
+            judged.tally.add_traced((counts.unsure.into(), counts.facing.into()));
+        }
         if let Some(before) = &self.before {
             let measured = measure(&before.maps);
             let maps_before = MapsBefore {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_params::BoxSource;
-use shadowfit_render::{Gpu, GpuScene};
+use shadowfit_render::{Gpu, GpuScene, RayError};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 use crate::SceneRays;
@@ -115,6 +115,15 @@ impl PreparedScene {
         }
         posed.bounds = gpu_scene.bounds().unwrap_or(posed.bounds);
         posed.rays.change_pose();
+    }
+
+    /// Makes the scene ready for edges that are traced, unless it is.
+    ///
+    /// # Errors
+    ///
+    /// [`RayError`] for a scene that is too large for the device, and one without compute shaders; edges are filtered then.
+    pub fn make_gpu_rays(&mut self, gpu: &Gpu) -> Result<(), RayError> {
+        self.gpu_scene.make_rays(gpu, &self.posed.scene, self.posed.origin)
     }
 }
 

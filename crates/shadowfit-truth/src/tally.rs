@@ -36,6 +36,10 @@ pub struct PictureTally {
     pub crawl_compared: u64,
     /// Those of them whose verdict differs.
     pub crawl_different: u64,
+    /// Facing pixels of pictures whose edges were traced, as the renderer counted them.
+    pub traced_of: u64,
+    /// Those of them that took rays.
+    pub traced: u64,
 }
 
 /// Numbers of pixels by class.
@@ -91,6 +95,8 @@ pub struct PictureFigures {
     /// Pixels of the edge zone whose verdict differs in the maps of the frame before, in per cent of
     /// those compared. `None` where none was compared.
     pub crawl: Option<f64>,
+    /// Pixels that took rays, in per cent of the facing pixels of pictures whose edges were traced. `None` where none were.
+    pub traced: Option<f64>,
 }
 
 /// A pixel that counts, as the sums take it.
@@ -120,12 +126,20 @@ impl PictureTally {
         self.transitions += other.transitions;
         self.crawl_compared += other.crawl_compared;
         self.crawl_different += other.crawl_different;
+        self.traced_of += other.traced_of;
+        self.traced += other.traced;
     }
 
     /// Adds what [`crawl()`](crate::crawl()) counted: pixels that differ, and pixels compared.
     pub fn add_crawl(&mut self, (different, compared): (u64, u64)) {
         self.crawl_different += different;
         self.crawl_compared += compared;
+    }
+
+    /// Adds what a renderer counted: pixels that took rays, and facing ones.
+    pub fn add_traced(&mut self, (traced, of): (u64, u64)) {
+        self.traced += traced;
+        self.traced_of += of;
     }
 
     /// Whether no pixel was judged: the sky alone, or only surfaces that face away from the light or
@@ -160,6 +174,7 @@ impl PictureTally {
             undersampled: ratio(self.undersampled as f64, self.pixels_per_texel.total()).map(|share| 100.0 * share),
             edge_distance: ratio(self.displacement, self.transitions),
             crawl: ratio(self.crawl_different as f64, self.crawl_compared).map(|share| 100.0 * share),
+            traced: ratio(self.traced as f64, self.traced_of).map(|share| 100.0 * share),
         })
     }
 
@@ -185,6 +200,7 @@ impl PictureTally {
             ("ppt > 1 %", of(|figures| figures.undersampled)),
             ("edge px", of(|figures| figures.edge_distance)),
             ("crawl %", of(|figures| figures.crawl)),
+            ("traced %", of(|figures| figures.traced)),
         ]
     }
 
@@ -273,6 +289,7 @@ mod tests {
             undersampled: None,
             edge_distance: None,
             crawl: None,
+            traced: None,
         };
         assert_eq!(figures, wanted);
         tally.add(&CountedPixel { is_grazing: false, ..pixel(Class::Right, true) });

@@ -24,6 +24,8 @@ mod identity;
 mod plan;
 mod price;
 mod schedule;
+#[cfg(feature = "rays")]
+mod stale;
 #[cfg(test)]
 mod streams;
 mod tiles;
@@ -42,6 +44,8 @@ pub use casters::Casters;
 pub use plan::PassContent;
 pub(crate) use plan::{FramePlan, Layer, PassPlan};
 pub use schedule::UpdateSchedule;
+#[cfg(feature = "rays")]
+pub(crate) use stale::StaleMap;
 
 /// A map that was new in this many frames in a row counts as one that cannot be kept: it is then drawn with the casters
 /// of one frame alone, which are fewer.

@@ -9,6 +9,8 @@ use shadowfit::glam::DVec3;
 use shadowfit::selection::MapOrder;
 use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 
+#[cfg(feature = "rays")]
+use crate::cache::StaleMap;
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
 use crate::layers::Layers;
 use crate::map::stored_casters;
@@ -43,6 +45,11 @@ pub(crate) struct CachedMaps {
     volumes: Vec<CasterVolume>,
     /// Origin of the boxes in the plan, in world space, in metres.
     origin: DVec3,
+    /// From where the look-up reads them.
+    view: Option<MapView>,
+    /// What maps that wait show wrongly.
+    #[cfg(feature = "rays")]
+    stale: Vec<StaleMap>,
     /// Whether the light gives nothing.
     is_off: bool,
 }
@@ -85,6 +92,9 @@ impl CachedMaps {
             maps: Vec::new(),
             volumes: Vec::new(),
             origin: DVec3::ZERO,
+            view: None,
+            #[cfg(feature = "rays")]
+            stale: Vec::new(),
             is_off: false,
         }
     }
@@ -102,6 +112,17 @@ impl CachedMaps {
     /// The maps that are read in this frame. A map that waits is the one that was drawn last.
     pub(crate) fn maps(&self) -> &[FittedMap] {
         &self.maps
+    }
+
+    /// From where the look-up reads them; `None` before the first frame, and while the light gives nothing.
+    pub(crate) fn view(&self) -> Option<&MapView> {
+        self.view.as_ref()
+    }
+
+    /// What maps that wait for another frame show wrongly.
+    #[cfg(feature = "rays")]
+    pub(crate) fn stale(&self) -> &[StaleMap] {
+        &self.stale
     }
 
     /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
@@ -125,6 +146,7 @@ impl CachedMaps {
         self.skip();
         self.maps.clear();
         self.volumes.clear();
+        self.view = None;
         self.map.turn_off(queue);
         self.is_off = true;
     }
@@ -163,6 +185,8 @@ impl CachedMaps {
             (self.caching, self.cache) = (false, MapCache::default());
             return self.update(queue, frame, fitted);
         }
+        #[cfg(feature = "rays")]
+        self.cache.find_stale(&choice, &cached, &mut self.stale);
         // 2. The casters of each, and the passes.
         self.origin = frame.origin;
         self.maps.clone_from(&choice.maps);
@@ -202,6 +226,7 @@ impl CachedMaps {
     }
 
     fn write_uniforms(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+        self.view = Some(*view);
         if self.is_present {
             self.map.prepare(queue, view, &self.maps)
         } else {

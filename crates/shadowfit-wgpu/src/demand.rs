@@ -53,7 +53,6 @@
 
 mod error;
 mod pass;
-mod read_back;
 mod view;
 
 pub use error::{DemandPassError, Unsupported};

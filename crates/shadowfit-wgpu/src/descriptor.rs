@@ -1,7 +1,7 @@
 //! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::selection::MapReading;
-use shadowfit::settings::{CasterPolicy, FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
+use shadowfit::settings::{CasterPolicy, Edges, FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
@@ -27,6 +27,9 @@ pub struct ShadowMapDescriptor {
     /// Which of the maps a point reads. By view depth
     /// [`FittedMap::covered_near`](shadowfit::FittedMap::covered_near) says where maps are blended.
     pub selection: MapSelection,
+    /// Whether a resolve pass traces rays where the maps are not sure. The maps, their look-up and its WGSL are the same
+    /// either way.
+    pub edges: Edges,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
     /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
@@ -61,6 +64,7 @@ impl From<&Technique> for ShadowMapDescriptor {
             softness: technique.softness,
             fade: fade(technique),
             selection: technique.maps.selection(),
+            edges: technique.edges,
             depth: technique.fit.depth,
             depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact(),
             cross_fades: false,

@@ -90,6 +90,10 @@ mod limits;
 mod map;
 mod map_texture;
 mod map_view;
+mod pixels;
+mod read_back;
+#[cfg(feature = "rays")]
+pub mod resolve;
 mod shader;
 mod sun_frame;
 mod sun_shadows;

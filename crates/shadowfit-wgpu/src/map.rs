@@ -290,10 +290,32 @@ impl ShadowMap {
 
     /// Writes what the look-up reads: this set of maps alone.
     fn write_receiver(&self, queue: &wgpu::Queue, now: &ReceiverUniform) {
+        queue.write_buffer(&self.receiver_uniform, 0, &self.of_set(now));
+    }
+
+    /// The uniform of a look-up into this set of maps alone.
+    fn of_set(&self, now: &ReceiverUniform) -> Vec<u8> {
         let (now, first_layer) = (now.in_layers(self.first_layer), self.first_layer);
         let fading = FadingUniform { now, share: 1.0, first_layer, ..FadingUniform::default() };
-        let bytes = if self.descriptor.cross_fades { bytemuck::bytes_of(&fading) } else { bytemuck::bytes_of(&now) };
-        queue.write_buffer(&self.receiver_uniform, 0, bytes);
+        if self.descriptor.cross_fades {
+            bytemuck::bytes_of(&fading).to_vec()
+        } else {
+            bytemuck::bytes_of(&now).to_vec()
+        }
+    }
+
+    /// What the look-up reads of maps from elsewhere than in the picture: this set of maps alone.
+    #[cfg(feature = "rays")]
+    pub(crate) fn receiver_bytes(&self, view: &MapView, maps: &[FittedMap]) -> Vec<u8> {
+        self.of_set(&ReceiverUniform::new(maps, view, &self.descriptor))
+    }
+
+    /// A bind group with another uniform for the look-up.
+    #[cfg(feature = "rays")]
+    pub(crate) fn receiver_group_with(&self, device: &wgpu::Device, uniform: &wgpu::Buffer) -> wgpu::BindGroup {
+        let resources = receiver_resources(uniform, &self.view, &self.sampler);
+        let resources = (self.descriptor.first_binding, &resources[..receiver_types(&self.descriptor).len()]);
+        bindings::group(device, "shadowfit resolve", &self.receiver_layout, resources)
     }
 
     /// Mixes another set of maps into what the look-up reads, after [`Self::prepare`]. `share`: that of this set.

@@ -46,7 +46,7 @@ impl WgslOptions<'_> {
     }
 
     /// The pieces with group, bindings and names filled in.
-    fn fill(&self, pieces: &str, first_binding: u32) -> String {
+    pub(crate) fn fill(&self, pieces: &str, first_binding: u32) -> String {
         let mut text = pieces
             .replace("GROUP", &self.group.to_string())
             .replace("MAX_MAPS", &MAX_MAPS.to_string())

@@ -69,6 +69,18 @@ impl SunShadows {
         self.fitter.technique()
     }
 
+    /// The maps that are read, and what is kept of them.
+    #[cfg(feature = "rays")]
+    pub(crate) fn cached(&self) -> &CachedMaps {
+        &self.maps
+    }
+
+    /// Whether two sets of maps are mixed.
+    #[cfg(feature = "rays")]
+    pub(crate) fn is_fading(&self) -> bool {
+        self.faded().is_some()
+    }
+
     /// The fitter of the maps.
     pub fn fitter(&self) -> &ShadowFitter {
         &self.fitter
@@ -93,6 +105,12 @@ impl SunShadows {
     /// The maps that shaders read in this frame. A map that waits for another frame is the one that was drawn last.
     pub fn maps(&self) -> &[FittedMap] {
         self.maps.maps()
+    }
+
+    /// From where shaders read them: the origin of positions, and the eye and direction that view depths are counted from.
+    /// `None` before the first frame, and while the sun is [off](Self::turn_off).
+    pub fn map_view(&self) -> Option<&MapView> {
+        self.maps.view()
     }
 
     /// The bind group that [`receiver_wgsl`](crate::receiver_wgsl) reads.

@@ -64,7 +64,7 @@ impl FitState {
     ///
     /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of slices outside 2..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and hold settings, softness, fade or depth steps that are out of range;
+    /// a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and hold settings, softness, fade, depth steps or rays that are out of range;
     /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
     /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightProjection::is_empty). An error leaves the fitter as it was.
@@ -235,6 +235,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), Fi
 fn check_numbers(technique: &Technique) -> Result<(), FitError> {
     technique.maps.check()?;
     technique.softness.checked()?;
+    technique.edges.checked()?;
     // The least texel of the maps is the greater of two, which would hide a bad one.
     check_least_texel(&technique.fit)?;
     checks::within("the shadows' fade", f64::from(technique.fade), 0.0, 1.0)?;

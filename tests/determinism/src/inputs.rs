@@ -5,8 +5,8 @@ use shadowfit::NormalCone;
 use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, Hysteresis, MapFormat, MapSelection, MapSettings,
-    RectangleKind, Shape, Softness, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, Edges, FilterKind, FitKind, FitSettings, Hysteresis, MapFormat, MapSelection,
+    MapSettings, RectangleKind, Shape, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{
     Aabb, Boxes, DepthConvention, FitError, FitInput, Maps, PerspectiveCamera, Slices, Technique, ViewFrustum,
@@ -227,6 +227,7 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         fade: 0.0,
         bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 1.0 },
         format: MapFormat::Depth32Float,
+        edges: Edges::Filtered,
     };
     technique.with_count(count)
 }

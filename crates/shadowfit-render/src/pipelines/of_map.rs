@@ -10,6 +10,7 @@ use crate::maker::{
 };
 use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
+use crate::renderer::NORMAL_FORMAT;
 use crate::scene::{Part, PartKey};
 use crate::uniform::InsetVertex;
 use crate::{Overlay, shaders};
@@ -21,6 +22,8 @@ pub(crate) enum Drawn {
     Shaded(Overlay),
     /// A probe.
     Probe,
+    /// The depths and normals that edges are resolved from, of so many samples per pixel.
+    Surfaces(u32),
 }
 
 /// Pipelines that read or draw the shadow map.
@@ -73,7 +76,7 @@ impl MapPipelines {
     ) {
         let maker = Maker { device, samples: self.samples };
         let is_judged = matches!(drawn, Drawn::Shaded(overlay) if overlay.is_judged());
-        let groups = [&layouts.uniform, map.receiver_layout(), &layouts.material, judged];
+        let groups = [&layouts.frame, map.receiver_layout(), &layouts.material, judged];
         let groups = &groups[..if is_judged { 4 } else { 3 }];
         for key in parts.iter().map(PartKey::of) {
             if self.parts.contains_key(&(drawn, key)) {
@@ -109,6 +112,7 @@ impl Maker<'_> {
             Drawn::Shaded(Overlay::None) => shaders::scene(map.descriptor()),
             Drawn::Shaded(overlay) => shaders::overlay(map.descriptor(), overlay),
             Drawn::Probe => shaders::probe(map.descriptor()),
+            Drawn::Surfaces(_) => shaders::surfaces(map.descriptor()),
         };
         self.module("parts", source)
     }
@@ -124,14 +128,16 @@ impl Maker<'_> {
             Drawn::Shaded(Overlay::None) => "fs_scene",
             Drawn::Shaded(_) => "fs_overlay",
             Drawn::Probe => "fs_probe",
+            Drawn::Surfaces(_) => "fs_surfaces",
         };
         let number = match drawn {
             Drawn::Shaded(Overlay::Casters) => InstanceNumber::Holder,
             _ => InstanceNumber::FirstTriangle,
         };
-        let probe = [Some(PROBE_FORMAT.into())];
+        let [probe, normals] = [PROBE_FORMAT, NORMAL_FORMAT].map(|format| [Some(format.into())]);
         let (targets, samples) = match drawn {
             Drawn::Probe => (&probe, 1),
+            Drawn::Surfaces(samples) => (&normals, samples),
             Drawn::Shaded(_) => (if key.blended { &BLENDED_COLOR } else { &COLOR }, self.samples),
         };
         self.pipeline(&Shape {
@@ -165,7 +171,7 @@ impl Maker<'_> {
     }
 
     fn inset(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
-        let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
+        let layout = self.layout(&[&layouts.frame, map.receiver_layout()]);
         let module = self.module("inset", shaders::inset(map.descriptor()));
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Float32x3];
         self.pipeline(&Shape {

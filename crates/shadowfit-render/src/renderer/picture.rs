@@ -100,7 +100,7 @@ impl Renderer {
         self.timer.end(query, encoder);
     }
 
-    fn draw_scene<'a>(
+    pub(super) fn draw_scene<'a>(
         &'a self,
         pass: &mut wgpu::RenderPass<'_>,
         scene: &GpuScene,

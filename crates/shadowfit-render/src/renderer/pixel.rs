@@ -41,6 +41,7 @@ impl Renderer {
         let block = query.texels.filter(|block| block.map < self.sun.maps().len());
         let read = PixelRead::new(&gpu.device, *query, block.is_some());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.resolve_edges(gpu, &mut encoder, scene, (&frame, &plan), (targets.size, 1));
         self.probe_pass(&mut encoder, scene, &plan, &targets, false);
         copy(&mut encoder, (&targets.texture, [x, y], [1, 1]), (read.buffer(), 0));
         if let Some(block) = block {

@@ -4,7 +4,7 @@
 @fragment
 fn fs_probe(in: SceneOut, @builtin(primitive_index) triangle: u32) -> @location(0) vec2<u32> {
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    let factor = shadowfit_factor_at(in.position, geometric, in.clip.xy);
+    let factor = shadowfit_resolved(in.position, geometric, in.clip.xy);
     if is_cut_out(in.uv, in.color.a) {
         discard;
     }

@@ -100,9 +100,12 @@ fn surface_of(in: SceneOut) -> Surface {
     return Surface(base, geometric, shading_normal(in, geometric, texel), -normalize(in.position));
 }
 
-// Share of the sun's light that the maps let through to a visible point.
+// Share of the sun's light that reaches a visible point. What is blended is not among the surfaces that were resolved.
 fn mapped_factor(in: SceneOut, surface: Surface) -> f32 {
-    return mix(1.0, shadowfit_factor_at(in.position, surface.geometric, in.clip.xy), frame.shadows);
+    if material.blended > 0.0 {
+        return mix(1.0, shadowfit_factor_at(in.position, surface.geometric, in.clip.xy), frame.shadows);
+    }
+    return mix(1.0, shadowfit_resolved(in.position, surface.geometric, in.clip.xy), frame.shadows);
 }
 
 // Colour of a visible point that a share of the sun's light reaches.

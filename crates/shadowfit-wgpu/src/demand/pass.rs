@@ -1,12 +1,12 @@
 //! The pass itself: pipeline, dispatch, and the counts that come back.
 
 use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, SIDE};
-use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen};
+use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
 
 use super::error::{DemandPassError, Unsupported};
-use super::read_back::ReadBack;
 use super::view::{DemandUniform, DemandView};
 use crate::bindings;
+use crate::read_back::ReadBack;
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
 /// is being recorded.
@@ -38,7 +38,7 @@ pub struct DemandPass {
 #[derive(Debug)]
 struct Frame {
     uniform: wgpu::Buffer,
-    read_back: ReadBack,
+    read_back: ReadBack<SeenSpace>,
 }
 
 impl DemandPass {
@@ -60,7 +60,7 @@ impl DemandPass {
                     size_of::<DemandUniform>(),
                     wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 ),
-                read_back: ReadBack::new(device),
+                read_back: ReadBack::new(device, COUNTS),
             };
             Self {
                 device: device.clone(),
@@ -152,24 +152,11 @@ impl DemandPass {
         if self.frames.iter().filter(|frame| frame.read_back.has_failed()).count() > 0 {
             return Err(DemandPassError::Lost);
         }
-        let readable = self.frames.iter_mut().map(|frame| &mut frame.read_back).filter(|frame| frame.is_readable());
-        let mut newest: Option<&mut ReadBack> = None;
-        for read_back in readable {
-            let older = match newest.take() {
-                Some(other) if other.number() > read_back.number() => {
-                    newest = Some(other);
-                    Some(read_back)
-                }
-                other => {
-                    newest = Some(read_back);
-                    other
-                }
-            };
-            older.into_iter().for_each(ReadBack::release);
-        }
+        let newest = ReadBack::newest(self.frames.iter_mut().map(|frame| &mut frame.read_back));
         let Some(read_back) = newest else { return Ok(None) };
         let is_wanted = read_back.number() > self.forgotten;
-        let seen = read_back.take().ok_or(DemandPassError::Lost)?;
+        let (space, counts) = read_back.take().ok_or(DemandPassError::Lost)?;
+        let seen = Seen::from_counts(space, counts).ok_or(DemandPassError::Lost)?;
         Ok(Some(seen).filter(|_| is_wanted))
     }
 

@@ -3,11 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 use shadowfit::demand::PIXELS;
 use shadowfit::demand::{DEPTHS, SeenSpace};
-use shadowfit::glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
+use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
 use super::error::DemandPassError;
+use crate::pixels::world_from_pixel;
 
 /// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
 /// as long for any resolution. In the courtyard with 1080 rows, every fourth pixel counts at most 1.1% of the points in
@@ -139,25 +140,11 @@ impl DemandView {
         if is_other { Err(DemandPassError::OtherDepth(self.depth)) } else { Ok(()) }
     }
 
-    /// From a pixel's column and row, and its depth minus the far plane's, to positions relative to the eye. Most of the
-    /// view lies near depth 1 where depth is not reversed: differences from it are exact in f32, and so small that the
-    /// matrix needs no more.
+    /// From a pixel's column and row, and its depth minus the far plane's, to positions relative to the eye.
     fn world_from_pixel(&self) -> Result<Mat4, DemandPassError> {
-        let [width, height] = [self.rectangle[2], self.rectangle[3]].map(f64::from);
-        let clip_from_pixel = DMat4::from_cols(
-            DVec4::X * (2.0 / width),
-            DVec4::Y * (-2.0 / height),
-            DVec4::Z,
-            DVec4::new(1.0 / width - 1.0, 1.0 - 1.0 / height, f64::from(self.depth.far()), 1.0),
-        );
-        let clip_from_world = self.clip_from_world.as_dmat4();
-        let has_inverse = clip_from_world.determinant() != 0.0;
-        let world_from_pixel = (clip_from_world.inverse() * clip_from_pixel).as_mat4();
-        if has_inverse && world_from_pixel.is_finite() {
-            Ok(world_from_pixel)
-        } else {
-            Err(DemandPassError::SingularMatrix)
-        }
+        let [_, _, width, height] = self.rectangle;
+        let matrix = world_from_pixel(&self.clip_from_world, [width, height], self.depth);
+        matrix.map(|matrix| matrix.as_mat4()).filter(Mat4::is_finite).ok_or(DemandPassError::SingularMatrix)
     }
 
     /// The plane whose distance from a position relative to the eye is its view depth, in metres.

@@ -3,7 +3,7 @@
 //! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
 
 use crate::technique::setters::setters;
-use crate::technique::settings::{BiasSettings, FilterKind, MapFormat, MapSettings, Softness};
+use crate::technique::settings::{BiasSettings, Edges, FilterKind, MapFormat, MapSettings, Softness};
 use glam::UVec2;
 
 mod filter;
@@ -45,6 +45,8 @@ pub struct Technique {
     pub bias: BiasSettings,
     /// Storage of the maps. Default: [`MapFormat::Depth32Float`].
     pub format: MapFormat,
+    /// Whether edges are the filter's, or traced where the maps are not sure. Default: [`Edges::Filtered`].
+    pub edges: Edges,
 }
 
 impl Default for Technique {
@@ -58,6 +60,7 @@ impl Default for Technique {
             fade: 0.0,
             bias: BiasSettings::default(),
             format: MapFormat::default(),
+            edges: Edges::default(),
         }
     }
 }
@@ -67,6 +70,7 @@ setters!(Technique {
     with_format format: MapFormat,
     with_softness softness: Softness,
     with_fade fade: f32,
+    with_edges edges: Edges,
 });
 
 impl Technique {
@@ -141,10 +145,12 @@ impl Technique {
     }
 
     /// Least width of a texel, in metres; 0 for no limit. It is [`MapSettings::least_texel`], or more where a
-    /// [soft](FilterKind::is_soft) filter would reach over more texels than its [ceiling](Softness::ceiling).
+    /// [soft](FilterKind::is_soft) filter would reach over more texels than its [ceiling](Softness::ceiling). Where edges
+    /// are [traced](Edges::Traced), rays make the penumbra, and texels may be as fine as they like.
     /// Each map's fit but [`FitKind::XnaSample`](settings::FitKind::XnaSample) respects it.
     pub fn least_texel(&self) -> f32 {
-        self.fit.least_texel.max(self.softness.least_texel(self.filter))
+        let soft = if self.edges.are_traced() { 0.0 } else { self.softness.least_texel(self.filter) };
+        self.fit.least_texel.max(soft)
     }
 
     /// Whether more may read a map than the receivers that it is made for: those of other view depths, or of

@@ -10,7 +10,7 @@
 
 use glam::{UVec2, Vec3};
 
-use crate::base::DepthConvention;
+use crate::base::{DepthConvention, FitError, checks};
 use crate::technique::setters::setters;
 
 pub use super::filter::{FilterKind, SoftRadius, Softness};
@@ -392,6 +392,52 @@ impl MapFormat {
     /// Whether it is a depth attachment, which samplers compare; others are colours, compared by hand.
     pub const fn is_depth(self) -> bool {
         matches!(self, Self::Depth32Float | Self::Depth16Unorm)
+    }
+}
+
+/// How the edges of shadows come out: by the maps alone, or exact, by rays where the maps are not sure.
+///
+/// Rays need the triangles of what casts, and a depth buffer before the picture is shaded: of `shadowfit-wgpu` the
+/// feature `rays`. Whoever reads the maps without that gets filtered edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Edges {
+    /// The filter's factor everywhere. The default.
+    #[default]
+    Filtered,
+    /// Where all texels that the filter reads agree, they decide; elsewhere rays do. Soft filters trace the disc of the
+    /// sun by [their softness](Softness), others its centre.
+    Traced {
+        /// Rays toward the light for each pixel that is not sure, 1..=[`Self::MAX_SAMPLES`]: from as many points of the
+        /// pixel, and toward as many of a sun that is not a point. With one ray edges are exact and jagged, with four
+        /// they are smooth.
+        samples: u32,
+    },
+}
+
+impl Edges {
+    /// Most rays for a pixel.
+    pub const MAX_SAMPLES: u32 = 64;
+
+    /// Rays for each pixel that is not sure; 0 where edges are filtered.
+    pub const fn samples(self) -> u32 {
+        match self {
+            Self::Filtered => 0,
+            Self::Traced { samples } => samples,
+        }
+    }
+
+    /// Whether rays are traced.
+    pub const fn are_traced(self) -> bool {
+        matches!(self, Self::Traced { .. })
+    }
+
+    /// Refuses a number of rays that is out of range.
+    pub(crate) fn checked(self) -> Result<Self, FitError> {
+        if let Self::Traced { samples } = self {
+            checks::within("the rays of a pixel", f64::from(samples), 1.0, f64::from(Self::MAX_SAMPLES))?;
+        }
+        Ok(self)
     }
 }
 

@@ -1,0 +1,157 @@
+//! Exact edges: the surfaces of a picture are drawn before it, and resolved.
+
+use shadowfit::DepthConvention;
+use shadowfit_wgpu::resolve::{EdgeResult, NormalEncoding, ResolveCounts, ResolveError, ResolvePass, ResolveView};
+use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError};
+use wgpu_profiler::GpuProfilerQuery;
+
+use super::{Plan, Renderer, frame_group};
+use crate::Gpu;
+use crate::attachment::{cleared, depth};
+use crate::frame::Frame;
+use crate::pipelines::Drawn;
+use crate::renderer::picture::set_part;
+use crate::scene::GpuScene;
+use crate::target::DEPTH_FORMAT;
+use crate::timer::Pass;
+
+/// Format of the normals: world axes, unit length.
+pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// What resolves edges, and what it does so from.
+#[derive(Debug)]
+pub(super) struct Edges {
+    pass: ResolvePass,
+    surfaces: Option<Surfaces>,
+    counts: Option<ResolveCounts>,
+}
+
+/// The textures of a picture's surfaces.
+#[derive(Debug)]
+struct Surfaces {
+    key: ([u32; 2], u32),
+    depth: wgpu::TextureView,
+    normals: wgpu::TextureView,
+    /// What normals of several samples are drawn into.
+    multisampled: Option<wgpu::TextureView>,
+}
+
+impl Edges {
+    pub(super) fn new(gpu: &Gpu) -> Result<Self, ShadowMapError> {
+        let pass = ResolvePass::new(&gpu.device, &gpu.queue);
+        let pass = pass.map_err(|error| ShadowMapError::Device(error.to_string()))?;
+        Ok(Self { pass, surfaces: None, counts: None })
+    }
+
+    pub(super) fn factors(&self) -> &wgpu::TextureView {
+        self.pass.factors()
+    }
+}
+
+impl Surfaces {
+    fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
+        let texture = |format, sample_count| {
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("surfaces"),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        Self {
+            key: (size, samples),
+            depth: texture(DEPTH_FORMAT, samples),
+            normals: texture(NORMAL_FORMAT, 1),
+            multisampled: (samples > 1).then(|| texture(NORMAL_FORMAT, samples)),
+        }
+    }
+}
+
+impl Renderer {
+    /// How the edges of the last picture or probe came out.
+    pub fn edge_result(&self) -> EdgeResult {
+        self.edges.pass.result()
+    }
+
+    /// How many pixels of a picture or probe a frame or two back were traced; `None` before the first.
+    pub fn edge_counts(&self) -> Option<ResolveCounts> {
+        self.edges.counts
+    }
+
+    /// The counts of the newest picture or probe that the GPU has finished, given once.
+    pub fn take_edge_counts(&mut self) -> Option<ResolveCounts> {
+        let counts = self.edges.pass.take_counts();
+        self.edges.counts = counts.or(self.edges.counts);
+        counts
+    }
+
+    /// Resolves the edges of a picture of so many pixels and samples, where the shadow map says so and the scene has
+    /// [rays](GpuScene::make_rays).
+    pub(super) fn resolve_edges(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        (frame, plan): (&Frame<'_>, &Plan),
+        (size, samples): ([u32; 2], u32),
+    ) {
+        let descriptor: &ShadowMapDescriptor = self.sun.map().descriptor();
+        let wants = descriptor.edges.are_traced() && scene.rays().is_some() && frame.shadows;
+        let resolved = if wants { self.resolve(gpu, encoder, scene, (frame, plan), (size, samples)) } else { Ok(()) };
+        if !wants || resolved.is_err() {
+            self.edges.pass.skip();
+        }
+        self.frame_group = frame_group(&gpu.device, &self.layouts, &self.frame_uniform, self.edges.factors());
+    }
+
+    fn resolve(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        (frame, plan): (&Frame<'_>, &Plan),
+        (size, samples): ([u32; 2], u32),
+    ) -> Result<(), ResolveError> {
+        self.prepare_parts(gpu, scene, Drawn::Surfaces(samples));
+        let kept = self.edges.surfaces.take().filter(|surfaces| surfaces.key == (size, samples));
+        let surfaces = kept.unwrap_or_else(|| Surfaces::new(&gpu.device, size, samples));
+        self.surfaces_pass(encoder, scene, plan, &surfaces);
+        let camera = frame.camera;
+        let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
+        let view = ResolveView::new(&surfaces.depth, clip_from_eye, DepthConvention::Reversed, camera.eye)
+            .with_normals(&surfaces.normals, NormalEncoding::Signed);
+        let query = self.timer.begin(Pass::Edges, encoder);
+        let timestamps = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
+        let resolved = self.edges.pass.record_timed(encoder, &self.sun, scene.rays(), &view, timestamps);
+        self.timer.end(query, encoder);
+        self.edges.surfaces = Some(surfaces);
+        resolved.map(|_| ())
+    }
+
+    /// Draws depths and normals.
+    fn surfaces_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan, surfaces: &Surfaces) {
+        let color = match &surfaces.multisampled {
+            Some(view) => cleared(view, Some(&surfaces.normals), wgpu::Color::TRANSPARENT),
+            None => cleared(&surfaces.normals, None, wgpu::Color::TRANSPARENT),
+        };
+        let query = self.timer.begin(Pass::Surfaces, encoder);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("surfaces"),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(depth(&surfaces.depth)),
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
+            ..Default::default()
+        });
+        set_part(&mut pass, plan);
+        let drawn = Drawn::Surfaces(surfaces.key.1);
+        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.of_map.part(part, drawn));
+        drop(pass);
+        self.timer.end(query, encoder);
+    }
+}

@@ -1,0 +1,43 @@
+//! Exact edges: rays where the maps are not sure. A compute pass over the depth buffer asks for each pixel whether all
+//! texels that the filter reads agree; where they do not, rays decide. The picture then reads a texture of factors.
+//!
+//! ```text
+//!   depth pre-pass ──▶ classify: which pixels are the maps sure of? ──▶ factors ──▶ the engine's picture
+//!                          └─▶ list of the others ──▶ rays ────────────────┘
+//! ```
+//!
+//! A pixel is *sure* where every texel of the filter's footprint, compared with the technique's bias, is lit, or every
+//! one is not. Points outside all maps, or nearer to a map's border than the filter reaches, are traced; surfaces that
+//! face away from the light get 0, and neither costs a ray.
+//!
+//! ```no_run
+//! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, sun: &mut shadowfit_wgpu::SunShadows,
+//! #         rays: &shadowfit_rays::RayScene, depth: &wgpu::TextureView, clip_from_eye: shadowfit::glam::Mat4,
+//! #         encoder: &mut wgpu::CommandEncoder) -> Result<(), Box<dyn std::error::Error>> {
+//! use shadowfit::DepthConvention;
+//! use shadowfit_wgpu::resolve::{ResolvePass, ResolveView};
+//!
+//! let mut exact = ResolvePass::new(device, queue)?; // once, for each view
+//! // In each frame, between the depth pre-pass and the picture:
+//! let view = ResolveView::new(depth, clip_from_eye, DepthConvention::Reversed);
+//! let edges = exact.record(encoder, sun, Some(rays), &view)?; // says why where edges are filtered
+//! // The picture's shader calls `shadowfit_resolved` of `resolved_wgsl`, with `exact.group()` bound.
+//! # Ok(()) }
+//! ```
+//!
+//! What is no part of the depth buffer, such as blended surfaces, particles and fog, calls the filter's
+//! `shadowfit_factor_at` as before.
+
+mod error;
+mod group;
+mod pass;
+mod shader;
+mod source;
+mod uniform;
+mod view;
+
+pub use error::ResolveError;
+pub use pass::{EdgeResult, ResolveCounts, ResolvePass, WhyFiltered};
+pub use shader::{resolve_wgsl, resolved_wgsl};
+pub use uniform::{ResolveUniform, UnknownUniform};
+pub use view::{NormalEncoding, Normals, ResolveView};

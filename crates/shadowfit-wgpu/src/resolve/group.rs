@@ -1,0 +1,111 @@
+//! What a picture is resolved into: the texture of factors, and the list of pixels whose rays are traced.
+
+use super::error::ResolveError;
+use super::shader::TRACE_THREADS;
+use crate::bindings;
+use crate::caught::caught;
+
+/// Counts at the beginning of the list: pixels on it, facing pixels, and those of them that the filter decides.
+pub(super) const COUNTS: usize = 4;
+
+/// Textures and buffers of a picture's size.
+#[derive(Debug)]
+pub(super) struct Target {
+    pub(super) size: [u32; 2],
+    /// For the passes to write to.
+    pub(super) factors: wgpu::TextureView,
+    pub(super) list: wgpu::Buffer,
+    /// Workgroups of the pass that traces.
+    pub(super) groups: wgpu::Buffer,
+    pub(super) group: wgpu::BindGroup,
+    pub(super) arguments: wgpu::BindGroup,
+}
+
+/// Layouts of what does not depend on the maps.
+#[derive(Debug)]
+pub(super) struct Layouts {
+    /// What the picture's shader reads.
+    pub(super) read: wgpu::BindGroupLayout,
+    /// Of the pass that counts workgroups.
+    pub(super) arguments: wgpu::BindGroupLayout,
+}
+
+/// A float texture that is loaded.
+pub(super) const FLOATS: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    view_dimension: wgpu::TextureViewDimension::D2,
+    multisampled: false,
+};
+
+impl Layouts {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
+        let stages = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let storage = |read_only| bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
+        let arguments = [storage(true), storage(false)];
+        Self {
+            read: bindings::layout(device, "shadowfit resolved", stages, (0, &[FLOATS])),
+            arguments: bindings::layout(
+                device,
+                "shadowfit resolve arguments",
+                wgpu::ShaderStages::COMPUTE,
+                (0, &arguments),
+            ),
+        }
+    }
+
+    /// What the picture's shader reads.
+    pub(super) fn group(&self, device: &wgpu::Device, factors: &wgpu::TextureView) -> wgpu::BindGroup {
+        let resources = [wgpu::BindingResource::TextureView(factors)];
+        bindings::group(device, "shadowfit resolved", &self.read, (0, &resources))
+    }
+}
+
+impl Target {
+    pub(super) fn new(device: &wgpu::Device, layouts: &Layouts, size: [u32; 2]) -> Result<Self, ResolveError> {
+        let made = || {
+            let factors = factors(device, size);
+            let list = list(device, size);
+            let groups = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("shadowfit resolve groups"),
+                size: 16,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
+                mapped_at_creation: false,
+            });
+            let resources = [list.as_entire_binding(), groups.as_entire_binding()];
+            let label = "shadowfit resolve arguments";
+            let arguments = bindings::group(device, label, &layouts.arguments, (0, &resources));
+            let group = layouts.group(device, &factors);
+            Self { size, factors, list, groups, group, arguments }
+        };
+        caught(device, made).map_err(|error| ResolveError::Device(error.to_string()))
+    }
+}
+
+/// A texture of factors.
+pub(super) fn factors(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadowfit factors"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// A list with room for all pixels of a picture.
+fn list(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Buffer {
+    let pixels = (u64::from(width) * u64::from(height)).next_multiple_of(u64::from(TRACE_THREADS));
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shadowfit resolve list"),
+        size: (COUNTS as u64 + pixels) * 4,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}

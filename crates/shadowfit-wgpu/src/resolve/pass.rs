@@ -1,0 +1,392 @@
+//! The pass itself: what it needs of a device, its pipelines, and a frame of it.
+
+use shadowfit_rays::RayScene;
+
+use super::error::ResolveError;
+use super::group::{COUNTS, FLOATS, Layouts, Target, factors};
+use super::shader::{self, Shape};
+use super::source::{Source, is_fine};
+use super::uniform::ResolveUniform;
+use super::view::ResolveView;
+use crate::bindings;
+use crate::caught::caught;
+use crate::demand::{Unsupported, supported};
+use crate::read_back::ReadBack;
+use crate::{FadingUniform, ShadowMapDescriptor, SunShadows};
+
+/// Pixels along a side of a workgroup that classifies, as in the WGSL.
+const SQUARE: u32 = 8;
+/// Pictures whose counts may be on their way back at once, as many as a GPU may be behind and one more.
+const FRAMES: usize = 4;
+
+/// Finds the factors of a picture: see the [module](super). One for each view.
+#[derive(Debug)]
+pub struct ResolvePass {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    lacks: Option<Unsupported>,
+    layouts: Layouts,
+    pipelines: Option<Pipelines>,
+    resolve: wgpu::Buffer,
+    receiver: wgpu::Buffer,
+    target: Option<Target>,
+    /// What shaders read where nothing is resolved: one pixel, which is the filter's.
+    nothing: (wgpu::TextureView, wgpu::BindGroup),
+    result: EdgeResult,
+    counts: Vec<ReadBack<()>>,
+    recordings: u64,
+}
+
+/// How the edges of a frame came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdgeResult {
+    /// Rays were traced where the maps were not sure.
+    Traced,
+    /// The filter decides everywhere.
+    Filtered(WhyFiltered),
+}
+
+/// Why the edges of a frame are filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyFiltered {
+    /// The technique's edges are.
+    Technique,
+    /// The device lacks something.
+    Device(Unsupported),
+    /// There are no rays.
+    Rays,
+    /// No picture was resolved yet, or it was an error.
+    Picture,
+    /// The sun gives nothing, or had no frame yet.
+    NoMaps,
+    /// Two sets of maps are mixed while the sun [steps](SunShadows::set_light_steps).
+    Fading,
+}
+
+/// How many pixels of a picture were traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ResolveCounts {
+    /// Pixels that face the light within the distance of shadows.
+    pub facing: u32,
+    /// Those of them that the maps were not sure of.
+    pub unsure: u32,
+    /// Those that were left to the filter.
+    pub filtered: u32,
+}
+
+/// Pipelines for maps of a descriptor and pictures of a shape.
+#[derive(Debug)]
+struct Pipelines {
+    key: (ShadowMapDescriptor, Shape),
+    layout: wgpu::BindGroupLayout,
+    trace_layout: wgpu::BindGroupLayout,
+    classify: wgpu::ComputePipeline,
+    arguments: wgpu::ComputePipeline,
+    trace: wgpu::ComputePipeline,
+}
+
+impl ResolvePass {
+    /// A pass that has resolved nothing yet. On devices without compute shaders, and on OpenGL, whose shaders cannot load
+    /// depth, [`Self::record`] says so, and all edges are filtered.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolveError::Device`] for a device out of memory.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ResolveError> {
+        let lacks = supported(&device.limits(), device.adapter_info().backend).err();
+        let made = || {
+            let layouts = Layouts::new(device);
+            let texture = factors(device, [1, 1]);
+            let nothing = (texture.clone(), layouts.group(device, &texture));
+            let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
+            queue.write_texture(texture.texture().as_image_copy(), bytemuck::bytes_of(&-1.0_f32), layout, size);
+            Self {
+                device: device.clone(),
+                queue: queue.clone(),
+                lacks,
+                layouts,
+                pipelines: None,
+                resolve: uniform(device, size_of::<ResolveUniform>()),
+                receiver: uniform(device, size_of::<FadingUniform>()),
+                target: None,
+                nothing,
+                result: EdgeResult::Filtered(WhyFiltered::Picture),
+                counts: (0..FRAMES).map(|_| ReadBack::new(device, COUNTS)).collect(),
+                recordings: 0,
+            }
+        };
+        caught(device, made).map_err(|error| ResolveError::Device(error.to_string()))
+    }
+
+    /// The layout of what [`resolved_wgsl`](super::resolved_wgsl) reads: in fragment and compute shaders.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layouts.read
+    }
+
+    /// The bind group that [`resolved_wgsl`](super::resolved_wgsl) reads: another one where the size of the picture
+    /// changes, and where edges are filtered. Take it after [`Self::record`].
+    pub fn group(&self) -> &wgpu::BindGroup {
+        let traced = self.target.as_ref().filter(|_| self.result == EdgeResult::Traced);
+        traced.map_or(&self.nothing.1, |target| &target.group)
+    }
+
+    /// The factors of the picture that was resolved last, an `R32Float` texture of the depth texture's size: the share of
+    /// the light that reaches a pixel, 0..=1, and -1 where the filter decides. One pixel where edges are filtered.
+    pub fn factors(&self) -> &wgpu::TextureView {
+        let traced = self.target.as_ref().filter(|_| self.result == EdgeResult::Traced);
+        traced.map_or(&self.nothing.0, |target| &target.factors)
+    }
+
+    /// How the edges of the last picture came out.
+    pub fn result(&self) -> EdgeResult {
+        self.result
+    }
+
+    /// Leaves the edges of the next picture to the filter: for a frame without a pre-pass.
+    pub fn skip(&mut self) {
+        self.result = EdgeResult::Filtered(WhyFiltered::Picture);
+    }
+
+    /// Records the passes, after those of the maps and the one that fills the depth buffer, and before the picture is
+    /// shaded. The sun's maps are those of its last update. `rays` have what casts in this frame.
+    ///
+    /// Returns how edges come out; where they are filtered nothing is recorded.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolveError`] for the view, its textures, and a device out of memory. Edges are filtered then.
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        sun: &SunShadows,
+        rays: Option<&RayScene>,
+        view: &ResolveView<'_>,
+    ) -> Result<EdgeResult, ResolveError> {
+        self.record_timed(encoder, sun, rays, view, None)
+    }
+
+    /// [`Self::record`] with timestamps at the beginning and the end of the passes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::record`].
+    pub fn record_timed(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        sun: &SunShadows,
+        rays: Option<&RayScene>,
+        view: &ResolveView<'_>,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) -> Result<EdgeResult, ResolveError> {
+        self.result = EdgeResult::Filtered(WhyFiltered::Picture);
+        let why = match (self.why_filtered(sun), rays) {
+            (None, Some(rays)) => {
+                self.trace(encoder, sun, rays, view, timestamps)?;
+                self.result = EdgeResult::Traced;
+                return Ok(self.result);
+            }
+            (Some(why), _) => why,
+            (None, None) => WhyFiltered::Rays,
+        };
+        self.result = EdgeResult::Filtered(why);
+        Ok(self.result)
+    }
+
+    fn why_filtered(&self, sun: &SunShadows) -> Option<WhyFiltered> {
+        if !sun.map().descriptor().edges.are_traced() {
+            Some(WhyFiltered::Technique)
+        } else if let Some(lack) = self.lacks {
+            Some(WhyFiltered::Device(lack))
+        } else if sun.map_view().is_none() {
+            Some(WhyFiltered::NoMaps)
+        } else {
+            sun.is_fading().then_some(WhyFiltered::Fading)
+        }
+    }
+
+    fn trace(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        sun: &SunShadows,
+        rays: &RayScene,
+        view: &ResolveView<'_>,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) -> Result<(), ResolveError> {
+        check_textures(view)?;
+        let Some(map_view) = sun.map_view() else { return Ok(()) };
+        let source = Source::new(sun, map_view, (view, rays.origin()))?;
+        let shape = Shape {
+            samples: view.depth.texture().sample_count(),
+            normals: view.normals.map(|normals| normals.encoding),
+        };
+        let size = [view.depth.texture().width(), view.depth.texture().height()];
+        if self.target.as_ref().is_none_or(|target| target.size != size) {
+            self.target = None;
+            self.target = Some(Target::new(&self.device, &self.layouts, size)?);
+        }
+        self.make_pipelines(sun, rays, shape)?;
+        let (Some(target), Some(pipelines)) = (&self.target, &self.pipelines) else { return Ok(()) };
+        self.queue.write_buffer(&self.resolve, 0, bytemuck::bytes_of(&source.resolve));
+        self.queue.write_buffer(&self.receiver, 0, &source.receiver);
+        let receiver = sun.map().receiver_group_with(&self.device, &self.receiver);
+        let [classify, trace] =
+            [&pipelines.layout, &pipelines.trace_layout].map(|layout| self.bind(layout, target, view));
+        encoder.clear_buffer(&target.list, 0, Some(COUNTS as u64 * 4));
+        let timestamp_writes = timestamps;
+        let descriptor = wgpu::ComputePassDescriptor { label: Some("shadowfit resolve"), timestamp_writes };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(&pipelines.classify);
+        pass.set_bind_group(0, &receiver, &[]);
+        pass.set_bind_group(1, &classify, &[]);
+        let [x, y] = source.resolve.size.map(|side| side.div_ceil(SQUARE));
+        pass.dispatch_workgroups(x, y, 1);
+        pass.set_pipeline(&pipelines.arguments);
+        pass.set_bind_group(0, &target.arguments, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+        pass.set_pipeline(&pipelines.trace);
+        pass.set_bind_group(0, &receiver, &[]);
+        pass.set_bind_group(1, &trace, &[]);
+        pass.set_bind_group(2, rays.group(), &[]);
+        pass.dispatch_workgroups_indirect(&target.groups, 0);
+        drop(pass);
+        self.recordings += 1;
+        if let Some(counts) = self.counts.iter_mut().find(|counts| counts.is_free()) {
+            counts.record(encoder, &target.list, (), self.recordings);
+        }
+        Ok(())
+    }
+
+    /// The counts of the newest picture that the GPU has finished, given once, a frame or two late; `None` until there
+    /// are any. Never waits.
+    pub fn take_counts(&mut self) -> Option<ResolveCounts> {
+        // This only polls; what is finished shows below.
+        let _status = self.device.poll(wgpu::PollType::Poll);
+        self.counts.iter_mut().for_each(|counts| _ = counts.has_failed());
+        let (_, counts) = ReadBack::newest(self.counts.iter_mut())?.take()?;
+        Some(ResolveCounts { unsure: counts[0], facing: counts[1], filtered: counts[2] })
+    }
+
+    fn bind(&self, layout: &wgpu::BindGroupLayout, target: &Target, view: &ResolveView<'_>) -> wgpu::BindGroup {
+        let normals = view.normals.map_or(&self.nothing.0, |normals| normals.view);
+        let resources = [
+            self.resolve.as_entire_binding(),
+            wgpu::BindingResource::TextureView(view.depth),
+            wgpu::BindingResource::TextureView(normals),
+            wgpu::BindingResource::TextureView(&target.factors),
+            target.list.as_entire_binding(),
+        ];
+        bindings::group(&self.device, "shadowfit resolve", layout, (0, &resources))
+    }
+
+    fn make_pipelines(&mut self, sun: &SunShadows, rays: &RayScene, shape: Shape) -> Result<(), ResolveError> {
+        // What the WGSL does not depend on is the same for all.
+        let of_all = ShadowMapDescriptor::default();
+        let descriptor = ShadowMapDescriptor {
+            resolution: of_all.resolution,
+            fade: of_all.fade,
+            edges: of_all.edges,
+            ..*sun.map().descriptor()
+        };
+        if self.pipelines.as_ref().is_some_and(|pipelines| pipelines.key == (descriptor, shape)) {
+            return Ok(());
+        }
+        let layouts = [sun.map().receiver_layout(), rays.layout(), &self.layouts.arguments];
+        let made = caught(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts));
+        self.pipelines = Some(made.map_err(|error| ResolveError::Device(error.to_string()))?);
+        Ok(())
+    }
+}
+
+impl Pipelines {
+    fn new(
+        device: &wgpu::Device,
+        (descriptor, shape): (&ShadowMapDescriptor, Shape),
+        [receiver, rays, arguments]: [&wgpu::BindGroupLayout; 3],
+    ) -> Self {
+        let [layout, trace_layout] = [false, true].map(|read_only| layout(device, shape, read_only));
+        let classify = (shader::classify(descriptor, shape), "classify");
+        let trace = (shader::trace(descriptor, shape), "trace");
+        Self {
+            classify: pipeline(device, &[Some(receiver), Some(&layout)], classify),
+            arguments: pipeline(device, &[Some(arguments)], (shader::arguments(), "count_groups")),
+            trace: pipeline(device, &[Some(receiver), Some(&trace_layout), Some(rays)], trace),
+            key: (*descriptor, shape),
+            layout,
+            trace_layout,
+        }
+    }
+}
+
+/// Layout of a picture: its list is written, or read.
+fn layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGroupLayout {
+    let factors = wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format: wgpu::TextureFormat::R32Float,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    };
+    let depths = bindings::depths(wgpu::TextureViewDimension::D2, shape.samples > 1);
+    let list = bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
+    let types = [bindings::UNIFORM, depths, FLOATS, factors, list];
+    bindings::layout(device, "shadowfit resolve", wgpu::ShaderStages::COMPUTE, (0, &types))
+}
+
+fn pipeline(
+    device: &wgpu::Device,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    (source, entry): (String, &str),
+) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("shadowfit resolve"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("shadowfit resolve"),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("shadowfit resolve"),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some(entry),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
+fn uniform(device: &wgpu::Device, bytes: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shadowfit resolve"),
+        size: bytes as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Refuses textures that cannot be bound, and a picture that does not lie in them.
+fn check_textures(view: &ResolveView<'_>) -> Result<(), ResolveError> {
+    let texture = view.depth.texture();
+    let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
+    let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING);
+    if !is_readable || !is_fine(format) || !matches!(samples, 1 | 4) {
+        return Err(ResolveError::Texture { format, samples, usage });
+    }
+    let size = [texture.width(), texture.height()];
+    if let Some(normals) = view.normals.map(|normals| normals.view.texture()) {
+        let format = normals.format();
+        let is_float = matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
+        let is_readable = normals.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING);
+        let found = [normals.width(), normals.height()];
+        if !is_float || !is_readable || normals.sample_count() != 1 || found != size {
+            return Err(ResolveError::Normals { format, size: found, expected: size });
+        }
+    }
+    let rectangle @ [left, top, width, height] = view.part();
+    let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
+    if is_inside(left, width, size[0]) && is_inside(top, height, size[1]) {
+        Ok(())
+    } else {
+        Err(ResolveError::Rectangle { rectangle, texture: size })
+    }
+}

@@ -1,0 +1,91 @@
+//! The WGSL of the resolve passes, and of what reads their result.
+
+use shadowfit_rays::{RayWgslOptions, rays_wgsl};
+
+use super::uniform::{MAX_POINTS, MAX_UNKNOWN};
+use super::view::NormalEncoding;
+use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
+
+/// Threads of a workgroup that traces.
+pub(super) const TRACE_THREADS: u32 = 64;
+/// Workgroups that WebGPU has along an axis.
+const MAX_GROUPS: u32 = 65_535;
+/// Bind groups of the look-up and of the rays.
+const RECEIVER_GROUP: u32 = 0;
+const RAYS_GROUP: u32 = 2;
+
+const LIST: &str = include_str!("../shaders/resolve_list.wgsl");
+
+/// What the WGSL of the passes depends on, beside the maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shape {
+    /// Samples of the depth texture per pixel.
+    pub(super) samples: u32,
+    /// How the texture of normals has them, if there is one.
+    pub(super) normals: Option<NormalEncoding>,
+}
+
+/// The WGSL of the passes that classify pixels, count workgroups, and trace rays: entry points `classify`,
+/// `count_groups` and `trace`. `samples`: those of the depth texture per pixel.
+pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 3] {
+    let shape = Shape { samples, normals };
+    [classify(descriptor, shape), arguments(), trace(descriptor, shape)]
+}
+
+/// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
+/// `shadowfit_resolved(position, normal, pixel) -> f32` is the share of the light that reaches a point that the depth
+/// buffer shows: resolved, and the filter's where it was not. The arguments are those of `shadowfit_factor_at`. It reads
+/// one texture at a binding of the group: 0 for [`ResolvePass::group`](super::ResolvePass::group), any other one for a
+/// bind group of the engine's own with [`ResolvePass::factors`](super::ResolvePass::factors).
+pub fn resolved_wgsl(options: &WgslOptions<'_>, binding: u32) -> String {
+    options.fill(include_str!("../shaders/resolved.wgsl"), binding)
+}
+
+pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String {
+    let four = if descriptor.format.is_depth() {
+        include_str!("../shaders/four_depth.wgsl")
+    } else {
+        include_str!("../shaders/four_float.wgsl")
+    };
+    let footprint = format!("const FOOTPRINT: f32 = {:?};\n", descriptor.filter.reach().max(1.0));
+    let list = LIST.replace("LIST_COUNT", "atomic<u32>");
+    let passes = include_str!("../shaders/resolve_classify.wgsl");
+    [&look_up(descriptor), four, &shared(shape), &list, &footprint, passes].concat()
+}
+
+pub(super) fn arguments() -> String {
+    let constants = format!("const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
+    let list = LIST.replace("LIST_COUNT", "u32");
+    [&constants, &list, include_str!("../shaders/resolve_arguments.wgsl")].concat()
+}
+
+pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape) -> String {
+    let rays = rays_wgsl(&RayWgslOptions::group(RAYS_GROUP));
+    let threads = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
+    let list = LIST.replace("LIST_COUNT", "u32");
+    let pass = include_str!("../shaders/resolve_trace.wgsl");
+    [&look_up(descriptor), &rays, &shared(shape), &list, &threads, pass].concat()
+}
+
+/// The look-up into the maps, for positions relative to the eye.
+fn look_up(descriptor: &ShadowMapDescriptor) -> String {
+    receiver_wgsl(descriptor, &WgslOptions::group(RECEIVER_GROUP))
+}
+
+fn shared(Shape { samples, normals }: Shape) -> String {
+    let (texture, index) =
+        if samples > 1 { ("texture_depth_multisampled_2d", "at") } else { ("texture_depth_2d", "0") };
+    let normals = match normals {
+        None => "NO_NORMALS",
+        Some(NormalEncoding::Signed) => "SIGNED_NORMALS",
+        Some(NormalEncoding::Unsigned) => "2u",
+    };
+    let constants = format!(
+        "\nalias DepthTexture = {texture};\nconst SAMPLES: u32 = {samples}u;\nconst NORMALS: u32 = {normals};\n\n"
+    );
+    let text = include_str!("../shaders/resolve.wgsl")
+        .replace("MAX_POINTS", &MAX_POINTS.to_string())
+        .replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string())
+        .replace("DEPTH_INDEX", index);
+    constants + &text
+}

@@ -1,0 +1,172 @@
+//! What a picture is resolved from: the maps as the look-up reads them, and where they are not to be trusted.
+
+use shadowfit::glam::{DMat4, DVec3, Vec3};
+use shadowfit::{Aabb, DepthConvention, FittedMap};
+
+use super::error::ResolveError;
+use super::uniform::{MAX_UNKNOWN, ResolveUniform, UnknownUniform, points};
+use super::view::ResolveView;
+use crate::pixels::world_from_pixel;
+use crate::{MapView, SunShadows};
+
+/// Texels around the footprint of a filter by which the boxes of unknown casters are widened: the rasteriser rounds by
+/// less.
+const AROUND: f32 = 2.0;
+
+/// The uniforms of a picture.
+pub(super) struct Source {
+    pub(super) resolve: ResolveUniform,
+    /// Of the look-up, for positions relative to the eye.
+    pub(super) receiver: Vec<u8>,
+}
+
+impl Source {
+    /// Of maps that are read from a view.
+    pub(super) fn new(
+        sun: &SunShadows,
+        map_view: &MapView,
+        (view, rays_origin): (&ResolveView<'_>, DVec3),
+    ) -> Result<Self, ResolveError> {
+        let descriptor = sun.map().descriptor();
+        let part @ [left, top, width, height] = view.part();
+        let texture = view.depth.texture();
+        let to_world = checked_matrix(view, part)?;
+        let (points, point_reach) = points(descriptor.edges.samples(), texture.sample_count());
+        let mut unknown = Unknown::default();
+        unknown.add_stale(sun, view.eye);
+        unknown.add_lacking(sun, view);
+        let forward = forward(&to_world, [width, height], view.convention);
+        let resolve = ResolveUniform {
+            world_from_pixel: to_world.as_mat4().to_cols_array_2d(),
+            eye: (view.eye - rays_origin).as_vec3().to_array(),
+            far_depth: view.convention.far(),
+            forward: forward.to_array(),
+            ray_offset: view.ray_offset,
+            corner: [left, top],
+            size: [width, height],
+            depth_rounding: rounding(texture.format()),
+            point_reach,
+            point_count: descriptor.edges.samples(),
+            unsure_maps: unknown.maps,
+            unknown_count: unknown.count as u32,
+            budget: view.budget.unwrap_or(u32::MAX),
+            frame: map_view.frame,
+            points,
+            unknown: unknown.boxes,
+        };
+        let from_eye = MapView { origin: view.eye, ..*map_view };
+        Ok(Self { resolve, receiver: sun.map().receiver_bytes(&from_eye, sun.maps()) })
+    }
+}
+
+/// Positions relative to the eye from pixels, refused where it makes no sense.
+fn checked_matrix(view: &ResolveView<'_>, [_, _, width, height]: [u32; 4]) -> Result<DMat4, ResolveError> {
+    if view.convention == DepthConvention::NegativeOneToOne {
+        return Err(ResolveError::Depth(view.convention));
+    }
+    if !view.eye.is_finite() {
+        return Err(ResolveError::NotFinite);
+    }
+    if !(view.ray_offset >= 0.0 && view.ray_offset.is_finite()) {
+        return Err(ResolveError::RayOffset(view.ray_offset));
+    }
+    let to_world = world_from_pixel(&view.clip_from_eye, [width, height], view.convention)
+        .filter(|matrix| matrix.as_mat4().is_finite())
+        .ok_or(ResolveError::SingularMatrix)?;
+    // A plain depth grows with the distance from the near plane, a reversed one falls.
+    let [less, more] = [0.25, 0.75].map(|depth| middle(&to_world, [width, height], depth, view.convention).length());
+    let is_other = if view.convention == DepthConvention::Reversed { less < more } else { less > more };
+    if is_other { Err(ResolveError::OtherDepth(view.convention)) } else { Ok(to_world) }
+}
+
+/// Where the middle of the picture lies at a depth.
+fn middle(to_world: &DMat4, size: [u32; 2], depth: f64, convention: DepthConvention) -> DVec3 {
+    let [x, y] = size.map(|side| f64::from(side) * 0.5 - 0.5);
+    to_world.project_point3(DVec3::new(x, y, depth - f64::from(convention.far())))
+}
+
+/// Unit direction of the view.
+fn forward(to_world: &DMat4, size: [u32; 2], convention: DepthConvention) -> Vec3 {
+    let [less, more] = [0.25, 0.75].map(|depth| middle(to_world, size, depth, convention));
+    let forward = if convention == DepthConvention::Reversed { less - more } else { more - less };
+    forward.normalize_or_zero().as_vec3()
+}
+
+/// What a depth may be rounded by: a share of it, and a number. A float is rounded when it is interpolated and when it is
+/// stored; `Depth24Plus` may have 24 bits or be a float.
+fn rounding(format: wgpu::TextureFormat) -> [f32; 2] {
+    const BITS_23: f32 = 1.0 / 8_388_608.0;
+    const BITS_24: f32 = 1.0 / 16_777_216.0;
+    match format {
+        wgpu::TextureFormat::Depth32Float | wgpu::TextureFormat::Depth32FloatStencil8 => [BITS_23, 0.0],
+        _ => [BITS_23, BITS_24],
+    }
+}
+
+/// Where maps, or rays, are not to be trusted.
+struct Unknown {
+    boxes: [UnknownUniform; MAX_UNKNOWN],
+    count: usize,
+    /// Maps that are not sure anywhere, by the bits of their layers.
+    maps: u32,
+}
+
+impl Default for Unknown {
+    fn default() -> Self {
+        Self { boxes: [UnknownUniform::default(); MAX_UNKNOWN], count: 0, maps: 0 }
+    }
+}
+
+impl Unknown {
+    /// Casters that moved over maps that wait.
+    fn add_stale(&mut self, sun: &SunShadows, eye: DVec3) {
+        for stale in sun.cached().stale() {
+            let Some(map) = sun.maps().get(stale.map) else { continue };
+            let bit = 1 << stale.map;
+            match &stale.boxes {
+                Some(boxes) if self.count + boxes.len() <= MAX_UNKNOWN / 2 => {
+                    let around = reach(map, sun);
+                    boxes.iter().for_each(|aabb| self.push(&aabb.relative_to(eye), around, (bit, 0)));
+                }
+                _ => self.maps |= bit,
+            }
+        }
+    }
+
+    /// Casters that the rays lack. The last box is one around all that are too many.
+    fn add_lacking(&mut self, sun: &SunShadows, view: &ResolveView<'_>) {
+        let Some(lacking) = view.lacking else { return };
+        let offset = (lacking.origin - view.eye).as_vec3();
+        // The footprint of the coarsest map is the widest.
+        let around = sun.maps().iter().map(|map| reach(map, sun)).fold(0.0, f32::max);
+        let first = self.count;
+        for aabb in lacking.boxes.iter().filter(|aabb| !aabb.is_empty()) {
+            let aabb = Aabb::new(aabb.min + offset, aabb.max + offset);
+            if self.count < MAX_UNKNOWN {
+                self.push(&aabb, around, (0, 1));
+            } else if let Some(last) = self.boxes[first..].last_mut() {
+                let [least, most] = [Vec3::from(last.least), Vec3::from(last.most)];
+                last.least = least.min(aabb.min - around).to_array();
+                last.most = most.max(aabb.max + around).to_array();
+            }
+        }
+    }
+
+    fn push(&mut self, aabb: &Aabb, around: f32, (maps, is_filtered): (u32, u32)) {
+        let [least, most] = [aabb.min - around, aabb.max + around].map(|corner| corner.to_array());
+        self.boxes[self.count] = UnknownUniform { least, maps, most, is_filtered };
+        self.count += 1;
+    }
+}
+
+/// What a filter reads around a point of a map, in metres.
+fn reach(map: &FittedMap, sun: &SunShadows) -> f32 {
+    let descriptor = sun.map().descriptor();
+    let texels = descriptor.softness.reach(descriptor.filter) + AROUND;
+    map.projection.texel_size.max_element() * texels + map.bias.normal_offset
+}
+
+/// Whether a format's depths are fine enough for rays to start from.
+pub(super) fn is_fine(format: wgpu::TextureFormat) -> bool {
+    format.has_depth_aspect() && format != wgpu::TextureFormat::Depth16Unorm
+}

@@ -1,0 +1,141 @@
+// First resolve pass: which pixels the maps are sure of, and which need rays. FOOTPRINT is the reach of the filter's
+// look-up, in texels.
+
+@group(1) @binding(4) var<storage, read_write> list: List;
+
+// What is found beside factors.
+const UNSURE: f32 = 2.0;
+const FACES_AWAY: f32 = 3.0;
+const BEYOND: f32 = 4.0;
+const NO_SURFACE: f32 = 5.0;
+// Blocks of 2x2 texels along a side of the greatest footprint that is looked at; wider ones are unsure.
+const MOST_BLOCKS: f32 = 6.0;
+
+var<workgroup> unsure_count: atomic<u32>;
+var<workgroup> facing_count: atomic<u32>;
+var<workgroup> filtered_count: atomic<u32>;
+var<workgroup> first_slot: u32;
+
+// How the texels that the filter reads around the points of a pixel compare: 1 where all are lit, 0 where none is, UNSURE
+// otherwise. spread: by how much the points differ from the one that is projected, in texels.
+fn footprint(projected: shadowfit_Projected, spread: vec2<f32>) -> f32 {
+    let first = floor(projected.texel - spread - 0.5) - (FOOTPRINT - 1.0);
+    let last = floor(projected.texel + spread - 0.5) + FOOTPRINT;
+    let blocks = ceil((last - first + 1.0) * 0.5);
+    let is_whole = all(first >= vec2<f32>(0.0)) && all(first + 2.0 * blocks <= projected.size);
+    if !(is_whole && all(blocks <= vec2<f32>(MOST_BLOCKS))) {
+        return UNSURE;
+    }
+    var lit = 0.0;
+    for (var y = 0.0; y < blocks.y; y += 1.0) {
+        for (var x = 0.0; x < blocks.x; x += 1.0) {
+            lit += shadowfit_lit_of_four(first + 1.0 + 2.0 * vec2<f32>(x, y), projected);
+        }
+    }
+    let read = 4.0 * blocks.x * blocks.y;
+    return select(select(UNSURE, 1.0, lit == read), 0.0, lit == 0.0);
+}
+
+// By how much the points of a pixel differ from its first sample in a map, in texels.
+fn spread_in(map: shadowfit_Map, surface: Surface) -> vec2<f32> {
+    let m = resolve.world_from_pixel;
+    let right = moved(m[0] + m[2] * surface.steps.x, surface);
+    let down = moved(m[1] + m[2] * surface.steps.y, surface);
+    let a = (map.uv_from_world * vec4<f32>(right, 0.0)).xy;
+    let b = (map.uv_from_world * vec4<f32>(down, 0.0)).xy;
+    return resolve.point_reach * (abs(a) + abs(b)) * map.size;
+}
+
+// Whether a ray toward the light meets a box.
+fn meets(unknown: Unknown, position: vec3<f32>) -> bool {
+    let to_light = shadowfit_receiver.to_light;
+    // A direction along an axis has no place where it crosses the sides across.
+    let inverse = 1.0 / select(vec3<f32>(1e-30), to_light, abs(to_light) > vec3<f32>(1e-30));
+    let a = (unknown.least - position) * inverse;
+    let b = (unknown.most - position) * inverse;
+    let near = min(a, b);
+    let far = max(a, b);
+    return min(min(far.x, far.y), far.z) >= max(max(max(near.x, near.y), near.z), 0.0);
+}
+
+// The bits of the maps that are not sure of a point; of all of them, and the highest bit, where the filter decides.
+fn unsure_maps(position: vec3<f32>) -> u32 {
+    var maps = resolve.unsure_maps;
+    for (var box = 0u; box < resolve.unknown_count; box += 1u) {
+        if meets(resolve.unknown[box], position) {
+            maps |= resolve.unknown[box].maps | (resolve.unknown[box].is_filtered << 31u);
+        }
+    }
+    return maps;
+}
+
+// What a map says about a pixel: 1, 0 or UNSURE.
+fn verdict_of_map(surface: Surface, unsure: u32) -> f32 {
+    let choice = shadowfit_choose(surface.position);
+    if choice.first < 0 || choice.first == choice.clamped {
+        return UNSURE;
+    }
+    let map = shadowfit_entry(choice.first);
+    if (unsure & (1u << map.layer)) != 0u {
+        return UNSURE;
+    }
+    return footprint(shadowfit_project(map, surface.position, surface.normal), spread_in(map, surface));
+}
+
+// The factor of a pixel, or what is found beside factors.
+fn verdict_of(pixel: vec2<i32>) -> f32 {
+    let depth = depth_at(pixel);
+    if depth == 0.0 {
+        return NO_SURFACE;
+    }
+    let surface = surface_of(pixel, depth);
+    let faded = shadowfit_faded(surface.position);
+    if faded >= 1.0 {
+        return BEYOND;
+    }
+    let facing = dot(surface.normal, shadowfit_receiver.to_light);
+    if surface.is_known && surface.is_single && facing <= 0.0 {
+        return FACES_AWAY;
+    }
+    let unsure = unsure_maps(surface.position);
+    if !surface.is_single || (unsure >> 31u) != 0u {
+        return FILTERED;
+    }
+    if !surface.is_known {
+        return UNSURE;
+    }
+    let verdict = verdict_of_map(surface, unsure);
+    return select(mix(verdict, 1.0, faded), UNSURE, verdict == UNSURE);
+}
+
+@compute @workgroup_size(8, 8)
+fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    var verdict = NO_SURFACE;
+    if all(id.xy < resolve.size) {
+        verdict = verdict_of(vec2<i32>(id.xy));
+        var factor = select(verdict, FILTERED, verdict == UNSURE || verdict == NO_SURFACE);
+        factor = select(select(factor, 0.0, verdict == FACES_AWAY), 1.0, verdict == BEYOND);
+        textureStore(factors, resolve.corner + id.xy, vec4<f32>(factor, 0.0, 0.0, 0.0));
+    }
+    // Neighbours reserve their places together.
+    var slot = 0u;
+    if verdict == UNSURE {
+        slot = atomicAdd(&unsure_count, 1u);
+    }
+    if verdict <= UNSURE {
+        atomicAdd(&facing_count, 1u);
+    }
+    if verdict == FILTERED {
+        atomicAdd(&filtered_count, 1u);
+    }
+    workgroupBarrier();
+    if thread == 0u {
+        first_slot = atomicAdd(&list.count, atomicLoad(&unsure_count));
+        atomicAdd(&list.facing, atomicLoad(&facing_count));
+        atomicAdd(&list.filtered, atomicLoad(&filtered_count));
+    }
+    workgroupBarrier();
+    if verdict == UNSURE {
+        list.pixels[first_slot + slot] = id.x | (id.y << 16u);
+    }
+}

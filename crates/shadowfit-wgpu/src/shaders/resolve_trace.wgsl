@@ -1,0 +1,44 @@
+// Third resolve pass: the rays of the pixels on the list.
+
+@group(1) @binding(4) var<storage, read> list: List;
+
+// Where the rays from a pixel's surface start above it, in metres: farther than its depth, or what follows from it, may
+// be rounded by.
+fn height_of(surface: Surface) -> f32 {
+    let step = length(moved(resolve.world_from_pixel[2], surface)) * rounding(surface.depth);
+    let distance = length(surface.position) + length(resolve.eye);
+    return max(resolve.ray_offset, max(step, POSITION_ROUNDING * distance));
+}
+
+// A point of a pixel's surface, from its first sample, in pixels: relative to the eye, in metres.
+fn point_of(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> vec3<f32> {
+    // Seen edge-on, the plane may leave the picture within the pixel.
+    let most = 0.5 * abs(surface.depth);
+    let depth = surface.depth + clamp(dot(surface.steps, place), -most, most);
+    let from_centre = vec2<f32>(pixel) + sample_place(0u) + place;
+    let homogeneous = resolve.world_from_pixel * vec4<f32>(from_centre, depth, 1.0);
+    return homogeneous.xyz / homogeneous.w;
+}
+
+@compute @workgroup_size(TRACE_THREADS)
+fn trace(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let index = (group.y * groups.x + group.x) * TRACE_THREADS + thread;
+    if index >= list.count {
+        return;
+    }
+    let packed = list.pixels[index];
+    let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
+    let surface = surface_of(pixel, depth_at(pixel));
+    let above = surface.normal * height_of(surface);
+    var lit = 0.0;
+    for (var at = 0u; at < resolve.point_count; at += 1u) {
+        let start = point_of(pixel, surface, resolve.points[at].xy) + above + resolve.eye;
+        lit += select(1.0, 0.0, shadowfit_rays_blocked(start, shadowfit_receiver.to_light));
+    }
+    let factor = mix(lit / f32(resolve.point_count), 1.0, shadowfit_faded(surface.position));
+    textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(factor, 0.0, 0.0, 0.0));
+}
