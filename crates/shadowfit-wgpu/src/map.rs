@@ -307,7 +307,7 @@ impl ShadowMap {
     /// What the look-up reads of maps from elsewhere than in the picture: this set of maps alone.
     #[cfg(feature = "rays")]
     pub(crate) fn receiver_bytes(&self, view: &MapView, maps: &[FittedMap]) -> Vec<u8> {
-        self.of_set(&ReceiverUniform::new(maps, view, &self.descriptor))
+        self.of_set(&ReceiverUniform::on_planes(maps, view, &self.descriptor))
     }
 
     /// A bind group with another uniform for the look-up.

@@ -6,9 +6,10 @@
 //!                          └─▶ list of the others ──▶ rays ────────────────┘
 //! ```
 //!
-//! A pixel is *sure* where every texel of the filter's footprint, compared with the technique's bias, is lit, or every
-//! one is not. Points outside all maps, or nearer to a map's border than the filter reaches, are traced; surfaces that
-//! face away from the light get 0, and neither costs a ray.
+//! A pixel is *sure* to be lit where none of the 4×4 texels around it, in the finest map that holds it, is nearer to the
+//! light than its own plane by more than rounding, and sure to be in shadow where all of them shadow it by the technique's
+//! bias. Points outside all maps, or nearer to a map's border than the filter reaches, are traced; surfaces that face
+//! away from the light get 0 without a ray.
 //!
 //! ```no_run
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, sun: &mut shadowfit_wgpu::SunShadows,

@@ -135,10 +135,20 @@ impl MapUniform {
     /// The uniform for a map in layer 0, with positions relative to `origin` (world space, metres), read as `descriptor`
     /// says.
     pub fn new(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
+        let made = Self::on_plane(map, origin, descriptor);
+        if map.bias.receiver_plane == 0.0 {
+            Self { depth_per_texel_u: [0.0; 3], depth_per_texel_v: [0.0; 3], ..made }
+        } else {
+            made
+        }
+    }
+
+    /// The same, with the change of a plane's depth whatever the bias.
+    fn on_plane(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let ShadowMapDescriptor { filter, softness, .. } = descriptor;
         let (fit, bias, range) = (map.projection.relative_to(origin), map.bias, map.depth_range());
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
-        let [u, v] = if bias.receiver_plane == 0.0 { [Vec3::ZERO; 2] } else { depth_per_texel(&fit) };
+        let [u, v] = depth_per_texel(&fit);
         Self {
             uv_from_world: fit.uv_from_world.to_cols_array_2d(),
             depth_per_texel_u: u.to_array(),
@@ -178,6 +188,17 @@ impl ReceiverUniform {
     pub(crate) fn in_layers(mut self, first: u32) -> Self {
         self.maps.iter_mut().for_each(|map| map.layer += first);
         self
+    }
+
+    /// As [`Self::new`], with the change of a plane's depth in each map, whatever the bias.
+    #[cfg(feature = "rays")]
+    pub(crate) fn on_planes(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {
+        let mut uniform = Self::new(maps, view, descriptor);
+        for slot in uniform.maps.iter_mut().take(uniform.map_count as usize) {
+            let on_plane = MapUniform::on_plane(&maps[slot.layer as usize], view.origin, descriptor);
+            *slot = MapUniform { layer: slot.layer, ..on_plane };
+        }
+        uniform
     }
 
     /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by

@@ -29,6 +29,8 @@ pub struct ResolvePass {
     pipelines: Option<Pipelines>,
     resolve: wgpu::Buffer,
     receiver: wgpu::Buffer,
+    /// Gathers the texels of maps, which may wrap around.
+    texels: wgpu::Sampler,
     target: Option<Target>,
     /// What shaders read where nothing is resolved: one pixel, which is the filter's.
     nothing: (wgpu::TextureView, wgpu::BindGroup),
@@ -109,6 +111,12 @@ impl ResolvePass {
                 pipelines: None,
                 resolve: uniform(device, size_of::<ResolveUniform>()),
                 receiver: uniform(device, size_of::<FadingUniform>()),
+                texels: device.create_sampler(&wgpu::SamplerDescriptor {
+                    label: Some("shadowfit resolve"),
+                    address_mode_u: wgpu::AddressMode::Repeat,
+                    address_mode_v: wgpu::AddressMode::Repeat,
+                    ..Default::default()
+                }),
                 target: None,
                 nothing,
                 result: EdgeResult::Filtered(WhyFiltered::Picture),
@@ -275,6 +283,7 @@ impl ResolvePass {
             wgpu::BindingResource::TextureView(normals),
             wgpu::BindingResource::TextureView(&target.factors),
             target.list.as_entire_binding(),
+            wgpu::BindingResource::Sampler(&self.texels),
         ];
         bindings::group(&self.device, "shadowfit resolve", layout, (0, &resources))
     }
@@ -327,7 +336,8 @@ fn layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGro
     };
     let depths = bindings::depths(wgpu::TextureViewDimension::D2, shape.samples > 1);
     let list = bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
-    let types = [bindings::UNIFORM, depths, FLOATS, factors, list];
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+    let types = [bindings::UNIFORM, depths, FLOATS, factors, list, sampler];
     bindings::layout(device, "shadowfit resolve", wgpu::ShaderStages::COMPUTE, (0, &types))
 }
 

@@ -1,5 +1,6 @@
 //! The WGSL of the resolve passes, and of what reads their result.
 
+use shadowfit::DepthConvention;
 use shadowfit_rays::{RayWgslOptions, rays_wgsl};
 
 use super::uniform::{MAX_POINTS, MAX_UNKNOWN};
@@ -13,6 +14,11 @@ const MAX_GROUPS: u32 = 65_535;
 /// Bind groups of the look-up and of the rays.
 const RECEIVER_GROUP: u32 = 0;
 const RAYS_GROUP: u32 = 2;
+
+/// Texels on each side of a point that have to agree, along each axis. What holds none of their centres, neither a caster
+/// nor a gap, is missed: with 1 there are 0.013% wrong pixels on the shared scenes and 1.7% take rays, with 2 0.0024% and
+/// 4.9%, with 3 0.0024% and 7.9%.
+const FOOTPRINT: f32 = 2.0;
 
 const LIST: &str = include_str!("../shaders/resolve_list.wgsl");
 
@@ -47,10 +53,12 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
     } else {
         include_str!("../shaders/four_float.wgsl")
     };
-    let footprint = format!("const FOOTPRINT: f32 = {:?};\n", descriptor.filter.reach().max(1.0));
+    let is_reversed = descriptor.depth == DepthConvention::Reversed;
+    let (toward_light, closer) = if is_reversed { (1.0, ">=") } else { (-1.0, "<=") };
+    let constants = format!("const FOOTPRINT: f32 = {FOOTPRINT:?};\nconst TOWARD_LIGHT: f32 = {toward_light:?};\n");
     let list = LIST.replace("LIST_COUNT", "atomic<u32>");
-    let passes = include_str!("../shaders/resolve_classify.wgsl");
-    [&look_up(descriptor), four, &shared(shape), &list, &footprint, passes].concat()
+    let pass = include_str!("../shaders/resolve_classify.wgsl").replace("COMPARE", closer);
+    [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass].concat()
 }
 
 pub(super) fn arguments() -> String {

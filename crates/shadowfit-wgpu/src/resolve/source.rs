@@ -92,13 +92,16 @@ fn forward(to_world: &DMat4, size: [u32; 2], convention: DepthConvention) -> Vec
     forward.normalize_or_zero().as_vec3()
 }
 
-/// What a depth may be rounded by: a share of it, and a number. A float is rounded when it is interpolated and when it is
-/// stored; `Depth24Plus` may have 24 bits or be a float.
+/// What a depth may be rounded by: a share of it, and a number. A float is rounded when it is stored, and by more when it
+/// is interpolated: rasterisers do that with as many bits for small depths as for large ones, so that a reversed depth far
+/// away is less exact than its format. NVIDIA's rays from mountains start below them without it, and above with 2⁻³⁰.
+/// `Depth24Plus` may have 24 bits or be a float.
 fn rounding(format: wgpu::TextureFormat) -> [f32; 2] {
     const BITS_23: f32 = 1.0 / 8_388_608.0;
     const BITS_24: f32 = 1.0 / 16_777_216.0;
+    const BITS_30: f32 = 1.0 / 1_073_741_824.0;
     match format {
-        wgpu::TextureFormat::Depth32Float | wgpu::TextureFormat::Depth32FloatStencil8 => [BITS_23, 0.0],
+        wgpu::TextureFormat::Depth32Float | wgpu::TextureFormat::Depth32FloatStencil8 => [BITS_23, BITS_30],
         _ => [BITS_23, BITS_24],
     }
 }

@@ -1,9 +1,10 @@
 
-// How many of the four texels around a corner of the map's texels are lit. corner: from the map's left and top, in texels.
-fn shadowfit_lit_of_four(corner: vec2<f32>, projected: shadowfit_Projected) -> f32 {
+// The depths at the four texels around a corner of the map's texels, from the left one below on, counter-clockwise.
+// corner: from the map's left and top, in texels.
+fn stored_around(corner: vec2<f32>, projected: shadowfit_Projected) -> vec4<f32> {
     let shifted = corner + projected.wrap;
     let at = select(shifted, shifted - projected.size, shifted >= projected.size);
-    let depth = projected.depth + dot(projected.gradient, corner - projected.texel);
-    return shadowfit_lit(at - 1.0, projected, depth) + shadowfit_lit(at + vec2<f32>(0.0, -1.0), projected, depth)
-        + shadowfit_lit(at + vec2<f32>(-1.0, 0.0), projected, depth) + shadowfit_lit(at, projected, depth);
+    return vec4<f32>(
+        shadowfit_stored_texel(at + vec2<f32>(-1.0, 0.0), projected), shadowfit_stored_texel(at, projected),
+        shadowfit_stored_texel(at + vec2<f32>(0.0, -1.0), projected), shadowfit_stored_texel(at - 1.0, projected));
 }

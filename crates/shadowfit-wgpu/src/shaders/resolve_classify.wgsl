@@ -2,6 +2,7 @@
 // look-up, in texels.
 
 @group(1) @binding(4) var<storage, read_write> list: List;
+@group(1) @binding(5) var texels: sampler;
 
 // What is found beside factors.
 const UNSURE: f32 = 2.0;
@@ -16,9 +17,30 @@ var<workgroup> facing_count: atomic<u32>;
 var<workgroup> filtered_count: atomic<u32>;
 var<workgroup> first_slot: u32;
 
-// How the texels that the filter reads around the points of a pixel compare: 1 where all are lit, 0 where none is, UNSURE
-// otherwise. spread: by how much the points differ from the one that is projected, in texels.
-fn footprint(projected: shadowfit_Projected, spread: vec2<f32>) -> f32 {
+// A surface's own depth at a texel differs from that of its plane by no more than what it changes by over this part of a
+// texel: the rasteriser rounds corners to a 256th, and normals have ten bits or more.
+const ROUNDED_TEXEL: f32 = 0.02;
+
+// How many of the four texels around a corner are not nearer to the light than the point's plane, and how many of them
+// shadow it by the technique's bias. rounding: by how much the plane's depth may be off there, toward the light.
+fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32) -> vec2<f32> {
+    let stored = stored_around(corner, projected);
+    let offset = corner - projected.texel;
+    let biased = saturate(projected.depth + dot(projected.gradient, offset));
+    let x = projected.gradient.x * 0.5;
+    let y = projected.gradient.y * 0.5;
+    let around = vec4<f32>(y - x, y + x, x - y, -x - y);
+    let plane = saturate(projected.surface + rounding + dot(projected.gradient, offset) + around);
+    let is_lit = vec4<bool>(plane COMPARE stored);
+    let is_shadowed = !(vec4<f32>(biased) COMPARE stored);
+    let counts = select(vec4<f32>(0.0), vec4<f32>(1.0), is_shadowed);
+    return vec2<f32>(dot(select(vec4<f32>(0.0), vec4<f32>(1.0), is_lit), vec4<f32>(1.0)), dot(counts, vec4<f32>(1.0)));
+}
+
+// What the texels say that the filter reads around the points of a pixel: 1 where none is nearer to the light than the
+// point's plane, 0 where all shadow it, UNSURE otherwise. spread: by how much the points differ from the one that is
+// projected, in texels.
+fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>) -> f32 {
     let first = floor(projected.texel - spread - 0.5) - (FOOTPRINT - 1.0);
     let last = floor(projected.texel + spread - 0.5) + FOOTPRINT;
     let blocks = ceil((last - first + 1.0) * 0.5);
@@ -26,14 +48,16 @@ fn footprint(projected: shadowfit_Projected, spread: vec2<f32>) -> f32 {
     if !(is_whole && all(blocks <= vec2<f32>(MOST_BLOCKS))) {
         return UNSURE;
     }
-    var lit = 0.0;
+    let steepness = abs(projected.gradient.x) + abs(projected.gradient.y);
+    let rounding = map.constant_depth + TOWARD_LIGHT * ROUNDED_TEXEL * steepness;
+    var counts = vec2<f32>(0.0);
     for (var y = 0.0; y < blocks.y; y += 1.0) {
         for (var x = 0.0; x < blocks.x; x += 1.0) {
-            lit += shadowfit_lit_of_four(first + 1.0 + 2.0 * vec2<f32>(x, y), projected);
+            counts += compared(first + 1.0 + 2.0 * vec2<f32>(x, y), projected, rounding);
         }
     }
     let read = 4.0 * blocks.x * blocks.y;
-    return select(select(UNSURE, 1.0, lit == read), 0.0, lit == 0.0);
+    return select(select(UNSURE, 1.0, counts.x == read), 0.0, counts.y == read);
 }
 
 // By how much the points of a pixel differ from its first sample in a map, in texels.
@@ -79,7 +103,7 @@ fn verdict_of_map(surface: Surface, unsure: u32) -> f32 {
     if (unsure & (1u << map.layer)) != 0u {
         return UNSURE;
     }
-    return footprint(shadowfit_project(map, surface.position, surface.normal), spread_in(map, surface));
+    return footprint(map, shadowfit_project(map, surface.position, surface.normal), spread_in(map, surface));
 }
 
 // The factor of a pixel, or what is found beside factors.
