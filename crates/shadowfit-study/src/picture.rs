@@ -78,7 +78,7 @@ impl JudgeJob {
         let counts = |triangle| rays.instance(triangle).is_some_and(|instance| self.counted[instance as usize]);
         let mut judged = judge_while(&rays.tracer, truth, &seen, &factors, counts, goes_on)?;
         if let Some(counts) = &self.traced {
-            judged.tally.add_traced((counts.unsure.into(), counts.facing.into()));
+            judged.tally.add_traced((counts.traced.into(), counts.facing.into()));
         }
         if let Some(before) = &self.before {
             let measured = measure(&before.maps);

@@ -31,6 +31,7 @@
 
 mod error;
 mod group;
+mod noise;
 mod pass;
 mod shader;
 mod source;

@@ -1,11 +1,13 @@
 //! What a picture is resolved into: the texture of factors, and the list of pixels whose rays are traced.
 
 use super::error::ResolveError;
+use super::noise::ranks;
 use super::shader::TRACE_THREADS;
 use crate::bindings;
 use crate::caught::caught;
 
-/// Counts at the beginning of the list: pixels on it, facing pixels, and those of them that the filter decides.
+/// Counts at the beginning of a list: pixels on it, facing pixels, those of them that the filter decides, and how many
+/// were on it before some were left out.
 pub(super) const COUNTS: usize = 4;
 
 /// Textures and buffers of a picture's size.
@@ -19,6 +21,17 @@ pub(super) struct Target {
     pub(super) groups: wgpu::Buffer,
     pub(super) group: wgpu::BindGroup,
     pub(super) arguments: wgpu::BindGroup,
+    /// Made for the first frame that may not trace all pixels.
+    pub(super) kept: Option<Kept>,
+}
+
+/// The pixels that a frame may trace, where it may not trace all.
+#[derive(Debug)]
+pub(super) struct Kept {
+    pub(super) list: wgpu::Buffer,
+    budget: wgpu::Buffer,
+    pub(super) group: wgpu::BindGroup,
+    pub(super) arguments: wgpu::BindGroup,
 }
 
 /// Layouts of what does not depend on the maps.
@@ -28,6 +41,8 @@ pub(super) struct Layouts {
     pub(super) read: wgpu::BindGroupLayout,
     /// Of the pass that counts workgroups.
     pub(super) arguments: wgpu::BindGroupLayout,
+    /// Of the pass that leaves pixels out.
+    pub(super) select: wgpu::BindGroupLayout,
 }
 
 /// A float texture that is loaded.
@@ -50,7 +65,18 @@ impl Layouts {
                 wgpu::ShaderStages::COMPUTE,
                 (0, &arguments),
             ),
+            select: bindings::layout(
+                device,
+                "shadowfit resolve select",
+                wgpu::ShaderStages::COMPUTE,
+                (0, &[storage(true), storage(false), storage(true), bindings::UNIFORM]),
+            ),
         }
+    }
+
+    fn arguments(&self, device: &wgpu::Device, list: &wgpu::Buffer, groups: &wgpu::Buffer) -> wgpu::BindGroup {
+        let resources = [list.as_entire_binding(), groups.as_entire_binding()];
+        bindings::group(device, "shadowfit resolve arguments", &self.arguments, (0, &resources))
     }
 
     /// What the picture's shader reads.
@@ -71,13 +97,53 @@ impl Target {
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
                 mapped_at_creation: false,
             });
-            let resources = [list.as_entire_binding(), groups.as_entire_binding()];
-            let label = "shadowfit resolve arguments";
-            let arguments = bindings::group(device, label, &layouts.arguments, (0, &resources));
+            let arguments = layouts.arguments(device, &list, &groups);
             let group = layouts.group(device, &factors);
-            Self { size, factors, list, groups, group, arguments }
+            Self { size, factors, list, groups, group, arguments, kept: None }
         };
         caught(device, made).map_err(|error| ResolveError::Device(error.to_string()))
+    }
+}
+
+impl Target {
+    /// What leaves out pixels, so that a frame traces about as many as its budget allows.
+    pub(super) fn kept(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        layouts: &Layouts,
+        [budget, frame]: [u32; 2],
+    ) -> Result<(), ResolveError> {
+        if self.kept.is_none() {
+            let made = caught(device, || Kept::new(device, queue, layouts, self));
+            self.kept = Some(made.map_err(|error| ResolveError::Device(error.to_string()))?);
+        }
+        if let Some(kept) = &self.kept {
+            queue.write_buffer(&kept.budget, 0, bytemuck::bytes_of(&[budget, frame, 0, 0]));
+        }
+        Ok(())
+    }
+}
+
+impl Kept {
+    fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, target: &Target) -> Self {
+        let buffer = |size: usize, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("shadowfit resolve budget"),
+                size: size as u64,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let ranks = ranks();
+        let noise = buffer(size_of_val(&ranks[..]), wgpu::BufferUsages::STORAGE);
+        queue.write_buffer(&noise, 0, bytemuck::cast_slice(&ranks));
+        let budget = buffer(16, wgpu::BufferUsages::UNIFORM);
+        let list = list(device, target.size);
+        let resources = [&target.list, &list, &noise, &budget].map(|buffer: &wgpu::Buffer| buffer.as_entire_binding());
+        let group = bindings::group(device, "shadowfit resolve select", &layouts.select, (0, &resources));
+        let arguments = layouts.arguments(device, &list, &target.groups);
+        Self { list, budget, group, arguments }
     }
 }
 

@@ -72,6 +72,8 @@ pub struct ResolveCounts {
     pub facing: u32,
     /// Those of them that the maps were not sure of.
     pub unsure: u32,
+    /// Those of them that were traced.
+    pub traced: u32,
     /// Those that were left to the filter.
     pub filtered: u32,
 }
@@ -84,6 +86,7 @@ struct Pipelines {
     trace_layout: wgpu::BindGroupLayout,
     classify: wgpu::ComputePipeline,
     arguments: wgpu::ComputePipeline,
+    select: wgpu::ComputePipeline,
     trace: wgpu::ComputePipeline,
 }
 
@@ -234,13 +237,20 @@ impl ResolvePass {
             self.target = Some(Target::new(&self.device, &self.layouts, size)?);
         }
         self.make_pipelines(sun, rays, shape)?;
+        if let (Some(budget), Some(target)) = (view.budget, &mut self.target) {
+            target.kept(&self.device, &self.queue, &self.layouts, [budget, map_view.frame])?;
+        }
         let (Some(target), Some(pipelines)) = (&self.target, &self.pipelines) else { return Ok(()) };
+        let kept = target.kept.as_ref().filter(|_| view.budget.is_some());
         self.queue.write_buffer(&self.resolve, 0, bytemuck::bytes_of(&source.resolve));
         self.queue.write_buffer(&self.receiver, 0, &source.receiver);
         let receiver = sun.map().receiver_group_with(&self.device, &self.receiver);
-        let [classify, trace] =
-            [&pipelines.layout, &pipelines.trace_layout].map(|layout| self.bind(layout, target, view));
-        encoder.clear_buffer(&target.list, 0, Some(COUNTS as u64 * 4));
+        let traced = kept.map_or(&target.list, |kept| &kept.list);
+        let classify = self.bind(&pipelines.layout, (target, &target.list), view);
+        let trace = self.bind(&pipelines.trace_layout, (target, traced), view);
+        for list in [&target.list, traced] {
+            encoder.clear_buffer(list, 0, Some(COUNTS as u64 * 4));
+        }
         let timestamp_writes = timestamps;
         let descriptor = wgpu::ComputePassDescriptor { label: Some("shadowfit resolve"), timestamp_writes };
         let mut pass = encoder.begin_compute_pass(&descriptor);
@@ -252,6 +262,14 @@ impl ResolvePass {
         pass.set_pipeline(&pipelines.arguments);
         pass.set_bind_group(0, &target.arguments, &[]);
         pass.dispatch_workgroups(1, 1, 1);
+        if let Some(kept) = kept {
+            pass.set_pipeline(&pipelines.select);
+            pass.set_bind_group(0, &kept.group, &[]);
+            pass.dispatch_workgroups_indirect(&target.groups, 0);
+            pass.set_pipeline(&pipelines.arguments);
+            pass.set_bind_group(0, &kept.arguments, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        }
         pass.set_pipeline(&pipelines.trace);
         pass.set_bind_group(0, &receiver, &[]);
         pass.set_bind_group(1, &trace, &[]);
@@ -260,7 +278,7 @@ impl ResolvePass {
         drop(pass);
         self.recordings += 1;
         if let Some(counts) = self.counts.iter_mut().find(|counts| counts.is_free()) {
-            counts.record(encoder, &target.list, (), self.recordings);
+            counts.record(encoder, traced, (), self.recordings);
         }
         Ok(())
     }
@@ -272,17 +290,24 @@ impl ResolvePass {
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.counts.iter_mut().for_each(|counts| _ = counts.has_failed());
         let (_, counts) = ReadBack::newest(self.counts.iter_mut())?.take()?;
-        Some(ResolveCounts { unsure: counts[0], facing: counts[1], filtered: counts[2] })
+        let [traced, facing, filtered, before] = counts[..] else { return None };
+        let unsure = before.max(traced);
+        Some(ResolveCounts { facing, unsure, traced, filtered: filtered + unsure - traced })
     }
 
-    fn bind(&self, layout: &wgpu::BindGroupLayout, target: &Target, view: &ResolveView<'_>) -> wgpu::BindGroup {
+    fn bind(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        (target, list): (&Target, &wgpu::Buffer),
+        view: &ResolveView<'_>,
+    ) -> wgpu::BindGroup {
         let normals = view.normals.map_or(&self.nothing.0, |normals| normals.view);
         let resources = [
             self.resolve.as_entire_binding(),
             wgpu::BindingResource::TextureView(view.depth),
             wgpu::BindingResource::TextureView(normals),
             wgpu::BindingResource::TextureView(&target.factors),
-            target.list.as_entire_binding(),
+            list.as_entire_binding(),
             wgpu::BindingResource::Sampler(&self.texels),
         ];
         bindings::group(&self.device, "shadowfit resolve", layout, (0, &resources))
@@ -300,7 +325,8 @@ impl ResolvePass {
         if self.pipelines.as_ref().is_some_and(|pipelines| pipelines.key == (descriptor, shape)) {
             return Ok(());
         }
-        let layouts = [sun.map().receiver_layout(), rays.layout(), &self.layouts.arguments];
+        let Layouts { arguments, select, .. } = &self.layouts;
+        let layouts = [sun.map().receiver_layout(), rays.layout(), arguments, select];
         let made = caught(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts));
         self.pipelines = Some(made.map_err(|error| ResolveError::Device(error.to_string()))?);
         Ok(())
@@ -311,7 +337,7 @@ impl Pipelines {
     fn new(
         device: &wgpu::Device,
         (descriptor, shape): (&ShadowMapDescriptor, Shape),
-        [receiver, rays, arguments]: [&wgpu::BindGroupLayout; 3],
+        [receiver, rays, arguments, select]: [&wgpu::BindGroupLayout; 4],
     ) -> Self {
         let [layout, trace_layout] = [false, true].map(|read_only| layout(device, shape, read_only));
         let classify = (shader::classify(descriptor, shape), "classify");
@@ -319,6 +345,7 @@ impl Pipelines {
         Self {
             classify: pipeline(device, &[Some(receiver), Some(&layout)], classify),
             arguments: pipeline(device, &[Some(arguments)], (shader::arguments(), "count_groups")),
+            select: pipeline(device, &[Some(select)], (shader::select(), "select_pixels")),
             trace: pipeline(device, &[Some(receiver), Some(&trace_layout), Some(rays)], trace),
             key: (*descriptor, shape),
             layout,

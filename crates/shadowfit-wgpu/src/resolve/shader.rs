@@ -3,6 +3,7 @@
 use shadowfit::DepthConvention;
 use shadowfit_rays::{RayWgslOptions, rays_wgsl};
 
+use super::noise;
 use super::uniform::{MAX_POINTS, MAX_UNKNOWN};
 use super::view::NormalEncoding;
 use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
@@ -31,11 +32,11 @@ pub(super) struct Shape {
     pub(super) normals: Option<NormalEncoding>,
 }
 
-/// The WGSL of the passes that classify pixels, count workgroups, and trace rays: entry points `classify`,
-/// `count_groups` and `trace`. `samples`: those of the depth texture per pixel.
-pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 3] {
+/// The WGSL of the passes that classify pixels, count workgroups, leave pixels out, and trace rays: entry points
+/// `classify`, `count_groups`, `select_pixels` and `trace`. `samples`: those of the depth texture per pixel.
+pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 4] {
     let shape = Shape { samples, normals };
-    [classify(descriptor, shape), arguments(), trace(descriptor, shape)]
+    [classify(descriptor, shape), arguments(), select(), trace(descriptor, shape)]
 }
 
 /// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
@@ -65,6 +66,13 @@ pub(super) fn arguments() -> String {
     let constants = format!("const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
     let list = LIST.replace("LIST_COUNT", "u32");
     [&constants, &list, include_str!("../shaders/resolve_arguments.wgsl")].concat()
+}
+
+pub(super) fn select() -> String {
+    let constants =
+        format!("const NOISE_SIDE: u32 = {}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n", noise::SIDE);
+    let list = LIST.replace("LIST_COUNT", "u32");
+    [&constants, &list, include_str!("../shaders/resolve_select.wgsl")].concat()
 }
 
 pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape) -> String {

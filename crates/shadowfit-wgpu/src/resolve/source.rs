@@ -49,8 +49,8 @@ impl Source {
             point_count: descriptor.edges.samples(),
             unsure_maps: unknown.maps,
             unknown_count: unknown.count as u32,
-            budget: view.budget.unwrap_or(u32::MAX),
             frame: map_view.frame,
+            padding: 0,
             points,
             unknown: unknown.boxes,
         };

@@ -31,8 +31,8 @@ pub struct ResolveUniform {
     pub point_count: u32,
     pub unsure_maps: u32,
     pub unknown_count: u32,
-    pub budget: u32,
     pub frame: u32,
+    pub padding: u32,
     pub points: [[f32; 4]; MAX_POINTS],
     pub unknown: [UnknownUniform; MAX_UNKNOWN],
 }

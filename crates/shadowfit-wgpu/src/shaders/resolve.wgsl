@@ -37,9 +37,8 @@ struct Resolve {
     // Maps, by the bits of their layers, that are not sure anywhere.
     unsure_maps: u32,
     unknown_count: u32,
-    // Most pixels of a frame that are traced.
-    budget: u32,
     frame: u32,
+    padding: u32,
     // xy: from the pixel's first sample, in pixels; zw: from the sun's centre, in its radii.
     points: array<vec4<f32>, MAX_POINTS>,
     unknown: array<Unknown, MAX_UNKNOWN>,

@@ -5,7 +5,8 @@ struct List {
     // Pixels that face the light within the distance of shadows, and those of them that are left to the filter.
     facing: LIST_COUNT,
     filtered: LIST_COUNT,
-    padding: u32,
+    // Of a list from which some were left out: how many there were before. Otherwise 0.
+    unsure: u32,
     // Column, and row in the upper half.
     pixels: array<u32>,
 }
