@@ -52,6 +52,9 @@ pub(crate) struct Drawing {
     /// Leave crawl out, which draws each frame a second time
     #[arg(long)]
     no_crawl: bool,
+    /// Compare factors with the light on the area of each pixel, by N x N points of it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=16))]
+    area: u32,
     /// Draw on the software adapter, whatever GPU there is
     #[arg(long)]
     software: bool,
@@ -70,6 +73,7 @@ impl Drawing {
             sun_radius: self.sun_radius.to_radians(),
             sun_rays: self.sun_rays,
             crawl: !self.no_crawl,
+            area: self.area,
             subject_only: false,
         }
     }

@@ -19,13 +19,24 @@ pub struct Judging {
     pub sun_rays: u32,
     /// Whether crawl is measured, which draws each frame once more.
     pub crawl: bool,
+    /// Points of a pixel across and down by which factors are compared with the light on its whole area; 0 for none, since
+    /// each takes two rays. A sun with a radius counts as a point there.
+    pub area: u32,
     /// Whether only pixels of the scene's subject count; all do in a scene without one.
     pub subject_only: bool,
 }
 
 impl Default for Judging {
     fn default() -> Self {
-        Self { size: [1280, 720], ray_offset: 1e-3, sun_radius: 0.0, sun_rays: 64, crawl: true, subject_only: false }
+        Self {
+            size: [1280, 720],
+            ray_offset: 1e-3,
+            sun_radius: 0.0,
+            sun_rays: 64,
+            crawl: true,
+            area: 0,
+            subject_only: false,
+        }
     }
 }
 

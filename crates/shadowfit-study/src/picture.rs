@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use shadowfit::FittedMap;
 use shadowfit_render::ProbePixel;
-use shadowfit_truth::{Judged, MapsBefore, Truth, crawl, judge_while};
+use shadowfit_truth::{Judged, MapsBefore, Truth, area, crawl, judge_while};
 use shadowfit_wgpu::ShadowMapDescriptor;
 use shadowfit_wgpu::resolve::ResolveCounts;
 
@@ -77,6 +77,9 @@ impl JudgeJob {
         let seen = picture_maps(&measured, maps, descriptor);
         let counts = |triangle| rays.instance(triangle).is_some_and(|instance| self.counted[instance as usize]);
         let mut judged = judge_while(&rays.tracer, truth, &seen, &factors, counts, goes_on)?;
+        if self.judging.area > 0 {
+            judged.tally.area = area(&rays.tracer, truth, &judged.counted, &factors, self.judging.area);
+        }
         if let Some(counts) = &self.traced {
             judged.tally.add_traced((counts.traced.into(), counts.facing.into()));
         }
@@ -88,7 +91,7 @@ impl JudgeJob {
                 forward: before.forward.as_dvec3(),
                 factors: &before.factors,
             };
-            judged.tally.add_crawl(crawl(truth, &judged, &factors, &maps_before));
+            judged.tally.add_crawl(&crawl(truth, &judged, &factors, &maps_before));
         }
         Some(judged)
     }

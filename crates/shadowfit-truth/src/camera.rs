@@ -66,6 +66,12 @@ impl PixelCamera {
         self.ray((index % width) as u32, (index / width) as u32)
     }
 
+    /// How far a ray moves at view depth 1 for one pixel to the right, and for one down, world axes, metres.
+    pub(crate) fn pixel_axes(&self) -> [DVec3; 2] {
+        let [across, down] = [0, 1].map(|axis| 2.0 * self.tan_half_fov[axis] / f64::from(self.size[axis]));
+        [self.right * across, -self.up * down]
+    }
+
     /// View depth of a point of the world, in metres.
     pub fn view_depth(&self, point: DVec3) -> f64 {
         (point - self.eye).dot(self.forward)
@@ -74,8 +80,7 @@ impl PixelCamera {
     /// How far a point moves on its tangent plane for one pixel to the right, and for one down, world
     /// space, metres. `ray` is that of its pixel, `normal` a normal of the plane, toward either side.
     pub fn pixel_steps(&self, ray: DVec3, normal: DVec3, view_depth: f64) -> [DVec3; 2] {
-        let [across, down] = [0, 1].map(|axis| 2.0 * self.tan_half_fov[axis] / f64::from(self.size[axis]));
-        [self.right * across, -self.up * down].map(|step| slide(step, ray, normal, view_depth))
+        self.pixel_axes().map(|step| slide(step, ray, normal, view_depth))
     }
 }
 

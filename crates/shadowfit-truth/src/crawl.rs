@@ -26,29 +26,50 @@ pub struct MapsBefore<'a> {
     pub factors: &'a [f32],
 }
 
+/// What two frames' maps make of the same points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Crawl {
+    /// Compared pixels of the edge zone that have another verdict in the frame before.
+    pub different: u64,
+    /// How many were compared: where it is 0 nothing was measured.
+    pub compared: u64,
+    /// Sum of how much the factors differ, of all pixels that count and that the maps of both frames cover.
+    pub change: f64,
+    /// How many of these there are.
+    pub change_compared: u64,
+}
+
 /// Compares the verdicts of two frames' maps at the pixels that count, lie in the edge zone, and whose point the maps
-/// of both frames cover. Returns how many of these pixels have another verdict in the frame before, and how many were
-/// compared: with (0, 0) nothing was measured.
+/// of both frames cover; and the factors of those that lie elsewhere, too.
 ///
 /// `factors` is what [`judge()`](crate::judge()) was given, `before` the frame before.
 ///
 /// # Panics
 ///
 /// If either list of factors does not have one element for each pixel.
-pub fn crawl(truth: &Truth, judged: &Judged, factors: &[f32], before: &MapsBefore) -> (u64, u64) {
+pub fn crawl(truth: &Truth, judged: &Judged, factors: &[f32], before: &MapsBefore) -> Crawl {
     assert_eq!(factors.len(), truth.points.len(), "as many factors as pixels");
     assert_eq!(before.factors.len(), truth.points.len(), "as many factors of the frame before as pixels");
     let is_compared = |pixel: usize| {
-        let is_here = judged.counted[pixel] && judged.edge_zone[pixel] && judged.map_index[pixel].is_some();
+        let is_here = judged.counted[pixel] && judged.map_index[pixel].is_some();
         is_here
             && truth.points[pixel].is_some_and(|point| {
                 let view_depth = (point.position - before.eye).dot(before.forward);
                 before.maps.read(view_depth, point.position).is_some()
             })
     };
-    (0..factors.len())
-        .into_par_iter()
-        .filter(|pixel| is_compared(*pixel))
-        .map(|pixel| (u64::from(counts_as_lit(factors[pixel]) != counts_as_lit(before.factors[pixel])), 1))
-        .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
+    let of_pixel = |pixel: usize| {
+        let (now, then) = (factors[pixel], before.factors[pixel]);
+        let is_edge = judged.edge_zone[pixel];
+        let is_different = is_edge && counts_as_lit(now) != counts_as_lit(then);
+        (f64::from((now - then).abs()), is_edge, is_different)
+    };
+    let found: Vec<(f64, bool, bool)> =
+        (0..factors.len()).into_par_iter().filter(|pixel| is_compared(*pixel)).map(of_pixel).collect();
+    Crawl {
+        different: found.iter().filter(|(_, _, is_different)| *is_different).count() as u64,
+        compared: found.iter().filter(|(_, is_edge, _)| *is_edge).count() as u64,
+        change: found.iter().map(|(change, ..)| change).sum(),
+        change_compared: found.len() as u64,
+    }
 }

@@ -21,6 +21,7 @@
 //! ```
 
 mod ambient;
+mod area;
 mod camera;
 mod class;
 mod crawl;
@@ -44,9 +45,10 @@ mod tracer;
 mod truth;
 
 pub use ambient::{AmbientSettings, AmbientTruth};
+pub use area::{AreaTally, area};
 pub use camera::PixelCamera;
 pub use class::Class;
-pub use crawl::{MapsBefore, crawl};
+pub use crawl::{Crawl, MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::MAX_DISPLACEMENT;
 pub use histogram::Histogram;

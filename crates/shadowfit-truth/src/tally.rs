@@ -3,7 +3,9 @@
 //! Sums of pictures can be merged. Where no pixel was judged there are no figures, so that an empty
 //! picture is never taken for a perfect one.
 
+use crate::area::AreaTally;
 use crate::class::Class;
+use crate::crawl::Crawl;
 use crate::histogram::Histogram;
 
 /// Sums over the pixels that count: those that face the light, within the shadow distance and the
@@ -36,6 +38,13 @@ pub struct PictureTally {
     pub crawl_compared: u64,
     /// Those of them whose verdict differs.
     pub crawl_different: u64,
+    /// Sum over the pixels that [`crawl()`](crate::crawl()) may compare, in the edge zone or not, of how much their factor
+    /// differs from that of the maps of the frame before, and their number.
+    pub change: f64,
+    /// Number of those pixels.
+    pub change_compared: u64,
+    /// The errors against the areas of pixels, where these were traced.
+    pub area: AreaTally,
     /// Facing pixels of pictures whose edges were traced, as the renderer counted them.
     pub traced_of: u64,
     /// Those of them that took rays.
@@ -95,6 +104,12 @@ pub struct PictureFigures {
     /// Pixels of the edge zone whose verdict differs in the maps of the frame before, in per cent of
     /// those compared. `None` where none was compared.
     pub crawl: Option<f64>,
+    /// Mean of how much the factor of a point differs from that of the maps of the frame before, in per cent of full light.
+    /// `None` where none was compared.
+    pub change: Option<f64>,
+    /// Mean of |factor − share of the pixel's area that is lit|, in per cent of full light: of pixels that show one
+    /// surface, and of those that show several. `None` where areas were not traced.
+    pub area_errors: [Option<f64>; 2],
     /// Pixels that took rays, in per cent of the facing pixels of pictures whose edges were traced. `None` where none were.
     pub traced: Option<f64>,
 }
@@ -126,14 +141,19 @@ impl PictureTally {
         self.transitions += other.transitions;
         self.crawl_compared += other.crawl_compared;
         self.crawl_different += other.crawl_different;
+        self.change += other.change;
+        self.change_compared += other.change_compared;
+        self.area.merge(&other.area);
         self.traced_of += other.traced_of;
         self.traced += other.traced;
     }
 
-    /// Adds what [`crawl()`](crate::crawl()) counted: pixels that differ, and pixels compared.
-    pub fn add_crawl(&mut self, (different, compared): (u64, u64)) {
-        self.crawl_different += different;
-        self.crawl_compared += compared;
+    /// Adds what [`crawl()`](crate::crawl()) counted.
+    pub fn add_crawl(&mut self, crawl: &Crawl) {
+        self.crawl_different += crawl.different;
+        self.crawl_compared += crawl.compared;
+        self.change += crawl.change;
+        self.change_compared += crawl.change_compared;
     }
 
     /// Adds what a renderer counted: pixels that took rays, and facing ones.
@@ -174,6 +194,8 @@ impl PictureTally {
             undersampled: ratio(self.undersampled as f64, self.pixels_per_texel.total()).map(|share| 100.0 * share),
             edge_distance: ratio(self.displacement, self.transitions),
             crawl: ratio(self.crawl_different as f64, self.crawl_compared).map(|share| 100.0 * share),
+            change: ratio(self.change, self.change_compared).map(|share| 100.0 * share),
+            area_errors: self.area.errors(),
             traced: ratio(self.traced as f64, self.traced_of).map(|share| 100.0 * share),
         })
     }
@@ -200,6 +222,9 @@ impl PictureTally {
             ("ppt > 1 %", of(|figures| figures.undersampled)),
             ("edge px", of(|figures| figures.edge_distance)),
             ("crawl %", of(|figures| figures.crawl)),
+            ("change %", of(|figures| figures.change)),
+            ("area error %", of(|figures| figures.area_errors[0])),
+            ("area error several %", of(|figures| figures.area_errors[1])),
             ("traced %", of(|figures| figures.traced)),
         ]
     }
@@ -289,11 +314,13 @@ mod tests {
             undersampled: None,
             edge_distance: None,
             crawl: None,
+            change: None,
+            area_errors: [None; 2],
             traced: None,
         };
         assert_eq!(figures, wanted);
         tally.add(&CountedPixel { is_grazing: false, ..pixel(Class::Right, true) });
-        tally.add_crawl((1, 4));
+        tally.add_crawl(&Crawl { different: 1, compared: 4, ..Crawl::default() });
         let figures = tally.figures().expect("six pixels");
         assert_eq!((figures.undersampled, figures.crawl), (Some(100.0), Some(25.0)));
         let [median, ..] = figures.pixels_per_texel.expect("one pixel that is not grazing");

@@ -264,6 +264,6 @@ fn lit_share(tracer: &Tracer, rays: &LightRays, origin: DVec3, pixel: usize) -> 
 }
 
 /// Whether anything stands on the way to the light.
-fn is_blocked(tracer: &Tracer, origin: DVec3, ray: &LightRay) -> bool {
+pub(crate) fn is_blocked(tracer: &Tracer, origin: DVec3, ray: &LightRay) -> bool {
     tracer.is_occluded_within(origin.as_vec3(), ray.direction.as_vec3(), ray.length as f32)
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use shadowfit::selection::MapOrder;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
-    Class, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthLight,
+    Class, Crawl, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthLight,
     TruthSettings, crawl, judge,
 };
 
@@ -231,7 +231,7 @@ fn merged_tallies_are_those_of_both_pictures() {
     let room = Room::new();
     let mut merged = room.judge(|_| 0.0, map(1, 9.0), false).tally;
     merged.merge(&room.judge(|_| 1.0, map(4, 1.0), false).tally);
-    merged.add_crawl((3, 12));
+    merged.add_crawl(&Crawl { different: 3, compared: 12, ..Crawl::default() });
     assert_eq!(
         (merged.frames, merged.all.facing, merged.all.wrong, merged.all.hole, merged.all.false_shadow),
         (2, 800, 400, 200, 180)
@@ -259,12 +259,16 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     let then: Vec<f32> = (0..PIXELS).map(|p| if [19, 3].contains(&(p % 40)) { 1.0 } else { now[p] }).collect();
     let maps = [map(1, 9.0)];
     let before = MapsBefore { maps: by_view_depth(&maps), eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
-    assert_eq!(crawl(&room.truth, &judged, &now, &before), (10, 40));
+    let compared = |maps: &[MeasuredMap]| {
+        let crawl = crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(maps), ..before });
+        ([crawl.different, crawl.compared], crawl.change, crawl.change_compared)
+    };
+    // Factors of the column far from the edge differ as well, among those of all pixels.
+    assert_eq!(compared(&maps), ([10, 40], 20.0, 400));
     // Two of its columns are beside the maps of the frame before.
     let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
-    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(&beside), ..before }), (10, 20));
+    assert_eq!(compared(&beside).0, [10, 20]);
     // Or beyond its last split.
     let short = FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
-    let short = [short.measured(DVec3::Y)];
-    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(&short), ..before }), (0, 0));
+    assert_eq!(compared(&[short.measured(DVec3::Y)]), ([0, 0], 0.0, 0));
 }

@@ -113,7 +113,7 @@ impl Both {
         if let Some((before, maps)) = before.zip(maps_before) {
             let Before { eye, forward, factors: factors_before, .. } = before;
             let before = MapsBefore { maps, eye: *eye, forward: *forward, factors: factors_before };
-            judged.tally.add_crawl(crawl(&truth, &judged, &factors, &before));
+            judged.tally.add_crawl(&crawl(&truth, &judged, &factors, &before));
         }
         Self { truth, judged, factors, pixels, tally }
     }

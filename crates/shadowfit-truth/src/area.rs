@@ -1,0 +1,99 @@
+//! How much light reaches the area of a pixel, and not only its centre: the truth of pictures with smooth edges.
+//!
+//! Each of some points of the pixel sees what lies there, and a ray leaves from it toward the light.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::camera::PixelCamera;
+use crate::tracer::Tracer;
+use crate::truth::{Truth, TruthSettings, is_blocked};
+
+/// Sums of |factor − share of the pixel's area that is lit| over the pixels that count.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AreaTally {
+    /// Pixels whose points all lie on one plane.
+    pub single: u64,
+    /// Sum over those.
+    pub single_error: f64,
+    /// Pixels that show several surfaces.
+    pub several: u64,
+    /// Sum over those.
+    pub several_error: f64,
+}
+
+impl AreaTally {
+    /// Adds the sums of `other`.
+    pub fn merge(&mut self, other: &Self) {
+        self.single += other.single;
+        self.single_error += other.single_error;
+        self.several += other.several;
+        self.several_error += other.several_error;
+    }
+
+    /// Mean error in per cent of full light: of pixels with one surface, and of those with several. `None` without any.
+    pub fn errors(&self) -> [Option<f64>; 2] {
+        let mean = |error: f64, pixels: u64| (pixels > 0).then(|| 100.0 * error / pixels as f64);
+        [mean(self.single_error, self.single), mean(self.several_error, self.several)]
+    }
+}
+
+/// What the area of a pixel shows.
+struct Area {
+    lit: f64,
+    is_single: bool,
+}
+
+/// Compares a picture's factors with the area of each pixel that counts, by `side` × `side` points, each with a ray toward
+/// a sun that is a point. `counted` and `factors` are those of the picture, in rows from the top.
+pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], side: u32) -> AreaTally {
+    let of_pixel = |pixel: usize| {
+        let point = truth.points[pixel].filter(|_| counted[pixel])?;
+        let area = seen(tracer, (&truth.camera, &truth.settings), pixel, (point.position, point.normal), side)?;
+        let error = (f64::from(factors[pixel]).clamp(0.0, 1.0) - area.lit).abs();
+        Some(if area.is_single {
+            AreaTally { single: 1, single_error: error, ..AreaTally::default() }
+        } else {
+            AreaTally { several: 1, several_error: error, ..AreaTally::default() }
+        })
+    };
+    let found: Vec<AreaTally> = (0..factors.len()).into_par_iter().filter_map(of_pixel).collect();
+    // In the order of the pixels, so that sums are the same each time.
+    found.iter().fold(AreaTally::default(), |mut all, one| {
+        all.merge(one);
+        all
+    })
+}
+
+/// What the points of a pixel show; `None` where they see nothing. `plane`: of what its centre shows.
+fn seen(
+    tracer: &Tracer,
+    (camera, settings): (&PixelCamera, &TruthSettings),
+    pixel: usize,
+    (on_plane, normal): (DVec3, DVec3),
+    side: u32,
+) -> Option<Area> {
+    let ray = camera.ray_of(pixel);
+    let width = 2.0 * camera.tan_half_fov.y / f64::from(camera.size[1]) * camera.view_depth(on_plane);
+    let [right, down] = camera.pixel_axes();
+    let (mut points, mut free, mut is_single) = (0_u32, 0_u32, true);
+    for index in 0..side * side {
+        let place = |number: u32| (f64::from(number) + 0.5) / f64::from(side) - 0.5;
+        let through = ray + right * place(index % side) + down * place(index / side);
+        let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), through.as_vec3()) else {
+            is_single = false;
+            continue;
+        };
+        let plane = tracer.plane_normal(hit.triangle);
+        let depth = tracer.refine(hit, plane, camera.eye, through);
+        let position = camera.eye + through * depth;
+        is_single &= (position - on_plane).dot(normal).abs() <= width;
+        let facing = if plane.dot(through) > 0.0 { -plane } else { plane };
+        let to_light = settings.light.ray_from(position);
+        points += 1;
+        let is_lit = facing.dot(to_light.direction) > 0.0
+            && !is_blocked(tracer, position + facing * settings.ray_offset, &to_light);
+        free += u32::from(is_lit);
+    }
+    (points > 0).then(|| Area { lit: f64::from(free) / f64::from(points), is_single })
+}
