@@ -126,3 +126,31 @@ impl NodeRecord {
         size.x * size.y + size.y * size.z + size.z * size.x
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use obvhs::aabb::Aabb;
+
+    #[test]
+    fn a_hierarchy_that_would_be_too_deep_is_built_by_halves_and_has_every_box_once() {
+        let boxes: Vec<_> = (0..100u8).map(|x| Aabb::from_point(Vec3::new(x.into(), 0.0, 0.0).into())).collect();
+        let params = BvhBuildParams { max_prims_per_leaf: 2, ..BvhBuildParams::medium_build() };
+        for (max_depth, is_halved) in [(64, false), (1, true)] {
+            let (mut hierarchy, order) = build(&boxes, params, max_depth);
+            assert!(!is_halved || hierarchy.depth() == 7, "64 leaves of at most two boxes: {}", hierarchy.depth());
+            let nodes = hierarchy.nodes.clone();
+            let leaves = nodes.iter().filter(|node| node.count > 0);
+            let mut met: Vec<_> = leaves.flat_map(|leaf| leaf.first..leaf.first + leaf.count).collect();
+            met.sort_unstable();
+            assert!(met.into_iter().eq(0..100));
+            hierarchy.fit(|slots| {
+                let points = order[slots].iter().map(|index| Vec3::X * *index as f32);
+                points.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |bounds, at| union(bounds, [at; 2]))
+            });
+            assert_eq!(hierarchy.nodes[0].bounds(), [Vec3::ZERO, Vec3::X * 99.0]);
+            let is_after = |(index, node): (usize, &NodeRecord)| node.count > 0 || node.first as usize > index;
+            assert!(hierarchy.nodes.iter().enumerate().all(is_after));
+        }
+    }
+}

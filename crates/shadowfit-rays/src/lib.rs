@@ -26,7 +26,7 @@ pub use glam;
 pub use instance::{RayInstance, Sides};
 pub use mesh::{RayMemory, RayMesh};
 pub use placed::{ImageId, MeshId};
-pub use scene::RayScene;
+pub use scene::{RayScene, rays_layout};
 pub use wgsl::{RayWgslOptions, rays_wgsl, refit_wgsl};
 
 /// Levels that the shaders' stack can follow: those of the hierarchy of instances and of a mesh together. A balanced

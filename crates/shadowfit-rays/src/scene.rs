@@ -68,8 +68,7 @@ impl RayScene {
         let bound = [top_nodes.buffer(), instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
         let bound = bound.map(Clone::clone);
         let (layout, group) = caught(device, || {
-            let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-            let layout = layout(device, stages, &[storage(true); BUFFERS]);
+            let layout = rays_layout(device);
             let group = bind(device, &layout, &bound);
             (layout, group)
         })?;
@@ -396,6 +395,11 @@ impl RayScene {
         }
         Ok(())
     }
+}
+
+/// Layout of [`RayScene::group`], for pipelines that are made before there is a scene.
+pub fn rays_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    layout(device, wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT, &[storage(true); BUFFERS])
 }
 
 fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffers: &[wgpu::Buffer; BUFFERS]) -> wgpu::BindGroup {

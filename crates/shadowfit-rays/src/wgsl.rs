@@ -58,6 +58,8 @@ impl<'a> RayWgslOptions<'a> {
 /// |---|---|
 /// | `shadowfit_rays_blocked(origin, direction) -> bool` | whether anything stands on the ray from a point, at any distance from 0 on: `origin` (`vec3<f32>`) is in metres relative to the origin of [`RayScene::set_instances`](crate::RayScene::set_instances), `direction` (`vec3<f32>`) of unit length, toward the light |
 ///
+/// `shadowfit_rays_triangles[slot]` is the triangle of a hit's slot, with corners `a`, `b` and `c` in the space of its mesh.
+///
 /// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 5 of the group, which is
 /// [`RayScene::group`](crate::RayScene::group); no derivatives.
 pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
