@@ -1,9 +1,10 @@
 //! Why a picture cannot be judged on the GPU, with what to do about it.
 
+use shadowfit_rays::RayError;
 use thiserror::Error;
 
 /// Why a picture cannot be judged on the GPU.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GpuTruthError {
     /// The tracer's alpha test is a function that only the CPU can run.
     #[error(
@@ -24,17 +25,9 @@ pub enum GpuTruthError {
         /// Bytes that one buffer may have.
         limit: u64,
     },
-    /// The hierarchy is deeper than the shader's stack.
-    #[error(
-        "the triangles' hierarchy has {depth} levels, and the shader can follow {limit}: leave out triangles that \
-         coincide or have extreme sizes"
-    )]
-    TooDeep {
-        /// Levels of the hierarchy.
-        depth: usize,
-        /// Levels that the shader can follow.
-        limit: usize,
-    },
+    /// The triangles cannot be traced on the device: it is too small for them, or too old.
+    #[error(transparent)]
+    Rays(#[from] RayError),
     /// More maps than the uniform holds.
     #[error("the picture has {0} shadow maps, and the shader reads at most 8: judge it on the CPU")]
     TooManyMaps(usize),

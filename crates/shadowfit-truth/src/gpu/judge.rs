@@ -7,7 +7,7 @@ use super::pixel::GpuPixel;
 use super::shader;
 use super::tally::GpuTally;
 use super::tally_pass::{TallyInput, TallyPass};
-use super::tracer::{GpuTracer, scene_layout};
+use super::tracer::{GpuTracer, slots_layout};
 use super::uniform::JudgeUniform;
 
 /// Bytes of a pixel between the steps: flags, pixels per texel, distance along the row.
@@ -49,9 +49,9 @@ impl GpuJudge {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
         let layout = group_layout(device, "judged picture", [UNIFORM, TEXTURE, STORAGE, CLASSES]);
-        let scene = scene_layout(device);
+        let (scene, slots) = (shadowfit_rays::rays_layout(device), slots_layout(device));
         let passes = [("trace", shader::truth()), ("rows", shader::rows()), ("classify", shader::classes())];
-        let pipelines = passes.map(|pass| pipeline(device, &[Some(&scene), Some(&layout)], pass));
+        let pipelines = passes.map(|pass| pipeline(device, &[Some(&scene), Some(&layout), Some(&slots)], pass));
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("judge"),
             size: size_of::<JudgeUniform>() as u64,
@@ -114,8 +114,10 @@ impl GpuJudge {
         let timestamp_writes = input.timestamp_writes.clone();
         let mut pass =
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("judge"), timestamp_writes });
-        pass.set_bind_group(0, tracer.group(), &[]);
-        pass.set_bind_group(1, &group, &[]);
+        let [scene, slots] = tracer.groups();
+        for (number, group) in (0..).zip([scene, &group, slots]) {
+            pass.set_bind_group(number, group, &[]);
+        }
         for (pipeline, [x, y]) in [(trace, squares), (rows, [size[1], 1]), (classify, squares)] {
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(x, y, 1);

@@ -24,7 +24,4 @@ pub use judge::GpuJudge;
 pub use pixel::GpuPixel;
 pub use tally::GpuTally;
 pub use tracer::GpuTracer;
-pub use uniform::{
-    BeforeUniform, CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TallyRecord,
-    TriangleRecord,
-};
+pub use uniform::{BeforeUniform, JudgeUniform, MAX_MAPS, MapUniform, TallyRecord};

@@ -1,6 +1,8 @@
 //! The WGSL of the four passes, each put together from its file and the shared pieces. A file with a twin on the CPU has
 //! its name.
 
+use shadowfit_rays::{RayWgslOptions, rays_wgsl};
+
 use super::uniform::TallyRecord;
 use crate::maps::MIN_FACING;
 
@@ -8,10 +10,15 @@ const TYPES: &str = include_str!("shaders/types.wgsl");
 const SURFACE: &str = include_str!("shaders/surface.wgsl");
 const TRACER: &str = include_str!("shaders/tracer.wgsl");
 
+/// Rays that end at occluders which a receiver's map holds.
+fn rays() -> String {
+    rays_wgsl(&RayWgslOptions::group(0).with_counts(TRACER))
+}
+
 /// First pass, entry point `trace`: truth, the map that is read, and pixels per texel.
 pub fn truth() -> String {
     let constants = format!("const MIN_FACING: f32 = {MIN_FACING};\n");
-    [TYPES, SURFACE, TRACER, &constants, include_str!("shaders/truth.wgsl")].concat()
+    [TYPES, SURFACE, &rays(), &constants, include_str!("shaders/truth.wgsl")].concat()
 }
 
 /// Second pass, entry point `rows`: distances to transitions along the rows.
@@ -21,7 +28,7 @@ pub fn rows() -> String {
 
 /// Third pass, entry point `classify`: edge zone and classes.
 pub fn classes() -> String {
-    [TYPES, SURFACE, TRACER, include_str!("shaders/judge.wgsl")].concat()
+    [TYPES, SURFACE, &rays(), include_str!("shaders/judge.wgsl")].concat()
 }
 
 /// Fourth pass, entry point `sum`: the sums of the picture.

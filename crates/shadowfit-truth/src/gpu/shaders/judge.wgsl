@@ -45,10 +45,10 @@ fn is_hole(pixel: vec2<u32>, map_plus_1: u32) -> bool {
         return true;
     }
     let drawn = textureLoad(seen, pixel, 0);
-    let surface = surface_of(pixel, triangles[slots[drawn.x - 1u]]);
+    let surface = surface_in(pixel, drawn.x - 1u);
     let map = map_plus_1 - 1u;
-    let receiver = Receiver(map, surface.position, project(judge.maps[map], surface.position).depth);
-    return !is_occluded(ray_origin(surface), judge.to_light, receiver);
+    let depth = project(judge.maps[map], surface.position).depth;
+    return !is_occluded(surface, Receiver(map, surface.position, depth));
 }
 
 fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {

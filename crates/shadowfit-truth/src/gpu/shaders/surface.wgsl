@@ -24,20 +24,20 @@ fn ray_of(pixel: vec2<u32>) -> vec3<f32> {
 }
 
 // Where the pixel's ray meets a triangle's plane, with the view depth clamped to that of the corners.
-fn surface_of(pixel: vec2<u32>, triangle: Triangle) -> Surface {
+fn surface_of(pixel: vec2<u32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Surface {
     let ray = ray_of(pixel);
-    let area = cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    let area = cross(b - a, c - a);
     // Scaled first: the squares of small triangles' areas are below what f32 can hold.
     let largest = max(max(abs(area.x), abs(area.y)), abs(area.z));
     var normal = vec3<f32>(0.0);
     if largest > 0.0 {
         normal = normalize(area / largest);
     }
-    let corner = triangle.a - judge.eye;
+    let corner = a - judge.eye;
     let depths = vec3<f32>(
         dot(corner, judge.forward),
-        dot(triangle.b - judge.eye, judge.forward),
-        dot(triangle.c - judge.eye, judge.forward),
+        dot(b - judge.eye, judge.forward),
+        dot(c - judge.eye, judge.forward),
     );
     let nearest = max(min(min(depths.x, depths.y), depths.z), judge.near);
     let farthest = min(max(max(depths.x, depths.y), depths.z), judge.far);

@@ -8,10 +8,10 @@
     let drawn = textureLoad(seen, id.xy, 0);
     var pixel = Pixel(0u, 0.0, NONE);
     if drawn.x > 0u && drawn.x <= judge.triangles {
-        let surface = surface_of(id.xy, triangles[slots[drawn.x - 1u]]);
+        let surface = surface_in(id.xy, drawn.x - 1u);
         if surface.facing > 0.0 && surface.view_depth <= judge.max_distance {
             let without_map = Receiver(NONE, vec3<f32>(0.0), 0.0);
-            let is_lit = !is_occluded(ray_origin(surface), judge.to_light, without_map);
+            let is_lit = !is_occluded(surface, without_map);
             pixel.flags = JUDGED | select(0u, LIT, is_lit) | select(0u, SEEMS_LIT, bitcast<f32>(drawn.y) >= 0.5)
                 | select(0u, GRAZING, surface.facing < MIN_FACING)
                 | select(0u, COVERED_BEFORE, is_covered_before(surface.position));

@@ -1,46 +1,4 @@
-// What the passes share: the scene's triangles, the picture's camera, light and maps, and the pixels.
-
-struct Node {
-    least: vec3<f32>,
-    // Triangles of a leaf, 0 for an inner node.
-    count: u32,
-    most: vec3<f32>,
-    // A leaf's first triangle, or the first of an inner node's two children, which stand side by side.
-    first: u32,
-}
-
-// Corners relative to the origin, in leaf order.
-struct Triangle {
-    a: vec3<f32>,
-    // Index of its cut-out plus 1, 0 for none.
-    cut_out: u32,
-    b: vec3<f32>,
-    padding_0: u32,
-    c: vec3<f32>,
-    padding_1: u32,
-}
-
-struct CutOut {
-    uv_a: vec2<f32>,
-    uv_b: vec2<f32>,
-    uv_c: vec2<f32>,
-    base_alpha: f32,
-    cutoff: f32,
-    alphas: vec3<f32>,
-    // Index of its image plus 1, 0 for none.
-    image: u32,
-    wrap: vec2<u32>,
-    nearest: u32,
-    padding: u32,
-}
-
-struct Image {
-    // Its first byte among all alphas.
-    first: u32,
-    width: i32,
-    height: i32,
-    padding: u32,
-}
+// What the passes share: the picture's camera, light and maps, and the pixels.
 
 struct Map {
     // Rows of clip from positions relative to the eye.
@@ -120,15 +78,6 @@ const MAP_SHIFT: u32 = 8u;
 // Greater than any pixels per texel or distance that matters; used where the CPU uses infinity.
 const FAR: f32 = 3.0e38;
 const NONE: u32 = 0xffffffffu;
-
-@group(0) @binding(0) var<storage, read> nodes: array<Node>;
-@group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
-// Leaf-order index of each triangle by its own index.
-@group(0) @binding(2) var<storage, read> slots: array<u32>;
-@group(0) @binding(3) var<storage, read> cut_outs: array<CutOut>;
-@group(0) @binding(4) var<storage, read> images: array<Image>;
-// Four bytes each, the first one lowest.
-@group(0) @binding(5) var<storage, read> alphas: array<u32>;
 
 @group(1) @binding(0) var<uniform> judge: Judge;
 // Triangle's index plus 1 (0 for the sky), and the bits of the filtered factor.
