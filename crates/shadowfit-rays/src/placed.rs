@@ -5,6 +5,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::deform::Deforming;
+use crate::mesh::RayMesh;
 use crate::records::NO_ROOT;
 
 /// A mesh of a scene.
@@ -44,6 +45,18 @@ impl Placed {
     /// Its first node.
     pub(crate) fn root(&self) -> u32 {
         if self.nodes.is_empty() { NO_ROOT } else { self.nodes.start }
+    }
+
+    /// Whether a mesh takes as much room.
+    pub(crate) fn has_room_for(&self, mesh: &RayMesh) -> bool {
+        [self.nodes.len(), self.triangles.len(), self.cut_outs.len()]
+            == [mesh.hierarchy.nodes.len(), mesh.triangles.len(), mesh.cut_outs.len()]
+    }
+
+    /// The same room, of a mesh that keeps its shape.
+    pub(crate) fn ranges(&self) -> Self {
+        let [nodes, triangles, cut_outs] = [&self.nodes, &self.triangles, &self.cut_outs].map(Clone::clone);
+        Self { nodes, triangles, cut_outs, depth: self.depth, bounds: self.bounds, deforming: None }
     }
 }
 

@@ -129,10 +129,48 @@ impl RayScene {
         match made {
             Ok(deforming) => Ok(self.meshes.add(Placed { bounds, deforming: Some(deforming), ..placed })),
             Err(error) => {
-                self.give(placed);
+                self.give(&placed);
                 Err(error)
             }
         }
+    }
+
+    /// Gives a mesh another shape, which its instances have at once: for what the CPU deforms or edits. Only as many
+    /// nodes, triangles and cut-outs take no other room. A deforming mesh keeps its shape from now on.
+    ///
+    /// # Errors
+    ///
+    /// [`RayError::NoMesh`], and those of [`Self::add_mesh`]. The mesh has its old shape then.
+    pub fn update_mesh(&mut self, id: MeshId, mesh: &RayMesh) -> Result<(), RayError> {
+        self.uploaded = 0;
+        let depth = mesh.hierarchy.depth();
+        if self.top.depth() + depth > MAX_DEPTH {
+            return Err(RayError::TooDeep { top: self.top.depth(), mesh: depth, limit: MAX_DEPTH });
+        }
+        let before = self.meshes.get(id).ok_or(RayError::NoMesh)?;
+        let bounds = mesh.bounds().unwrap_or_default();
+        let placed = if before.has_room_for(mesh) {
+            let placed = Placed { depth, bounds, deforming: None, ..before.ranges() };
+            self.write(mesh, &placed);
+            placed
+        } else {
+            let placed = self.place(mesh)?;
+            if let Some(old) = self.meshes.get(id).map(Placed::ranges) {
+                self.give(&old);
+            }
+            placed
+        };
+        let root = placed.root();
+        if let Some(stored) = self.meshes.get_mut(id) {
+            *stored = placed;
+        }
+        self.mesh_depth = self.mesh_depth.max(depth);
+        for (index, instance) in self.instances.iter().enumerate().filter(|(_, instance)| instance.mesh == id) {
+            self.top.set(index, instance.placed(root, bounds));
+        }
+        self.top.refit(self.mesh_depth);
+        self.upload();
+        Ok(())
     }
 
     /// Removes a mesh. What still stands of it blocks nothing, and must be gone from the next [`Self::set_instances`].
@@ -142,7 +180,7 @@ impl RayScene {
     /// [`RayError::NoMesh`] if it is not in the scene.
     pub fn remove_mesh(&mut self, mesh: MeshId) -> Result<(), RayError> {
         let placed = self.meshes.remove(mesh).ok_or(RayError::NoMesh)?;
-        self.give(placed);
+        self.give(&placed);
         for index in 0..self.instances.len() {
             if self.instances[index].mesh == mesh {
                 // Differs from whatever is set next.
@@ -350,11 +388,17 @@ impl RayScene {
         };
         let taken = self.take(mesh, &mut placed).and_then(|()| self.rebind());
         if let Err(error) = taken {
-            self.give(placed);
+            self.give(&placed);
             // The buffers that have grown already are the ones to read.
             self.rebind()?;
             return Err(error);
         }
+        self.write(mesh, &placed);
+        Ok(placed)
+    }
+
+    /// Uploads a mesh where it has its room.
+    fn write(&self, mesh: &RayMesh, placed: &Placed) {
         let nodes = mesh.hierarchy.nodes.iter().map(|node| {
             let base = if node.count > 0 { placed.triangles.start } else { placed.nodes.start };
             NodeRecord { first: base + node.first, ..*node }
@@ -366,7 +410,6 @@ impl RayScene {
         self.nodes.records.write_all(placed.nodes.start, nodes);
         self.triangles.records.write_all(placed.triangles.start, triangles);
         self.cut_outs.records.write_all(placed.cut_outs.start, mesh.cut_outs.iter().copied());
-        Ok(placed)
     }
 
     /// Takes room in the three buffers, as far as there is.
@@ -378,10 +421,10 @@ impl RayScene {
     }
 
     /// Gives the room of a mesh back.
-    fn give(&mut self, placed: Placed) {
-        self.nodes.give(placed.nodes);
-        self.triangles.give(placed.triangles);
-        self.cut_outs.give(placed.cut_outs);
+    fn give(&mut self, placed: &Placed) {
+        self.nodes.give(placed.nodes.clone());
+        self.triangles.give(placed.triangles.clone());
+        self.cut_outs.give(placed.cut_outs.clone());
     }
 
     /// Makes the bind group again if a buffer is another one.

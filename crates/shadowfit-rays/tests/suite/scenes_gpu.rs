@@ -41,6 +41,36 @@ fn a_removed_mesh_blocks_nothing_and_its_room_is_used_again() {
     assert_answers(&wanted, &rays, &gpu.blocked(&scene, &rays));
 }
 
+#[test]
+fn a_mesh_of_another_shape_has_it_in_all_of_its_instances() {
+    let Some(gpu) = gpu() else { return };
+    let mut random = Random(16);
+    let mut scene = gpu.scene();
+    let id = scene.add_mesh(&mesh(&mut random, 100)).expect("room");
+    scene.add_mesh(&mesh(&mut random, 30)).expect("room");
+    let instances = [Vec3::ZERO, Vec3::X * 3.0].map(|at| RayInstance::new(id, Affine3A::from_translation(at)));
+    scene.set_instances(DVec3::ZERO, &instances).expect("room");
+    let rays = random.rays(500, 2.0);
+    // As many triangles, more of them, none, and some again.
+    for (count, half) in [(100, 1.5), (150, 1.0), (0, 1.0), (90, 1.0)] {
+        let triangles = random.triangles(count, half);
+        let shape = RayMesh::from_triangles(triangles.iter().copied()).expect("a mesh");
+        scene.update_mesh(id, &shape).expect("room");
+        scene.set_instances(DVec3::ZERO, &instances).expect("room");
+        assert_eq!((scene.uploaded(), scene.triangles()), (0, 30 + count as u64));
+        let blockers = |instance: &RayInstance| Blocker::all(&triangles, &instance.world_from_mesh, instance.sides);
+        let blockers: Vec<_> = instances.iter().flat_map(blockers).collect();
+        let answers = gpu.blocked(&scene, &rays);
+        if count > 0 {
+            assert_answers(&blockers, &rays, &answers);
+        } else {
+            assert!(!answers.contains(&true));
+        }
+    }
+    scene.remove_mesh(id).expect("in the scene");
+    assert_eq!(scene.update_mesh(id, &RayMesh::default()), Err(RayError::NoMesh));
+}
+
 /// Instances on a square grid, a few metres apart.
 fn grid(scene: &mut RayScene, random: &mut Random, side: u32) -> Vec<RayInstance> {
     let mesh = scene.add_mesh(&mesh(random, 12)).expect("room");

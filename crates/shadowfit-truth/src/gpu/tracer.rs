@@ -2,11 +2,11 @@
 //! finds the triangles that a picture names.
 
 use glam::{Affine3A, DVec3, Vec3};
-use shadowfit_rays::{AlphaImage, CutMaterial, ImageId, RayError, RayInstance, RayMesh, RayScene, Wrap};
+use shadowfit_rays::{AlphaImage, CutMaterial, ImageId, MeshId, RayError, RayInstance, RayMesh, RayScene, Wrap};
 
 use super::error::GpuTruthError;
 use super::pipeline::{buffer, group, group_layout};
-use crate::cut_out::{self, CutOut, CutOuts};
+use crate::cut_out::{self, CutOut};
 use crate::tracer::Tracer;
 
 /// Label of the places' buffer, bind group and layout.
@@ -16,15 +16,17 @@ const LABEL: &str = "places of triangles";
 #[derive(Debug)]
 pub struct GpuTracer {
     scene: RayScene,
+    mesh: MeshId,
+    /// Those of the cut-outs, and where they are in the scene.
+    images: (Vec<cut_out::AlphaImage>, Vec<ImageId>),
     /// Place in leaf order of each triangle by its own index.
     slots: wgpu::Buffer,
     slots_group: wgpu::BindGroup,
 }
 
 impl GpuTracer {
-    /// Uploads a tracer; once, and again when its triangles have moved. Triangles are stored in f32 relative to `origin`
-    /// (world space, metres), which should be near what is judged. With an origin of zero they equal the CPU's to the
-    /// last bit.
+    /// Uploads a tracer. Triangles are stored in f32 relative to `origin` (world space, metres), which
+    /// should be near what is judged. With an origin of zero they equal the CPU's to the last bit.
     ///
     /// # Errors
     ///
@@ -35,28 +37,49 @@ impl GpuTracer {
         tracer: &Tracer,
         origin: DVec3,
     ) -> Result<Self, GpuTruthError> {
-        if tracer.has_alpha_test() {
-            return Err(GpuTruthError::AlphaTest);
-        }
         let mut scene = RayScene::new(device, queue)?;
-        let mesh = with_cut_outs(mesh(tracer, origin), tracer, &mut scene)?;
-        let id = scene.add_mesh(&mesh)?;
-        scene.set_instances(origin, &[RayInstance::new(id, Affine3A::IDENTITY)])?;
-        // An empty buffer cannot be bound.
-        let mut slots = vec![0u32; tracer.len().max(1)];
-        for (slot, triangle) in scene.slots(id).unwrap_or_default().zip(mesh.order()) {
-            slots[triangle as usize] = slot;
-        }
-        let content: &[u8] = bytemuck::cast_slice(&slots);
+        let images = upload_images(tracer.cut_outs().images(), &mut scene)?;
+        let shape = shape(tracer, origin, &images)?;
+        let mesh = scene.add_mesh(&shape)?;
+        scene.set_instances(origin, &[RayInstance::new(mesh, Affine3A::IDENTITY)])?;
         let slots = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(LABEL),
-            size: content.len() as u64,
+            // An empty buffer cannot be bound.
+            size: (tracer.len().max(1) * size_of::<u32>()) as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        queue.write_buffer(&slots, 0, content);
         let slots_group = group(device, LABEL, &slots_layout(device), [slots.as_entire_binding()]);
-        Ok(Self { scene, slots, slots_group })
+        let images = (tracer.cut_outs().images().to_vec(), images);
+        let made = Self { scene, mesh, images, slots, slots_group };
+        made.upload_slots(queue, &shape);
+        Ok(made)
+    }
+
+    /// Uploads a tracer whose triangles have moved, or another tracer. Buffers are created again only when
+    /// their sizes change, and images are uploaded again only when they do.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`]; the scene is unchanged then.
+    pub fn update(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, tracer: &Tracer) -> Result<(), GpuTruthError> {
+        let (images, ids) = &self.images;
+        if tracer.len() != self.triangles() as usize || tracer.cut_outs().images() != images {
+            *self = Self::new(device, queue, tracer, self.origin())?;
+            return Ok(());
+        }
+        let shape = shape(tracer, self.origin(), ids)?;
+        self.scene.update_mesh(self.mesh, &shape)?;
+        self.upload_slots(queue, &shape);
+        Ok(())
+    }
+
+    fn upload_slots(&self, queue: &wgpu::Queue, shape: &RayMesh) {
+        let mut slots = vec![0u32; shape.len()];
+        for (slot, triangle) in self.scene.slots(self.mesh).unwrap_or_default().zip(shape.order()) {
+            slots[triangle as usize] = slot;
+        }
+        queue.write_buffer(&self.slots, 0, bytemuck::cast_slice(&slots));
     }
 
     /// The point that triangles are stored relative to, world space, metres.
@@ -85,33 +108,32 @@ pub(crate) fn slots_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     group_layout(device, LABEL, [buffer(wgpu::BufferBindingType::Storage { read_only: true })])
 }
 
-/// The triangles and their hierarchy, relative to the origin.
-fn mesh(tracer: &Tracer, origin: DVec3) -> RayMesh {
-    let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
-    let corners = |triangle| tracer.corners(triangle).map(relative);
-    tracer.bvh().map(|bvh| RayMesh::from_bvh(bvh, corners)).unwrap_or_default()
+/// Uploads the images of cut-outs.
+fn upload_images(images: &[cut_out::AlphaImage], scene: &mut RayScene) -> Result<Vec<ImageId>, RayError> {
+    let mut upload = |image: &cut_out::AlphaImage| {
+        let [width, height] = image.size();
+        scene.add_image(AlphaImage::new(width, height, image.alpha())?)
+    };
+    images.iter().map(&mut upload).collect()
 }
 
-/// Uploads the images of the tracer's cut-outs, and gives these to its mesh.
-fn with_cut_outs(mesh: RayMesh, tracer: &Tracer, scene: &mut RayScene) -> Result<RayMesh, RayError> {
-    let cut_outs: &CutOuts = tracer.cut_outs();
+/// The triangles, relative to the origin, with their hierarchy and their cut-outs.
+fn shape(tracer: &Tracer, origin: DVec3, images: &[ImageId]) -> Result<RayMesh, GpuTruthError> {
+    if tracer.has_alpha_test() {
+        return Err(GpuTruthError::AlphaTest);
+    }
+    let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
+    let corners = |triangle| tracer.corners(triangle).map(relative);
+    let mesh = tracer.bvh().map(|bvh| RayMesh::from_bvh(bvh, corners)).unwrap_or_default();
+    let cut_outs = tracer.cut_outs();
     if cut_outs.is_empty() {
         return Ok(mesh);
     }
-    let images: Result<Vec<ImageId>, RayError> = cut_outs
-        .images()
-        .iter()
-        .map(|image| {
-            let [width, height] = image.size();
-            scene.add_image(AlphaImage::new(width, height, image.alpha())?)
-        })
-        .collect();
-    let images = images?;
     let cut_out = |triangle| {
         let index = cut_outs.index_of(triangle)?;
-        Some((triangle, converted(&cut_outs.cut_outs()[index as usize], &images)))
+        Some((triangle, converted(&cut_outs.cut_outs()[index as usize], images)))
     };
-    mesh.with_cut_outs((0..tracer.len() as u32).filter_map(cut_out))
+    Ok(mesh.with_cut_outs((0..tracer.len() as u32).filter_map(cut_out))?)
 }
 
 fn converted(cut_out: &CutOut, images: &[ImageId]) -> shadowfit_rays::CutOut {

@@ -401,6 +401,7 @@ fn thousands_of_random_triangles_are_judged_alike() {
 fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
     let (device, queue) = device();
     let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let mut tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
     let mut gpu = GpuJudge::new(&device);
     assert_eq!(gpu.read(&device, &queue), Err(GpuTruthError::NotJudged));
     let mut pictures = Vec::new();
@@ -408,7 +409,7 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
     for raised in [0.0, 1.5] {
         let moved: Triangles = boxes().iter().map(|corners| corners.map(|corner| corner * (1.0 + raised))).collect();
         picture.tracer = Tracer::new(moved);
-        let tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
+        tracer.update(&device, &queue, &picture.tracer).expect("a scene that fits");
         let seen = Truth::seen_by_rays(&picture.tracer, &picture.camera);
         let maps = [picture.maps[1].measured(sun())];
         let maps = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: true };
