@@ -1,9 +1,10 @@
 //! Why a mesh or a scene cannot be made or changed, with what to do about it.
 
+use glam::Vec3;
 use thiserror::Error;
 
 /// Why a mesh or a scene of rays cannot be made or changed. Nothing is changed then, unless it says so.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum RayError {
     /// The device cannot trace rays at all.
     #[error(
@@ -104,8 +105,13 @@ pub enum RayError {
     #[error("the mesh was added as one that keeps its shape: add it with `add_deforming_mesh`")]
     NotDeforming,
     /// Bounds of a deforming mesh that are not a box.
-    #[error("bounds of a deforming mesh from {0} to {1} are not a finite box: give one that holds all poses")]
-    Bounds(String, String),
+    #[error("bounds of a deforming mesh from {least} to {most} are not a finite box: give one that holds all poses")]
+    Bounds {
+        /// Least corner, in the space of the mesh.
+        least: Vec3,
+        /// Greatest corner.
+        most: Vec3,
+    },
     /// A vertex buffer that cannot be read.
     #[error("the vertex buffer of a deforming mesh cannot be read: {0}")]
     Vertices(VertexBufferLack),

@@ -19,7 +19,8 @@ use crate::top::{Instance, TopLevel};
 
 /// The meshes of an engine and their instances of the frame, for shaders with [`rays_wgsl`](crate::rays_wgsl).
 ///
-/// Adding and removing may make other buffers: record passes that trace, and take [`Self::group`], after them.
+/// Adding meshes or images, and setting more instances, may make other buffers: record passes that trace, with
+/// [`Self::group`], after it, and submit refits that were recorded before it.
 #[derive(Debug)]
 pub struct RayScene {
     device: wgpu::Device,
@@ -119,7 +120,7 @@ impl RayScene {
     pub fn add_deforming_mesh(&mut self, mesh: &RayMesh, bounds: [Vec3; 2]) -> Result<MeshId, RayError> {
         let [least, most] = bounds;
         if !(least.is_finite() && most.is_finite() && least.cmple(most).all()) {
-            return Err(RayError::Bounds(least.to_string(), most.to_string()));
+            return Err(RayError::Bounds { least, most });
         }
         let placed = self.place(mesh)?;
         let made = caught(&self.device, || {

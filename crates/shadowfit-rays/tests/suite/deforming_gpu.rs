@@ -110,6 +110,6 @@ fn vertex_buffers_and_meshes_that_cannot_be_refitted_are_refused() {
     assert_eq!(refit(soft, &storage, 32, 12), lacks(VertexBufferLack::Size { size: 64, needed: 68 }));
     assert_eq!(refit(soft, &storage, 28, 12), None);
     for bounds in [[Vec3::NAN, Vec3::ONE], [Vec3::ONE, Vec3::ZERO]] {
-        assert!(matches!(scene.add_deforming_mesh(&mesh, bounds), Err(RayError::Bounds(..))), "{bounds:?}");
+        assert!(matches!(scene.add_deforming_mesh(&mesh, bounds), Err(RayError::Bounds { .. })), "{bounds:?}");
     }
 }

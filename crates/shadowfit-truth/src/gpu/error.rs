@@ -4,7 +4,7 @@ use shadowfit_rays::RayError;
 use thiserror::Error;
 
 /// Why a picture cannot be judged on the GPU.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum GpuTruthError {
     /// The tracer's alpha test is a function that only the CPU can run.
     #[error(
