@@ -1,6 +1,8 @@
 //! Answers of the GPU, which are those of brute force but for rays within rounding of an edge.
 
-use shadowfit_rays::glam::{Affine3A, DVec3, Vec3};
+use std::f32::consts::FRAC_PI_2;
+
+use shadowfit_rays::glam::{Affine3A, DVec3, Vec3, Vec3Swizzles};
 use shadowfit_rays::{RayInstance, RayMesh, RayScene, RayWgslOptions, Sides};
 
 use super::brute_force::{Blocker, Random, assert_answers};
@@ -99,6 +101,61 @@ fn a_scene_whose_origin_is_a_hundred_kilometres_away_has_the_same_answers() {
     scene.set_instances(origin, &world.instances).expect("room");
     assert_eq!((scene.origin(), scene.uploaded()), (origin, 0));
     assert_eq!(gpu.blocked(&scene, &rays), near);
+}
+
+#[test]
+fn rays_aimed_at_the_middle_of_far_stretched_triangles_meet_them_and_no_box_hides_one() {
+    let Some(gpu) = gpu() else { return };
+    let mut random = Random(17);
+    let mut scene = gpu.scene();
+    let triangles = random.triangles(20, 1.0);
+    let id = scene.add_mesh(&mesh(&triangles)).expect("room");
+    let mut stretched = || {
+        let scale = Vec3::from([0; 3].map(|_| 20.0_f32.powf(random.share() * 2.0 - 1.0)));
+        let turned = random.transform(1000.0);
+        RayInstance::new(id, turned * Affine3A::from_scale(scale))
+    };
+    let instances: Vec<_> = (0..200).map(|_| stretched()).collect();
+    scene.set_instances(DVec3::ZERO, &instances).expect("room");
+    let mut rays = Vec::new();
+    for instance in &instances {
+        for triangle in &triangles {
+            let middle = instance.world_from_mesh.transform_point3(triangle.iter().sum::<Vec3>() / 3.0);
+            let direction = random.direction();
+            rays.push([middle - direction * 300.0 * random.share(), direction]);
+        }
+    }
+    let missed = gpu.blocked(&scene, &rays).iter().filter(|answer| !**answer).count();
+    // What rounding at a kilometre moves past the edge of a triangle that is seen from its side.
+    assert!(missed * 1000 <= rays.len(), "{missed} of {}", rays.len());
+}
+
+#[test]
+fn rays_along_axes_meet_walls_without_thickness() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = gpu.scene();
+    // A square in the plane z = 0, whose box is flat.
+    let corner = |x, y| Vec3::new(x, y, 0.0);
+    let square = [
+        [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)],
+        [corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+    ];
+    let id = scene.add_mesh(&mesh(&square)).expect("room");
+    let turns = [Affine3A::IDENTITY, Affine3A::from_rotation_x(FRAC_PI_2), Affine3A::from_rotation_y(FRAC_PI_2)];
+    for (turn, axis) in turns.into_iter().zip([Vec3::Z, Vec3::Y, Vec3::X]) {
+        scene.set_instances(DVec3::ZERO, &[RayInstance::new(id, turn)]).expect("room");
+        // On no diagonal, where the two triangles have an edge.
+        let beside = Vec3::new(0.1, 0.3, 0.5) * (Vec3::ONE - axis);
+        let rays = [
+            [beside - axis * 5.0, axis],
+            [beside + axis * 5.0, -axis],
+            [beside + axis * 5.0, axis],
+            [beside * 20.0 - axis * 5.0, axis],
+            // From the middle of the plane along it.
+            [beside, axis.zxy()],
+        ];
+        assert_eq!(gpu.blocked(&scene, &rays), [true, true, false, false, false], "{axis}");
+    }
 }
 
 #[test]
