@@ -20,7 +20,7 @@ pub struct Judging {
     /// Whether crawl is measured, which draws each frame once more.
     pub crawl: bool,
     /// Points of a pixel across and down by which factors are compared with the light on its whole area; 0 for none, since
-    /// each takes two rays. A sun with a radius counts as a point there.
+    /// each takes two rays.
     pub area: u32,
     /// Whether only pixels of the scene's subject count; all do in a scene without one.
     pub subject_only: bool,

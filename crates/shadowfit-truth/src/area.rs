@@ -38,6 +38,9 @@ impl AreaTally {
     }
 }
 
+/// Shuffles the rays of a pixel: a prime near the golden section of 256, that of 16 × 16 points.
+const SHUFFLE: u32 = 157;
+
 /// What the area of a pixel shows.
 struct Area {
     lit: f64,
@@ -45,7 +48,7 @@ struct Area {
 }
 
 /// Compares a picture's factors with the area of each pixel that counts, by `side` × `side` points, each with a ray toward
-/// a sun that is a point. `counted` and `factors` are those of the picture, in rows from the top.
+/// a point of its own of the sun where that has a radius. `counted` and `factors` are those of the picture, in rows from the top.
 pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], side: u32) -> AreaTally {
     let of_pixel = |pixel: usize| {
         let point = truth.points[pixel].filter(|_| counted[pixel])?;
@@ -77,6 +80,7 @@ fn seen(
     let width = 2.0 * camera.tan_half_fov.y / f64::from(camera.size[1]) * camera.view_depth(on_plane);
     let [right, down] = camera.pixel_axes();
     let (mut points, mut free, mut is_single) = (0_u32, 0_u32, true);
+    let rays = settings.light.with_rays(side * side).rays();
     for index in 0..side * side {
         let place = |number: u32| (f64::from(number) + 0.5) / f64::from(side) - 0.5;
         let through = ray + right * place(index % side) + down * place(index / side);
@@ -89,10 +93,13 @@ fn seen(
         let position = camera.eye + through * depth;
         is_single &= (position - on_plane).dot(normal).abs() <= width;
         let facing = if plane.dot(through) > 0.0 { -plane } else { plane };
-        let to_light = settings.light.ray_from(position);
         points += 1;
-        let is_lit = facing.dot(to_light.direction) > 0.0
-            && !is_blocked(tracer, position + facing * settings.ray_offset, &to_light);
+        let is_facing = facing.dot(settings.light.ray_from(position).direction) > 0.0;
+        // Neighbouring points of the pixel have points of the sun that are no neighbours.
+        let number = (index * SHUFFLE % rays.count()) as usize;
+        let origin = position + facing * settings.ray_offset;
+        let is_lit =
+            is_facing && rays.from(origin, pixel).nth(number).is_some_and(|ray| !is_blocked(tracer, origin, &ray));
         free += u32::from(is_lit);
     }
     (points > 0).then(|| Area { lit: f64::from(free) / f64::from(points), is_single })

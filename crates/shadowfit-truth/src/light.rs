@@ -66,6 +66,14 @@ impl TruthLight {
         clip.w > 0.0 && is_within
     }
 
+    /// The same light with so many rays, if it is a sun.
+    pub(crate) fn with_rays(self, number: u32) -> Self {
+        match self {
+            Self::Sun { to_light, radius, .. } => Self::Sun { to_light, radius, rays: number },
+            spot @ Self::Spot { .. } => spot,
+        }
+    }
+
     /// What its rays are made of.
     pub(crate) fn rays(&self) -> LightRays {
         match *self {

@@ -45,6 +45,9 @@ pub(crate) struct CachedMaps {
     volumes: Vec<CasterVolume>,
     /// Origin of the boxes in the plan, in world space, in metres.
     origin: DVec3,
+    /// How often each map was drawn.
+    #[cfg(feature = "rays")]
+    drawn: [u64; MAX_MAPS],
     /// From where the look-up reads them.
     view: Option<MapView>,
     /// What maps that wait show wrongly.
@@ -92,6 +95,8 @@ impl CachedMaps {
             maps: Vec::new(),
             volumes: Vec::new(),
             origin: DVec3::ZERO,
+            #[cfg(feature = "rays")]
+            drawn: [0; MAX_MAPS],
             view: None,
             #[cfg(feature = "rays")]
             stale: Vec::new(),
@@ -117,6 +122,12 @@ impl CachedMaps {
     /// From where the look-up reads them; `None` before the first frame, and while the light gives nothing.
     pub(crate) fn view(&self) -> Option<&MapView> {
         self.view.as_ref()
+    }
+
+    /// How often each map was drawn: a number that changes with what it holds.
+    #[cfg(feature = "rays")]
+    pub(crate) fn drawn(&self) -> &[u64; MAX_MAPS] {
+        &self.drawn
     }
 
     /// What maps that wait for another frame show wrongly.
@@ -194,6 +205,8 @@ impl CachedMaps {
         self.find_volumes(frame, &view, by_view).map_err(ShadowMapError::View)?;
         let volumes = if by_view { &self.volumes[..] } else { &[] };
         self.cache.plan(&choice, &cached, volumes, &mut self.plan);
+        #[cfg(feature = "rays")]
+        self.plan.passes.iter().for_each(|pass| self.drawn[pass.map] += 1);
         // 3. The uniforms of the shaders.
         for (index, map) in self.maps.iter_mut().enumerate() {
             map.wrap = self.cache.wrap(index);

@@ -304,6 +304,12 @@ impl ShadowMap {
         }
     }
 
+    /// Layer of its first map in the texture.
+    #[cfg(feature = "rays")]
+    pub(crate) fn first_layer(&self) -> u32 {
+        self.first_layer
+    }
+
     /// What the look-up reads of maps from elsewhere than in the picture: this set of maps alone.
     #[cfg(feature = "rays")]
     pub(crate) fn receiver_bytes(&self, view: &MapView, maps: &[FittedMap]) -> Vec<u8> {

@@ -33,6 +33,8 @@ mod error;
 mod group;
 mod noise;
 mod pass;
+mod pipeline;
+mod pyramid;
 mod shader;
 mod source;
 mod uniform;

@@ -170,6 +170,13 @@ fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
     options.fill(&text, descriptor.first_binding)
 }
 
+/// WGSL that reads the texels of layers: after the look-up's declarations, `shadowfit_load(layer, texel) -> f32`.
+#[cfg(feature = "rays")]
+pub(crate) fn loads_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
+    let (texture, load) = texture(descriptor.format);
+    options.fill(&[texture, load].concat(), descriptor.first_binding)
+}
+
 /// Whether the look-up reads texels by itself.
 fn loads_texels(descriptor: &ShadowMapDescriptor) -> bool {
     !descriptor.format.is_depth() || descriptor.filter == FilterKind::Pcss

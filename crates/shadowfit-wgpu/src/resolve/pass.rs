@@ -4,6 +4,8 @@ use shadowfit_rays::RayScene;
 
 use super::error::ResolveError;
 use super::group::{COUNTS, FLOATS, Layouts, Target, factors};
+use super::pipeline::pipeline;
+use super::pyramid::Pyramids;
 use super::shader::{self, Shape};
 use super::source::{Source, is_fine};
 use super::uniform::ResolveUniform;
@@ -32,6 +34,10 @@ pub struct ResolvePass {
     /// Gathers the texels of maps, which may wrap around.
     texels: wgpu::Sampler,
     target: Option<Target>,
+    /// Made for the first sun with a radius.
+    pyramids: Option<Pyramids>,
+    /// What is bound in their place for one without.
+    no_bounds: wgpu::TextureView,
     /// What shaders read where nothing is resolved: one pixel, which is the filter's.
     nothing: (wgpu::TextureView, wgpu::BindGroup),
     result: EdgeResult,
@@ -121,6 +127,8 @@ impl ResolvePass {
                     ..Default::default()
                 }),
                 target: None,
+                pyramids: None,
+                no_bounds: no_bounds(&texture),
                 nothing,
                 result: EdgeResult::Filtered(WhyFiltered::Picture),
                 counts: (0..FRAMES).map(|_| ReadBack::new(device, COUNTS)).collect(),
@@ -237,6 +245,9 @@ impl ResolvePass {
             self.target = Some(Target::new(&self.device, &self.layouts, size)?);
         }
         self.make_pipelines(sun, rays, shape)?;
+        if sun.map().descriptor().filter.is_soft() {
+            self.pyramids = Some(Pyramids::of(self.pyramids.take(), &self.device, sun)?);
+        }
         if let (Some(budget), Some(target)) = (view.budget, &mut self.target) {
             target.kept(&self.device, &self.queue, &self.layouts, [budget, map_view.frame])?;
         }
@@ -245,6 +256,7 @@ impl ResolvePass {
         self.queue.write_buffer(&self.resolve, 0, bytemuck::bytes_of(&source.resolve));
         self.queue.write_buffer(&self.receiver, 0, &source.receiver);
         let receiver = sun.map().receiver_group_with(&self.device, &self.receiver);
+        let is_soft = sun.map().descriptor().filter.is_soft();
         let traced = kept.map_or(&target.list, |kept| &kept.list);
         let classify = self.bind(&pipelines.layout, (target, &target.list), view);
         let trace = self.bind(&pipelines.trace_layout, (target, traced), view);
@@ -254,6 +266,9 @@ impl ResolvePass {
         let timestamp_writes = timestamps;
         let descriptor = wgpu::ComputePassDescriptor { label: Some("shadowfit resolve"), timestamp_writes };
         let mut pass = encoder.begin_compute_pass(&descriptor);
+        if let Some(pyramids) = self.pyramids.as_mut().filter(|_| is_soft) {
+            pyramids.renew(&mut pass, sun, &receiver);
+        }
         pass.set_pipeline(&pipelines.classify);
         pass.set_bind_group(0, &receiver, &[]);
         pass.set_bind_group(1, &classify, &[]);
@@ -309,6 +324,7 @@ impl ResolvePass {
             wgpu::BindingResource::TextureView(&target.factors),
             list.as_entire_binding(),
             wgpu::BindingResource::Sampler(&self.texels),
+            wgpu::BindingResource::TextureView(self.pyramids.as_ref().map_or(&self.no_bounds, |made| &made.view)),
         ];
         bindings::group(&self.device, "shadowfit resolve", layout, (0, &resources))
     }
@@ -354,6 +370,19 @@ impl Pipelines {
     }
 }
 
+/// The bounds of maps.
+const BOUNDS: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    view_dimension: wgpu::TextureViewDimension::D2Array,
+    multisampled: false,
+};
+
+/// A texture of one layer in the place of bounds that are not read.
+fn no_bounds(any: &wgpu::TextureView) -> wgpu::TextureView {
+    let dimension = Some(wgpu::TextureViewDimension::D2Array);
+    any.texture().create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
+}
+
 /// Layout of a picture: its list is written, or read.
 fn layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGroupLayout {
     let factors = wgpu::BindingType::StorageTexture {
@@ -364,32 +393,8 @@ fn layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGro
     let depths = bindings::depths(wgpu::TextureViewDimension::D2, shape.samples > 1);
     let list = bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
-    let types = [bindings::UNIFORM, depths, FLOATS, factors, list, sampler];
+    let types = [bindings::UNIFORM, depths, FLOATS, factors, list, sampler, BOUNDS];
     bindings::layout(device, "shadowfit resolve", wgpu::ShaderStages::COMPUTE, (0, &types))
-}
-
-fn pipeline(
-    device: &wgpu::Device,
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-    (source, entry): (String, &str),
-) -> wgpu::ComputePipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("shadowfit resolve"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shadowfit resolve"),
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
-    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("shadowfit resolve"),
-        layout: Some(&layout),
-        module: &module,
-        entry_point: Some(entry),
-        compilation_options: Default::default(),
-        cache: None,
-    })
 }
 
 fn uniform(device: &wgpu::Device, bytes: usize) -> wgpu::Buffer {

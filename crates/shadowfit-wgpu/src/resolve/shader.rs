@@ -6,6 +6,7 @@ use shadowfit_rays::{RayWgslOptions, rays_wgsl};
 use super::noise;
 use super::uniform::{MAX_POINTS, MAX_UNKNOWN};
 use super::view::NormalEncoding;
+use crate::shader::loads_wgsl;
 use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
 
 /// Threads of a workgroup that traces.
@@ -20,6 +21,9 @@ const RAYS_GROUP: u32 = 2;
 /// nor a gap, is missed: with 1 there are 0.013% wrong pixels on the shared scenes and 1.7% take rays, with 2 0.0024% and
 /// 4.9%, with 3 0.0024% and 7.9%.
 const FOOTPRINT: f32 = 2.0;
+
+/// Texels along a side of a block of the finest level of a pyramid.
+pub(super) const BLOCK: u32 = 4;
 
 const LIST: &str = include_str!("../shaders/resolve_list.wgsl");
 
@@ -56,10 +60,28 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
     };
     let is_reversed = descriptor.depth == DepthConvention::Reversed;
     let (toward_light, closer) = if is_reversed { (1.0, ">=") } else { (-1.0, "<=") };
-    let constants = format!("const FOOTPRINT: f32 = {FOOTPRINT:?};\nconst TOWARD_LIGHT: f32 = {toward_light:?};\n");
+    let nearest = if is_reversed { 1.0 } else { 0.0 };
+    let (is_soft, by_coverage) = (descriptor.filter.is_soft(), descriptor.selection.is_by_coverage());
+    let constants = format!(
+        "const FOOTPRINT: f32 = {FOOTPRINT:?};\nconst TOWARD_LIGHT: f32 = {toward_light:?};\nconst NEAREST: f32 = \
+         {nearest:?};\nconst IS_SOFT: bool = {is_soft};\nconst IS_BY_COVERAGE: bool = {by_coverage};\nconst BLOCK: i32 = \
+         {BLOCK};\n"
+    );
     let list = LIST.replace("LIST_COUNT", "atomic<u32>");
-    let pass = include_str!("../shaders/resolve_classify.wgsl").replace("COMPARE", closer);
-    [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass].concat()
+    let pass =
+        [include_str!("../shaders/resolve_classify.wgsl"), include_str!("../shaders/resolve_soft.wgsl")].concat();
+    [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass.replace("COMPARE", closer)].concat()
+}
+
+/// The WGSL of the passes that bound a map's depths: entry points `gather_blocks` and `join_blocks`.
+pub(super) fn pyramid(descriptor: &ShadowMapDescriptor) -> [String; 2] {
+    let is_reversed = descriptor.depth == DepthConvention::Reversed;
+    let closer = if is_reversed { ">=" } else { "<=" };
+    let constants = format!("const BLOCK: i32 = {BLOCK};\n");
+    let blocks = include_str!("../shaders/resolve_blocks.wgsl").replace("COMPARE", closer);
+    let levels = include_str!("../shaders/resolve_levels.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
+    let loads = loads_wgsl(descriptor, &WgslOptions::group(RECEIVER_GROUP));
+    [[loads, constants, blocks].concat(), levels]
 }
 
 pub(super) fn arguments() -> String {

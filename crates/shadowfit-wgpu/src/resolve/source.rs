@@ -31,7 +31,8 @@ impl Source {
         let part @ [left, top, width, height] = view.part();
         let texture = view.depth.texture();
         let to_world = checked_matrix(view, part)?;
-        let (points, point_reach) = points(descriptor.edges.samples(), texture.sample_count());
+        let (points, point_reach) =
+            points(descriptor.edges.samples(), texture.sample_count(), descriptor.filter.is_soft());
         let mut unknown = Unknown::default();
         unknown.add_stale(sun, view.eye);
         unknown.add_lacking(sun, view);
@@ -49,7 +50,7 @@ impl Source {
             point_count: descriptor.edges.samples(),
             unsure_maps: unknown.maps,
             unknown_count: unknown.count as u32,
-            frame: map_view.frame,
+            sun_tangent: if descriptor.filter.is_soft() { descriptor.softness.tangent() } else { 0.0 },
             padding: 0,
             points,
             unknown: unknown.boxes,
@@ -125,7 +126,7 @@ impl Unknown {
     fn add_stale(&mut self, sun: &SunShadows, eye: DVec3) {
         for stale in sun.cached().stale() {
             let Some(map) = sun.maps().get(stale.map) else { continue };
-            let bit = 1 << stale.map;
+            let bit = 1 << (sun.map().first_layer() as usize + stale.map);
             match &stale.boxes {
                 Some(boxes) if self.count + boxes.len() <= MAX_UNKNOWN / 2 => {
                     let around = reach(map, sun);

@@ -31,7 +31,7 @@ pub struct ResolveUniform {
     pub point_count: u32,
     pub unsure_maps: u32,
     pub unknown_count: u32,
-    pub frame: u32,
+    pub sun_tangent: f32,
     pub padding: u32,
     pub points: [[f32; 4]; MAX_POINTS],
     pub unknown: [UnknownUniform; MAX_UNKNOWN],
@@ -50,16 +50,25 @@ pub struct UnknownUniform {
 
 /// Points of a pixel, from its first sample, in pixels, and the greatest distance of one across or down. `samples`: those
 /// of the depth buffer per pixel.
-pub(super) fn points(count: u32, samples: u32) -> ([[f32; 4]; MAX_POINTS], f32) {
+pub(super) fn points(count: u32, samples: u32, is_soft: bool) -> ([[f32; 4]; MAX_POINTS], f32) {
     let mut points = [[0.0; 4]; MAX_POINTS];
     let first = if samples > 1 { FIRST_OF_FOUR } else { [0.0; 2] };
     let mut reach = 0.0_f32;
     for (index, point) in (0..count).zip(&mut points) {
         let [x, y] = from_centre(index, count);
-        *point = [x - first[0], y - first[1], 0.0, 0.0];
+        let [across, down] = if is_soft { in_disc(index, count) } else { [0.0; 2] };
+        *point = [x - first[0], y - first[1], across, down];
         reach = reach.max(point[0].abs()).max(point[1].abs());
     }
     (points, reach)
+}
+
+/// One of several points of the unit disc, each turned from the last by the golden angle, at radii that give each the same
+/// area (H. Vogel, "A better way to construct the sunflower head", 1979).
+fn in_disc(index: u32, count: u32) -> [f32; 2] {
+    let golden = core::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
+    let (radius, angle) = (((index as f32 + 0.5) / count as f32).sqrt(), index as f32 * golden);
+    [radius * angle.cos(), radius * angle.sin()]
 }
 
 /// One of several points of a pixel, from its centre, in pixels: the centre alone, a rotated grid of four, and else
@@ -93,8 +102,8 @@ mod tests {
 
     #[test]
     fn points_are_counted_from_the_first_sample_of_the_depth_buffer() {
-        let (points, reach) = points(4, 4);
+        let (points, reach) = points(4, 4, false);
         assert_eq!((points[0], reach), ([0.0; 4], 0.75));
-        assert_eq!(super::points(1, 1), ([[0.0; 4]; MAX_POINTS], 0.0));
+        assert_eq!(super::points(1, 1, false), ([[0.0; 4]; MAX_POINTS], 0.0));
     }
 }

@@ -37,7 +37,8 @@ struct Resolve {
     // Maps, by the bits of their layers, that are not sure anywhere.
     unsure_maps: u32,
     unknown_count: u32,
-    frame: u32,
+    // Tangent of the sun's angular radius; 0 for a point.
+    sun_tangent: f32,
     padding: u32,
     // xy: from the pixel's first sample, in pixels; zw: from the sun's centre, in its radii.
     points: array<vec4<f32>, MAX_POINTS>,

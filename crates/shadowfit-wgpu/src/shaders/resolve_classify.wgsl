@@ -9,7 +9,8 @@ const UNSURE: f32 = 2.0;
 const FACES_AWAY: f32 = 3.0;
 const BEYOND: f32 = 4.0;
 const NO_SURFACE: f32 = 5.0;
-// Blocks of 2x2 texels along a side of the greatest footprint that is looked at; wider ones are unsure.
+const TOO_WIDE: f32 = 6.0;
+// Blocks of 2x2 texels along a side of the greatest footprint that is looked at in a map.
 const MOST_BLOCKS: f32 = 6.0;
 
 var<workgroup> unsure_count: atomic<u32>;
@@ -38,15 +39,15 @@ fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32) ->
 }
 
 // What the texels say that the filter reads around the points of a pixel: 1 where none is nearer to the light than the
-// point's plane, 0 where all shadow it, UNSURE otherwise. spread: by how much the points differ from the one that is
-// projected, in texels.
+// point's plane, 0 where all shadow it, UNSURE otherwise, and TOO_WIDE where they do not all lie in the map or are too
+// many. spread: by how much the points differ from the one that is projected, in texels.
 fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>) -> f32 {
     let first = floor(projected.texel - spread - 0.5) - (FOOTPRINT - 1.0);
     let last = floor(projected.texel + spread - 0.5) + FOOTPRINT;
     let blocks = ceil((last - first + 1.0) * 0.5);
     let is_whole = all(first >= vec2<f32>(0.0)) && all(first + 2.0 * blocks <= projected.size);
     if !(is_whole && all(blocks <= vec2<f32>(MOST_BLOCKS))) {
-        return UNSURE;
+        return TOO_WIDE;
     }
     let steepness = abs(projected.gradient.x) + abs(projected.gradient.y);
     let rounding = map.constant_depth + TOWARD_LIGHT * ROUNDED_TEXEL * steepness;
@@ -93,17 +94,37 @@ fn unsure_maps(position: vec3<f32>) -> u32 {
     return maps;
 }
 
-// What a map says about a pixel: 1, 0 or UNSURE.
-fn verdict_of_map(surface: Surface, unsure: u32) -> f32 {
+// What a map says about a pixel: 1, 0, UNSURE or TOO_WIDE.
+fn verdict_of_map(map: shadowfit_Map, surface: Surface, unsure: u32) -> f32 {
+    if (unsure & (1u << map.layer)) != 0u {
+        return UNSURE;
+    }
+    let projected = shadowfit_project(map, surface.position, surface.normal);
+    let spread = spread_in(map, surface);
+    if IS_SOFT {
+        return soft_footprint(map, projected, spread);
+    }
+    return footprint(map, projected, spread);
+}
+
+// What the maps say about a pixel: 1, 0 or UNSURE. The finest one decides in which its footprint is whole and not too
+// wide; by view depth others may lack what shadows it.
+fn verdict_of_maps(surface: Surface, unsure: u32) -> f32 {
     let choice = shadowfit_choose(surface.position);
     if choice.first < 0 || choice.first == choice.clamped {
         return UNSURE;
     }
-    let map = shadowfit_entry(choice.first);
-    if (unsure & (1u << map.layer)) != 0u {
-        return UNSURE;
+    var verdict = verdict_of_map(shadowfit_entry(choice.first), surface, unsure);
+    for (var entry = choice.first + 1; IS_BY_COVERAGE && verdict == TOO_WIDE; entry += 1) {
+        if entry >= i32(shadowfit_receiver.map_count) {
+            break;
+        }
+        let map = shadowfit_entry(entry);
+        if shadowfit_free(u32(entry), map, surface.position) >= 0.0 {
+            verdict = verdict_of_map(map, surface, unsure);
+        }
     }
-    return footprint(map, shadowfit_project(map, surface.position, surface.normal), spread_in(map, surface));
+    return select(verdict, UNSURE, verdict == TOO_WIDE);
 }
 
 // The factor of a pixel, or what is found beside factors.
@@ -128,7 +149,7 @@ fn verdict_of(pixel: vec2<i32>) -> f32 {
     if !surface.is_known {
         return UNSURE;
     }
-    let verdict = verdict_of_map(surface, unsure);
+    let verdict = verdict_of_maps(surface, unsure);
     return select(mix(verdict, 1.0, faded), UNSURE, verdict == UNSURE);
 }
 

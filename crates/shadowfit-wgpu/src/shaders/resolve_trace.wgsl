@@ -20,6 +20,24 @@ fn point_of(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> vec3<f32> {
     return homogeneous.xyz / homogeneous.w;
 }
 
+// Directions across the light, of unit length.
+struct Across {
+    x: vec3<f32>,
+    y: vec3<f32>,
+}
+
+// Those of a pixel, turned about the light (T. Duff et al., "Building an orthonormal basis, revisited", 2017).
+fn across_light(pixel: vec2<i32>) -> Across {
+    let n = shadowfit_receiver.to_light;
+    let side = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (side + n.z);
+    let b = n.x * n.y * a;
+    let x = vec3<f32>(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
+    let y = vec3<f32>(b, side + n.y * n.y * a, -n.y);
+    let turn = shadowfit_turn(vec2<f32>(pixel));
+    return Across(x * cos(turn) + y * sin(turn), y * cos(turn) - x * sin(turn));
+}
+
 @compute @workgroup_size(TRACE_THREADS)
 fn trace(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -34,10 +52,13 @@ fn trace(
     let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
     let surface = surface_of(pixel, depth_at(pixel));
     let above = surface.normal * height_of(surface);
+    let across = across_light(pixel);
     var lit = 0.0;
     for (var at = 0u; at < resolve.point_count; at += 1u) {
         let start = point_of(pixel, surface, resolve.points[at].xy) + above + resolve.eye;
-        lit += select(1.0, 0.0, shadowfit_rays_blocked(start, shadowfit_receiver.to_light));
+        let aside = resolve.points[at].zw * resolve.sun_tangent;
+        let toward = normalize(shadowfit_receiver.to_light + across.x * aside.x + across.y * aside.y);
+        lit += select(1.0, 0.0, shadowfit_rays_blocked(start, toward));
     }
     let factor = mix(lit / f32(resolve.point_count), 1.0, shadowfit_faded(surface.position));
     textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(factor, 0.0, 0.0, 0.0));
