@@ -10,6 +10,29 @@ fn height_of(surface: Surface) -> f32 {
     return max(resolve.ray_offset, max(step, POSITION_ROUNDING * distance));
 }
 
+// How high a neighbour stands above a pixel's plane, in metres; 0 where it is another surface: farther from the plane
+// than the plane itself changes.
+fn height_beside(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface, up: f32) -> f32 {
+    let found = depth_at(pixel + axis);
+    let step = dot(surface.steps, vec2<f32>(axis));
+    let off = found - surface.depth - step;
+    let ray = moved(resolve.world_from_pixel[2], surface);
+    let across = moved(resolve.world_from_pixel[0], surface);
+    let is_same = found != 0.0 && abs(off) * length(ray) <= abs(step) * length(ray) + length(across);
+    return select(0.0, off * up, is_same);
+}
+
+// How high the neighbours to the right, to the left, below and above stand over a pixel's plane, in metres.
+fn heights_beside(pixel: vec2<i32>, surface: Surface) -> vec4<f32> {
+    if resolve.point_reach == 0.0 {
+        return vec4<f32>(0.0);
+    }
+    let up = dot(moved(resolve.world_from_pixel[2], surface), surface.normal);
+    return vec4<f32>(
+        height_beside(pixel, vec2<i32>(1, 0), surface, up), height_beside(pixel, vec2<i32>(-1, 0), surface, up),
+        height_beside(pixel, vec2<i32>(0, 1), surface, up), height_beside(pixel, vec2<i32>(0, -1), surface, up));
+}
+
 // A point of a pixel's surface, from its first sample, in pixels: relative to the eye, in metres.
 fn point_of(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> vec3<f32> {
     // Seen edge-on, the plane may leave the picture within the pixel.
@@ -51,14 +74,23 @@ fn trace(
     let packed = list.pixels[index];
     let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
     let surface = surface_of(pixel, depth_at(pixel));
-    let above = surface.normal * height_of(surface);
+    let height = height_of(surface);
+    let beside = heights_beside(pixel, surface);
+    // A surface that leaves the plane on both sides may do so in between.
+    let off = abs(beside);
+    let rough = max(min(off.x, off.y), min(off.z, off.w));
     let across = across_light(pixel);
     var lit = 0.0;
     for (var at = 0u; at < resolve.point_count; at += 1u) {
-        let start = point_of(pixel, surface, resolve.points[at].xy) + above + resolve.eye;
+        // On a bent surface a point of the plane may lie below: it is lifted toward where neighbours are.
+        let place = resolve.points[at].xy;
+        let toward = vec4<f32>(max(place.x, 0.0), max(-place.x, 0.0), max(place.y, 0.0), max(-place.y, 0.0));
+        let bent = dot(max(beside, vec4<f32>(0.0)), toward) + rough * max(abs(place.x), abs(place.y));
+        let above = surface.normal * (height + bent);
+        let start = point_of(pixel, surface, place) + above + resolve.eye;
         let aside = resolve.points[at].zw * resolve.sun_tangent;
-        let toward = normalize(shadowfit_receiver.to_light + across.x * aside.x + across.y * aside.y);
-        lit += select(1.0, 0.0, shadowfit_rays_blocked(start, toward));
+        let direction = normalize(shadowfit_receiver.to_light + across.x * aside.x + across.y * aside.y);
+        lit += select(1.0, 0.0, shadowfit_rays_blocked(start, direction));
     }
     let factor = mix(lit / f32(resolve.point_count), 1.0, shadowfit_faded(surface.position));
     textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(factor, 0.0, 0.0, 0.0));
