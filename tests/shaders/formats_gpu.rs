@@ -184,7 +184,7 @@ fn settings_of_filters_that_make_no_picture_are_refused_with_their_numbers() {
     let made = |descriptor: ShadowMapDescriptor| ShadowMap::new(&gpu.device, &descriptor).map(|_| ());
     let plain = ShadowMapDescriptor { resolution: [256; 2], ..ShadowMapDescriptor::default() };
     let clamped = ShadowMapDescriptor { filter: FilterKind::Pcss, depth_clamp: true, ..plain };
-    assert_eq!(made(clamped), Err(ShadowMapError::PcssDepthClamp));
+    assert_eq!(made(clamped), Err(ShadowMapError::SoftDepthClamp(FilterKind::Pcss)));
     for fade in [[5.0, 4.0], [f32::NAN, 4.0], [0.0, f32::INFINITY]] {
         let error = made(ShadowMapDescriptor { fade, ..plain }).expect_err("no fade");
         assert!(error.to_string().contains(&format!("{} m", fade[0])), "{error}");

@@ -140,18 +140,15 @@ impl ShadowMapDescriptor {
         if !(0.0..f32::INFINITY).contains(&tangent) {
             return Err(ShadowMapError::SoftRadius(tangent));
         }
-        self.check_pcss(device.adapter_info().backend)
+        self.check_distances(device.adapter_info().backend)
     }
 
     /// Refuses filters that need casters' distances where these are lost, or where shaders cannot read them.
-    fn check_pcss(&self, backend: wgpu::Backend) -> Result<(), ShadowMapError> {
-        if self.filter != FilterKind::Pcss {
-            return Ok(());
+    fn check_distances(&self, backend: wgpu::Backend) -> Result<(), ShadowMapError> {
+        if self.edges.need_distances(self.filter) && self.depth_clamp {
+            return Err(ShadowMapError::SoftDepthClamp(self.filter));
         }
-        if self.depth_clamp {
-            return Err(ShadowMapError::PcssDepthClamp);
-        }
-        if self.format.is_depth() && backend == wgpu::Backend::Gl {
+        if self.filter == FilterKind::Pcss && self.format.is_depth() && backend == wgpu::Backend::Gl {
             return Err(ShadowMapError::PcssDepthLoads(self.format));
         }
         Ok(())
@@ -201,13 +198,33 @@ mod tests {
     #[test]
     fn pcss_is_refused_without_the_casters_distances_and_says_what_to_do() {
         let pcss = ShadowMapDescriptor { filter: FilterKind::Pcss, ..ShadowMapDescriptor::default() };
-        assert_eq!(pcss.check_pcss(wgpu::Backend::Vulkan), Ok(()));
+        assert_eq!(pcss.check_distances(wgpu::Backend::Vulkan), Ok(()));
         let clamped = ShadowMapDescriptor { depth_clamp: true, ..pcss };
-        let error = clamped.check_pcss(wgpu::Backend::Vulkan).expect_err("clamped casters have no distance");
+        let error = clamped.check_distances(wgpu::Backend::Vulkan).expect_err("clamped casters have no distance");
         assert!(error.to_string().contains("caster policy"), "{error}");
-        let error = pcss.check_pcss(wgpu::Backend::Gl).expect_err("no loads of depth");
+        let error = pcss.check_distances(wgpu::Backend::Gl).expect_err("no loads of depth");
         assert!(error.to_string().contains("Depth32Float") && error.to_string().contains("R32Float"), "{error}");
         let color = ShadowMapDescriptor { format: MapFormat::R32Float, ..pcss };
-        assert_eq!(color.check_pcss(wgpu::Backend::Gl), Ok(()));
+        assert_eq!(color.check_distances(wgpu::Backend::Gl), Ok(()));
+    }
+
+    #[test]
+    fn traced_soft_edges_are_refused_without_the_casters_distances_and_hard_ones_are_not() {
+        let clamped = ShadowMapDescriptor {
+            edges: Edges::Traced { samples: 4 },
+            depth_clamp: true,
+            ..ShadowMapDescriptor::default()
+        };
+        for filter in FilterKind::ALL {
+            let checked = ShadowMapDescriptor { filter, ..clamped }.check_distances(wgpu::Backend::Vulkan);
+            assert_eq!(checked.is_err(), filter.is_soft(), "{filter:?}");
+            let Err(error) = checked else { continue };
+            let text = error.to_string();
+            let is_named = text.contains(&format!("{filter:?}")) && text.contains("caster policy");
+            let says_traced = text.contains("traced") != (filter == FilterKind::Pcss);
+            assert!(is_named && says_traced, "{text}");
+        }
+        let filtered = ShadowMapDescriptor { edges: Edges::Filtered, filter: FilterKind::Vogel16, ..clamped };
+        assert_eq!(filtered.check_distances(wgpu::Backend::Vulkan), Ok(()));
     }
 }

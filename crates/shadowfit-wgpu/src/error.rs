@@ -4,7 +4,7 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
-use shadowfit::settings::{MAX_MAPS, MapFormat, MapSelection, Softness};
+use shadowfit::settings::{FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, FitError};
 
 use crate::limits::RESOLUTIONS;
@@ -37,8 +37,11 @@ pub enum ShadowMapError {
     SoftRadius(f32),
     /// View depths of a fade that do not ascend or are not finite, in metres.
     Fade([f32; 2]),
-    /// PCSS with depth clamp: a clamped caster has lost its distance.
-    PcssDepthClamp,
+    /// A filter whose edges follow from how far casters are ([`Edges::need_distances`]) with depth clamp: a clamped caster
+    /// has lost its distance.
+    ///
+    /// [`Edges::need_distances`]: shadowfit::settings::Edges::need_distances
+    SoftDepthClamp(FilterKind),
     /// PCSS with a depth format on OpenGL, whose shaders cannot read depth as a number.
     PcssDepthLoads(MapFormat),
     /// A format that this device cannot draw to or read.
@@ -133,7 +136,7 @@ impl fmt::Display for ShadowMapError {
                 write!(f, "softness of {tangent} m of penumbra per metre: it must be a number that is not negative")
             }
             Self::Fade(fade) => write_fade(f, *fade),
-            Self::PcssDepthClamp => f.write_str(PCSS_DEPTH_CLAMP),
+            Self::SoftDepthClamp(filter) => write_depth_clamp(f, *filter),
             Self::PcssDepthLoads(format) => {
                 write!(f, "PCSS with {format:?}: OpenGL's shaders cannot read depth textures as numbers; take R32Float")
             }
@@ -159,8 +162,18 @@ impl fmt::Display for ShadowMapError {
 
 impl core::error::Error for ShadowMapError {}
 
-const PCSS_DEPTH_CLAMP: &str = "PCSS with depth clamp: casters before the near plane have lost their distance; let the \
-                                fit place its near plane by another caster policy, or take another filter";
+fn write_depth_clamp(f: &mut fmt::Formatter<'_>, filter: FilterKind) -> fmt::Result {
+    let (traced, or_else) = if filter == FilterKind::Pcss {
+        ("", "another filter")
+    } else {
+        (" whose edges are traced", "one that is not soft, or filtered edges")
+    };
+    write!(
+        f,
+        "{filter:?}{traced} with depth clamp: casters before the near plane have lost their distance; let the fit place \
+         its near plane by another caster policy, or take {or_else}"
+    )
+}
 
 fn write_resolution(f: &mut fmt::Formatter<'_>, [width, height]: [u32; 2], device_limit: u32) -> fmt::Result {
     let (least, greatest) = (RESOLUTIONS.start(), RESOLUTIONS.end());

@@ -14,7 +14,7 @@ use crate::light::Light;
 use crate::light::grid::GridAnchor;
 use crate::map::{FittedMap, FittedMaps, PlacedBy};
 use crate::slices::{self, HeldSlices};
-use crate::technique::settings::{BiasSettings, CasterPolicy, FilterKind, FitSettings};
+use crate::technique::settings::{BiasSettings, CasterPolicy, FitSettings};
 use crate::technique::{Maps, Slices, Technique, Windows};
 use crate::view::{Range, ViewFrustum};
 use crate::windows::{self, HeldWindows};
@@ -245,7 +245,7 @@ fn check_numbers(technique: &Technique) -> Result<(), FitError> {
     }
     checks::within("the bias in depth steps", f64::from(depth_steps), 0.0, f64::from(BiasSettings::MAX_DEPTH_STEPS))?;
     let clamps = technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact();
-    if technique.filter == FilterKind::Pcss && clamps {
+    if technique.edges.need_distances(technique.filter) && clamps {
         return Err(FitError::ClampedCasters);
     }
     Ok(())

@@ -184,8 +184,8 @@ impl fmt::Display for FitError {
     }
 }
 
-const CLAMPED: &str = "the filter Pcss needs the distance of each caster, which depth clamp loses; choose another caster \
-                       policy, such as List, or another filter";
+const CLAMPED: &str = "the filter Pcss, and any soft one whose edges are traced, needs the distance of each caster, which \
+                       depth clamp loses; choose another caster policy, such as PerObject, or another filter";
 
 fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: bool) -> fmt::Result {
     let (near, far) = (named.near(), named.far());

@@ -32,7 +32,7 @@ pub struct Technique {
     pub maps: Maps,
     /// What all maps share, whatever their kind. Default: [`MapSettings::default`].
     pub fit: MapSettings,
-    /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`]. [`FilterKind::Pcss`] needs maps that keep the
+    /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`]. Some [need](Edges::need_distances) maps that keep the
     /// distances of casters: not [`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp).
     pub filter: FilterKind,
     /// Width of the filters that are [soft](FilterKind::is_soft); the others ignore it. It also says how fine

@@ -1,6 +1,6 @@
 //! Techniques by name, each with a line that says when to take it.
 
-use crate::technique::settings::{FitKind, Shape, SplitScheme, Stabilise};
+use crate::technique::settings::{Edges, FitKind, Shape, SplitScheme, Stabilise};
 use crate::technique::{OneMap, Slices, Technique, Windows};
 
 /// A technique by name.
@@ -26,7 +26,7 @@ impl Preset {
 }
 
 /// All presets, from the plainest fit to the recommended one.
-pub static PRESETS: [Preset; 9] = [
+pub static PRESETS: [Preset; 10] = [
     Preset {
         name: "xna-1",
         summary: "one map by the XNA sample's rule",
@@ -78,6 +78,13 @@ pub static PRESETS: [Preset; 9] = [
         summary: "8 windows, placed by what the frame before showed",
         advice: "The sharpest, for twice the passes and the memory of windows-4.",
         make: || Technique::default().with_maps(Windows::default().with_count(8)),
+    },
+    Preset {
+        name: "exact-4",
+        summary: "4 windows, edges traced where the maps are not sure",
+        advice: "For exact, smooth edges at about the cost of a second look-up and some rays. It needs the engine's \
+                 triangles (shadowfit-rays) and a depth pre-pass; without them it is windows-4.",
+        make: || Technique::default().with_edges(Edges::Traced { samples: Edges::USUAL_SAMPLES }),
     },
     Preset {
         name: Preset::RECOMMENDED,

@@ -416,6 +416,9 @@ pub enum Edges {
 }
 
 impl Edges {
+    /// Rays for a pixel of the preset `exact-4`, and where a tool turns tracing on: the fewest with smooth edges.
+    pub const USUAL_SAMPLES: u32 = 4;
+
     /// Most rays for a pixel.
     pub const MAX_SAMPLES: u32 = 64;
 
@@ -430,6 +433,13 @@ impl Edges {
     /// Whether rays are traced.
     pub const fn are_traced(self) -> bool {
         matches!(self, Self::Traced { .. })
+    }
+
+    /// Whether the edges of a filter follow from how far casters are, which maps lose that are clamped
+    /// ([`CasterPolicy::DepthClamp`]): those of [`FilterKind::Pcss`], and those of any [soft](FilterKind::is_soft) filter
+    /// where they are traced.
+    pub const fn need_distances(self, filter: FilterKind) -> bool {
+        matches!(filter, FilterKind::Pcss) || (filter.is_soft() && self.are_traced())
     }
 
     /// Refuses a number of rays that is out of range.

@@ -275,10 +275,7 @@ fn every_error_says_the_value_and_what_to_do() {
         (FitError::SingularMatrix { corner: 4, w: 0.0 }, "clip corner 4; pass"),
         (FitError::EmptyFrustum { size: Vec3::ZERO }, "(0, 0, 0) m; check"),
         (FitError::NearNotBelowFar { near: 2.0, far: 1.0 }, "near 2 m is not below far 1 m; raise"),
-        (
-            FitError::ClampedCasters,
-            "the filter Pcss needs the distance of each caster, which depth clamp loses; choose another",
-        ),
+        (FitError::ClampedCasters, "needs the distance of each caster, which depth clamp loses; choose another"),
         (FitError::ZeroResolution { resolution: UVec2::ZERO }, "0 × 0; give"),
     ];
     for (error, part) in errors {

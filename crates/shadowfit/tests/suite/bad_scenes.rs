@@ -6,7 +6,7 @@ use shadowfit::NormalCone;
 use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, FitSettings, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius,
+    CasterPolicy, Edges, FilterKind, FitKind, FitSettings, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius,
     SplitScheme, Stabilise,
 };
 use shadowfit::{
@@ -390,24 +390,39 @@ fn settings_without_meaning_are_refused() {
 
 #[test]
 fn penumbrae_by_distance_are_refused_where_depth_clamp_loses_the_distance() {
+    let traced = Edges::Traced { samples: 4 };
     for maps in every_maps() {
-        for (casters, filter) in [
-            (CasterPolicy::DepthClamp, FilterKind::Pcss),
-            (CasterPolicy::DepthClamp, FilterKind::Vogel16),
-            (CasterPolicy::PerObject, FilterKind::Pcss),
+        for (casters, filter, edges, needs) in [
+            (CasterPolicy::DepthClamp, FilterKind::Pcss, Edges::Filtered, true),
+            (CasterPolicy::DepthClamp, FilterKind::Vogel16, Edges::Filtered, false),
+            (CasterPolicy::DepthClamp, FilterKind::Vogel16, traced, true),
+            (CasterPolicy::DepthClamp, FilterKind::Pcf5x5, traced, false),
+            (CasterPolicy::PerObject, FilterKind::Pcss, traced, false),
         ] {
             let mut inputs = good();
-            (inputs.settings.maps, inputs.settings.fit.casters, inputs.settings.filter) = (maps, casters, filter);
+            (inputs.settings.maps, inputs.settings.fit.casters) = (maps, casters);
+            (inputs.settings.filter, inputs.settings.edges) = (filter, edges);
             // The XNA sample's fit has no caster policy.
-            let is_xna = maps.shape().is_some_and(|shape| shape.kind == FitKind::XnaSample);
-            let is_refused = casters == CasterPolicy::DepthClamp && filter == FilterKind::Pcss && !is_xna;
+            let is_refused = needs && maps.shape().is_none_or(|shape| shape.kind != FitKind::XnaSample);
             let result = inputs.fit(&mut FitState::new());
             let refusal = matches!(result, Err(FitError::ClampedCasters));
             assert!(
                 refusal == is_refused && result.is_ok() != is_refused,
-                "{maps:?} {casters:?} {filter:?}: {result:?}"
+                "{maps:?} {casters:?} {filter:?} {edges:?}: {result:?}"
             );
         }
+    }
+}
+
+#[test]
+fn numbers_of_rays_out_of_range_are_refused_with_the_number() {
+    for (samples, is_refused) in [(0, true), (1, false), (4, false), (64, false), (65, true), (u32::MAX, true)] {
+        let mut inputs = good();
+        inputs.settings.edges = Edges::Traced { samples };
+        let result = inputs.fit(&mut FitState::new());
+        let value = f64::from(samples);
+        let refusal = FitError::OutOfRange { input: "the rays of a pixel", value, min: 1.0, max: 64.0 };
+        assert_eq!(result.err(), is_refused.then_some(refusal), "{samples}");
     }
 }
 

@@ -10,7 +10,9 @@ use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel}
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, Margins};
-use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, MapSelection, RectangleKind, SplitScheme};
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, Edges, FitKind, FitSettings, MapSelection, RectangleKind, SplitScheme,
+};
 use shadowfit::{
     Aabb, Bias, DepthConvention, FitInput, FitState, OneMap, Scratch, Slices, SpotBias, Technique, ViewFrustum, Windows,
 };
@@ -47,6 +49,7 @@ fn settings_survive() {
         survives(&technique.with_maps(OneMap { shape: single.shape, stabilise }));
     }
     survives(&technique.with_maps(Windows { count: 7, blend: 0.1, max_depth_waste: 1.3 }));
+    survives(&technique.with_edges(Edges::Traced { samples: 7 }));
     survives(&LightStepSettings::default());
 }
 

@@ -5,7 +5,7 @@ use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
 use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::settings::{
-    FilterKind, FitKind, FitSettings, MapSettings, RectangleKind, Shape, SoftRadius, Softness, SplitScheme,
+    Edges, FilterKind, FitKind, FitSettings, MapSettings, RectangleKind, Shape, SoftRadius, Softness, SplitScheme,
 };
 use shadowfit::{FitInput, FitState, FittedMaps, LightProjection, Maps, Scratch, Slices, Technique, ViewFrustum};
 
@@ -103,6 +103,9 @@ fn a_least_texel_is_the_greater_of_what_is_set_and_what_the_ceiling_asks_for() {
     assert_eq!(soft.with_fit(set(0.01)).least_texel(), soft.least_texel());
     assert_eq!(soft.with_fit(set(0.2)).least_texel(), 0.2);
     assert_eq!(soft.with_filter(FilterKind::Pcf7x7).least_texel(), 0.0);
+    let traced = soft.with_edges(Edges::Traced { samples: 1 });
+    assert_eq!(traced.least_texel(), 0.0, "rays make the penumbra");
+    assert_eq!(traced.with_fit(set(0.01)).least_texel(), 0.01);
     assert_eq!((soft.with_filter(FilterKind::Pcf7x7).reach(), soft.reach()), (4.0, 17.0));
 }
 
