@@ -10,7 +10,10 @@ use crate::units::{brief_count, grouped};
 /// A figure of the whole frame: name, value, help.
 type Line = (&'static str, Option<String>, &'static str);
 
-fn lines(figures: &Figures) -> [Line; 8] {
+/// What only techniques with traced edges have.
+const OF_TRACED_EDGES: [&str; 2] = ["Traced pixels", "Edge passes"];
+
+fn lines(figures: &Figures) -> [Line; 10] {
     let map = figures.map_ahead.map_or_else(String::new, |map| format!(" on map {}", map + 1));
     [
         (
@@ -26,6 +29,12 @@ fn lines(figures: &Figures) -> [Line; 8] {
         ),
         ("Shadow passes", figures.shadow_pass_ms.map(time), "GPU time of drawing all shadow maps."),
         ("Scene pass", figures.scene_pass_ms.map(time), "GPU time of drawing the picture."),
+        (
+            "Traced pixels",
+            figures.traced.map(|share| format!("{share:.2} %")),
+            "Pixels of which the maps are not sure, so that rays make their edges, of those that face the light.",
+        ),
+        ("Edge passes", figures.edges_ms.map(time), "GPU time of the passes that trace edges, and of what they read."),
         (
             "Judging",
             figures.judge_ms.map(time),
@@ -60,7 +69,9 @@ pub(crate) fn show(ui: &mut Ui, figures: &Figures) {
         ui.add_space(6.0);
     }
     Grid::new("figures").num_columns(2).min_col_width(half).spacing([gap, 3.0]).show(ui, |ui| {
-        for (name, value, help) in lines(figures) {
+        // Most techniques trace nothing.
+        let is_there = |line: &Line| line.1.is_some() || !OF_TRACED_EDGES.contains(&line.0);
+        for (name, value, help) in lines(figures).into_iter().filter(is_there) {
             ui.label(name).on_hover_text(help);
             ui.label(known(value)).on_hover_text(help);
             ui.end_row();

@@ -19,7 +19,7 @@ pub(crate) struct Series {
 }
 
 /// Every figure that is kept, in the order of the columns.
-pub(crate) const SERIES: [Series; 15] = [
+pub(crate) const SERIES: [Series; 17] = [
     Series { name: "wrong", unit: "%", read: |f| Some(f.judged?.wrong) },
     Series { name: "false shadow", unit: "%", read: |f| Some(f.judged?.false_shadow) },
     Series { name: "false light", unit: "%", read: |f| Some(f.judged?.false_light) },
@@ -28,10 +28,12 @@ pub(crate) const SERIES: [Series; 15] = [
     Series { name: "mean error", unit: "%", read: |f| Some(f.judged?.mean_error) },
     Series { name: "crawl", unit: "%", read: |f| f.judged?.crawl },
     Series { name: "pixels per texel 95%", unit: "px", read: |f| Some(f.judged?.pixels_per_texel?[1]) },
+    Series { name: "traced", unit: "%", read: |f| f.traced },
     Series { name: "wrong of B", unit: "%", read: |f| Some(f.judged_other?.wrong) },
     Series { name: "mean error of B", unit: "%", read: |f| Some(f.judged_other?.mean_error) },
     Series { name: "shadow passes", unit: "ms", read: |f| f.shadow_pass_ms },
     Series { name: "scene pass", unit: "ms", read: |f| f.scene_pass_ms },
+    Series { name: "edge passes", unit: "ms", read: |f| f.edges_ms },
     Series { name: "judging", unit: "ms", read: |f| f.judge_ms },
     Series { name: "frame", unit: "ms", read: |f| f.frame_ms },
     Series { name: "texels drawn", unit: "texels", read: |f| f.shadow_texels.map(|texels| texels as f32) },
@@ -188,8 +190,8 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 3);
         assert!(lines[0].starts_with("time (s),wrong (%),false shadow (%),"), "{}", lines[0]);
-        assert_eq!(lines[1], "0.500,,,,,,,,,,,,,,8,");
-        assert_eq!(lines[2], "1.500,1.5,0,0,0,0,0,,2.5,,,,,,16.5,4096");
+        assert_eq!(lines[1], "0.500,,,,,,,,,,,,,,,,8,");
+        assert_eq!(lines[2], "1.500,1.5,0,0,0,0,0,,2.5,,,,,,,,16.5,4096");
         let columns = |line: &str| line.split(',').count();
         assert!(lines.iter().all(|line| columns(line) == SERIES.len() + 1));
     }

@@ -55,11 +55,13 @@ const fn group(heading: &'static str, keys: Vec<KeyHelp>) -> KeyGroup {
     KeyGroup { heading, keys }
 }
 
-/// A digit for each view, in their order.
+/// The keys of the views, in the order of [`ViewMode::ALL`].
+pub(crate) const VIEW_KEYS: [&str; ViewMode::ALL.len()] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"];
+
+/// A digit for each view.
 fn views() -> Vec<KeyHelp> {
-    const NUMBERS: [&str; 9] = ["1", "2", "3", "4", "5", "6", "7", "8", "9"];
     let line = |(keys, mode)| key(keys, option(mode).label.to_lowercase(), Command::View(mode));
-    NUMBERS.into_iter().zip(ViewMode::ALL).map(line).collect()
+    VIEW_KEYS.into_iter().zip(ViewMode::ALL).map(line).collect()
 }
 
 /// The keys that a host of the panel answers, in the order that they are shown.
@@ -233,8 +235,10 @@ mod tests {
 
     #[test]
     fn every_view_has_its_digit_and_control_makes_bookmarks_of_them() {
-        for (number, mode) in (1..=9).zip(ViewMode::ALL) {
-            assert_eq!(command(&format!("{number}")), Some(Command::View(mode)));
+        for (digit, mode) in VIEW_KEYS.into_iter().zip(ViewMode::ALL) {
+            assert_eq!(command(digit), Some(Command::View(mode)));
+        }
+        for number in 1..=9 {
             assert_eq!(command(&format!("Ctrl+{number}")), Some(Command::GoToBookmark(number)));
             assert_eq!(command(&format!("Ctrl+Shift+{number}")), Some(Command::SetBookmark(number)));
         }

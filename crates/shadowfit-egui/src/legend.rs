@@ -4,7 +4,7 @@ use egui::{
     Align2, Area, Context, CornerRadius, Frame, Id, Mesh, Order, Pos2, Rect, Role, Sense, Shape, TextStyle, Ui, Vec2,
     WidgetInfo,
 };
-use shadowfit_params::figures::{Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
+use shadowfit_params::figures::{EDGE_COLORS, Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
 use shadowfit_params::tool::{ErrorMarks, ViewColors, ViewSettings};
 
 use crate::classes::shares;
@@ -19,6 +19,12 @@ const MAP_UPDATES: [(&str, &str); 3] = [
     ("kept", "Texels that stay as they were drawn in an earlier frame."),
     ("drawn anew", "Texels that were drawn in this frame."),
     ("moves", "Casters that move, and are drawn over what is kept."),
+];
+
+/// What [`EDGE_COLORS`] stand for.
+const EDGES: [(&str, &str); 2] = [
+    ("traced", "Pixels of which the maps are not sure: rays decide."),
+    ("left to the filter", "Pixels that no ray was traced for, and whose light the filter decides."),
 ];
 
 /// Width of the scale of pixels per texel, in points.
@@ -44,7 +50,8 @@ pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
             ViewColors::PixelsPerTexel => ramp(ui, "pixels per texel"),
             ViewColors::Maps => maps(ui, figures),
             ViewColors::Demand => ramp(ui, "pixels per texel where the picture looks"),
-            ViewColors::Updates => updates(ui),
+            ViewColors::Updates => named(ui, MAP_UPDATES.into_iter().zip(MAP_UPDATE_COLORS)),
+            ViewColors::Traced => named(ui, EDGES.into_iter().zip(EDGE_COLORS)),
         }
     }
     if has_marks(view) && !colors.contains(&ViewColors::Classes) {
@@ -97,9 +104,10 @@ fn maps(ui: &mut Ui, figures: &Figures) {
     });
 }
 
-fn updates(ui: &mut Ui) {
+/// Colours with their names and helps.
+fn named(ui: &mut Ui, entries: impl Iterator<Item = ((&'static str, &'static str), [u8; 3])>) {
     color_line(ui, |ui| {
-        for ((name, help), fill) in MAP_UPDATES.into_iter().zip(MAP_UPDATE_COLORS) {
+        for ((name, help), fill) in entries {
             color_entry(ui, color(fill), name, None).on_hover_text(help);
         }
     });
@@ -147,7 +155,14 @@ mod tests {
 
     #[test]
     fn views_with_colours_or_marks_have_a_legend() {
-        let with = [ViewMode::Error, ViewMode::PixelsPerTexel, ViewMode::Maps, ViewMode::Demand, ViewMode::Updates];
+        let with = [
+            ViewMode::Error,
+            ViewMode::PixelsPerTexel,
+            ViewMode::Maps,
+            ViewMode::Demand,
+            ViewMode::Updates,
+            ViewMode::Traced,
+        ];
         for mode in ViewMode::ALL {
             let view = ViewSettings { mode, ..ViewSettings::default() };
             assert_eq!(has_legend(&view), with.contains(&mode), "{mode:?}");

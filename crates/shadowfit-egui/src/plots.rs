@@ -31,7 +31,7 @@ struct Choice {
 }
 
 /// The plots, in the order that they are offered.
-const PLOTS: [Choice; 7] = [
+const PLOTS: [Choice; 8] = [
     Choice {
         name: "Wrong pixels",
         help: "Wrong pixels and their classes, in per cent of the judged ones.",
@@ -58,9 +58,14 @@ const PLOTS: [Choice; 7] = [
         series: &["pixels per texel 95%"],
     },
     Choice {
+        name: "Traced pixels",
+        help: "Pixels whose edges rays make, in per cent of those that face the light.",
+        series: &["traced"],
+    },
+    Choice {
         name: "Time of passes",
         help: "GPU time of the passes, and time of the whole frame. Line: a frame at 60 Hz.",
-        series: &["shadow passes", "scene pass", "judging", "frame"],
+        series: &["shadow passes", "scene pass", "edge passes", "judging", "frame"],
     },
     Choice {
         name: "Texels drawn",

@@ -5,12 +5,13 @@ use shadowfit_params::tool::{ViewMode, ViewSettings};
 use shadowfit_params::{ChoiceOption, Kind, parameter};
 
 use crate::accessibility::rename;
+use crate::keys::VIEW_KEYS;
 use crate::theme::Palette;
 
 /// Id of the parameter that names and explains the views.
 const MODE: &str = "view.mode";
 
-/// A button for each view, with its name and its key, 1..=9 in the order of [`ViewMode::ALL`]; the chosen one is
+/// A button for each view, with its name and its key, 1..=9 and 0 in the order of [`ViewMode::ALL`]; the chosen one is
 /// filled. It wraps where the line is too narrow. Returns the response of the whole bar, which is
 /// [changed](Response::changed) when another view was chosen.
 pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
@@ -19,8 +20,8 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
         .horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::Vec2::splat(3.0);
             ui.spacing_mut().button_padding.x = 6.0;
-            for (index, mode) in ViewMode::ALL.into_iter().enumerate() {
-                if button(ui, option(mode), index + 1, mode == view.mode).clicked() {
+            for (key, mode) in VIEW_KEYS.into_iter().zip(ViewMode::ALL) {
+                if button(ui, option(mode), key, mode == view.mode).clicked() {
                     view.mode = mode;
                 }
             }
@@ -32,11 +33,11 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
     bar
 }
 
-fn button(ui: &mut Ui, option: &ChoiceOption, key: usize, is_selected: bool) -> Response {
+fn button(ui: &mut Ui, option: &ChoiceOption, key: &str, is_selected: bool) -> Response {
     let palette = Palette::of(ui);
     let weak = if is_selected { palette.on_accent } else { palette.weak };
     let name = RichText::new(option.label);
-    let key_text = RichText::new(key.to_string()).small().color(weak);
+    let key_text = RichText::new(key).small().color(weak);
     let button = Button::selectable(is_selected, (name, key_text)).frame_when_inactive(true);
     let response = ui.add(button).on_hover_text(format!("{} ({key})", option.help));
     rename(ui, &response, format!("View: {}", option.label));

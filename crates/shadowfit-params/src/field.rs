@@ -3,7 +3,7 @@
 use glam::UVec2;
 use shadowfit::Technique;
 use shadowfit::settings::{
-    FitKind, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius, SplitScheme, Stabilise,
+    Edges, FitKind, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius, SplitScheme, Stabilise,
 };
 use shadowfit::{Maps, OneMap, Slices, Windows};
 
@@ -139,6 +139,12 @@ impl Expression for SoftRadius {
             Self::Metres(metres) => format!("SoftRadius::Metres({})", metres.expression()),
             Self::SunAngle(radians) => format!("SoftRadius::SunAngle({})", radians.expression()),
         }
+    }
+}
+
+impl Expression for Edges {
+    fn expression(&self) -> String {
+        format!("Edges::{self:?}")
     }
 }
 

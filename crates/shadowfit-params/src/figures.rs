@@ -9,7 +9,7 @@ use shadowfit::FittedMap;
 use shadowfit::diagnostics::depth_step;
 use shadowfit::settings::{MAX_MAPS, MapFormat};
 
-pub use legend::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
+pub use legend::{EDGE_COLORS, ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
 
 /// Tints of the maps, the nearest first, as sRGB bytes of red, green and blue.
 ///
@@ -57,6 +57,11 @@ pub struct Figures {
     pub shadow_pass_ms: Option<f32>,
     /// GPU time of the scene pass, in milliseconds.
     pub scene_pass_ms: Option<f32>,
+    /// GPU time of the passes that resolve edges, in milliseconds; `None` where edges are filtered, too.
+    pub edges_ms: Option<f32>,
+    /// Pixels whose edges were traced, in per cent of those that face the light within the shadow distance, 0..=100; `None`
+    /// where edges are filtered, too.
+    pub traced: Option<f32>,
     /// Draw calls of the shadow passes of all maps.
     pub shadow_draws: Option<u32>,
     /// Triangles drawn into all maps.

@@ -88,11 +88,14 @@ pub enum ViewMode {
     Updates,
     /// The camera from outside, with its frustum, the boxes of the maps, and what casts into them.
     Outside,
+    /// The scene in grey, with the pixels whose edges were traced, and those that were left to the filter, in
+    /// [colours](crate::figures::EDGE_COLORS).
+    Traced,
 }
 
 impl ViewMode {
     /// All of them, in the order that they are shown.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Final,
         Self::Truth,
         Self::Error,
@@ -102,6 +105,7 @@ impl ViewMode {
         Self::Demand,
         Self::Updates,
         Self::Outside,
+        Self::Traced,
     ];
 
     /// Whether it shows what the camera sees, and not the maps, or the scene from elsewhere.
@@ -117,6 +121,7 @@ impl ViewMode {
             Self::Maps => &[ViewColors::Maps],
             Self::Demand => &[ViewColors::Demand, ViewColors::Maps],
             Self::Updates => &[ViewColors::Updates],
+            Self::Traced => &[ViewColors::Traced],
             _ => &[],
         }
     }
@@ -140,6 +145,8 @@ pub enum ViewColors {
     Demand,
     /// Texels of the maps that were kept, those drawn anew, and what moves.
     Updates,
+    /// Pixels that were traced, and those that were [left to the filter](crate::figures::EDGE_COLORS).
+    Traced,
 }
 
 /// Which shadow maps are shown in a corner of the picture.

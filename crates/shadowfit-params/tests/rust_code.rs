@@ -74,6 +74,7 @@ fn all_fields() -> Technique {
             depth_steps: 0.5,
         },
         format: MapFormat::R32Float,
+        edges: Edges::Traced { samples: 9 },
     }
 }
 

@@ -26,6 +26,9 @@ pub enum Overlay {
     /// The picture in dim grey, and wrong pixels of [`Frame::judged`](crate::Frame::judged) in the
     /// [colours of their classes](shadowfit_params::figures::ERROR_COLORS).
     Error,
+    /// The picture in grey. Pixels of which the maps were not sure, and whose rays were traced, and what faces the light and
+    /// was left to the filter, have the [`EDGE_COLORS`](shadowfit_params::figures::EDGE_COLORS).
+    Traced,
     /// Which casters the maps hold: an instance has the tint of the first map that holds it, or is dark and hatched if it
     /// is in none. Blended surfaces, which cast nothing, are grey.
     Casters,
@@ -33,8 +36,8 @@ pub enum Overlay {
 
 impl Overlay {
     /// All that have shaders of their own.
-    pub const ALL: [Self; 6] =
-        [Self::MapTint, Self::PixelsPerTexel, Self::TexelGrid, Self::Truth, Self::Error, Self::Casters];
+    pub const ALL: [Self; 7] =
+        [Self::MapTint, Self::PixelsPerTexel, Self::TexelGrid, Self::Truth, Self::Error, Self::Traced, Self::Casters];
 
     /// What the surfaces show in a view of the camera.
     pub const fn of(view: ViewMode) -> Self {
@@ -44,6 +47,7 @@ impl Overlay {
             ViewMode::PixelsPerTexel => Self::PixelsPerTexel,
             ViewMode::Maps => Self::MapTint,
             ViewMode::TexelGrid => Self::TexelGrid,
+            ViewMode::Traced => Self::Traced,
             _ => Self::None,
         }
     }
@@ -57,13 +61,14 @@ impl Overlay {
             Self::TexelGrid => include_str!("shaders/texel_grid.wgsl"),
             Self::Truth => include_str!("shaders/truth.wgsl"),
             Self::Error => include_str!("shaders/error.wgsl"),
+            Self::Traced => include_str!("shaders/traced.wgsl"),
             Self::Casters => include_str!("shaders/casters.wgsl"),
         }
     }
 
     /// Whether the sky is grey behind it, since its colours have a meaning that a blue sky has not.
     pub const fn has_gray_sky(self) -> bool {
-        matches!(self, Self::PixelsPerTexel | Self::Error | Self::Casters)
+        matches!(self, Self::PixelsPerTexel | Self::Error | Self::Traced | Self::Casters)
     }
 
     /// Whether it shows a judged picture.

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use shadowfit_params::figures::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
+use shadowfit_params::figures::{EDGE_COLORS, ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
 use shadowfit_wgpu::resolve::resolved_wgsl;
 use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
@@ -86,8 +86,12 @@ pub fn lines() -> String {
 /// The shaded pass of an overlay, with its groups; a judged picture is group 3.
 pub fn overlay(shadow_map: &ShadowMapDescriptor, overlay: Overlay) -> String {
     let judged = if overlay.is_judged() { in_group(JUDGED, 3) + &error_colors() } else { String::new() };
-    let scale = if overlay == Overlay::PixelsPerTexel { octave_color() } else { String::new() };
-    [&scene(shadow_map), OVERLAY, &judged, &scale, overlay.wgsl()].concat()
+    let colors = match overlay {
+        Overlay::PixelsPerTexel => octave_color(),
+        Overlay::Traced => edge_colors(),
+        _ => String::new(),
+    };
+    [&scene(shadow_map), OVERLAY, &judged, &colors, overlay.wgsl()].concat()
 }
 
 /// A material's textures and colours, whose bindings are in a group.
@@ -102,14 +106,20 @@ pub fn in_group(piece: &str, group: u32) -> String {
 
 /// Linear colour of a class of wrong pixels.
 fn error_colors() -> String {
-    let mut text =
-        "\n// Linear colour of a class of wrong pixels.\nfn error_color(kind: u32) -> vec3<f32> {\n".to_owned();
-    for (class, color) in (2..).zip(ERROR_COLORS.map(linear_color)) {
-        let _infallible = writeln!(
-            text,
-            "    if kind == {class}u {{ return vec3<f32>({:?}, {:?}, {:?}); }}",
-            color.x, color.y, color.z
-        );
+    by_number("error_color", "Linear colour of a class of wrong pixels.", (2..).zip(ERROR_COLORS))
+}
+
+/// Linear colour of pixels that were traced, 0, and of those that were left to the filter, 1.
+fn edge_colors() -> String {
+    by_number("edge_color", "Linear colour of pixels that were traced, or left to the filter.", (0..).zip(EDGE_COLORS))
+}
+
+/// A function that gives linear colours by number, and black by others.
+fn by_number(name: &str, comment: &str, colors: impl Iterator<Item = (u32, [u8; 3])>) -> String {
+    let mut text = format!("\n// {comment}\nfn {name}(kind: u32) -> vec3<f32> {{\n");
+    for (number, color) in colors.map(|(number, color)| (number, linear_color(color))) {
+        let [r, g, b] = color.to_array();
+        let _infallible = writeln!(text, "    if kind == {number}u {{ return vec3<f32>({r:?}, {g:?}, {b:?}); }}");
     }
     text + "    return vec3<f32>(0.0);\n}\n"
 }

@@ -142,8 +142,18 @@ impl Album<'_> {
     /// Every view by its name.
     fn views(&mut self) -> Result<()> {
         self.interface.bare = true;
-        let names =
-            ["final", "truth", "errors", "pixels-per-texel", "maps", "texel-grid", "demand", "updates", "outside"];
+        let names = [
+            "final",
+            "truth",
+            "errors",
+            "pixels-per-texel",
+            "maps",
+            "texel-grid",
+            "demand",
+            "updates",
+            "outside",
+            "traced",
+        ];
         for (mode, name) in ViewMode::ALL.into_iter().zip(names) {
             self.stage.settings.view.mode = mode;
             self.stage.settings.view.inset = InsetMaps::Off;

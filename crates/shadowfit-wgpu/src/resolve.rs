@@ -26,6 +26,9 @@
 //! # Ok(()) }
 //! ```
 //!
+//! The lowest bit of a factor says whether rays were traced for its pixel: it is set for those, and clear for pixels that the
+//! maps are sure of. Factors are off by that, 6e-8 at most, and `shadowfit_is_traced` reads it.
+//!
 //! What is no part of the depth buffer, such as blended surfaces, particles and fog, calls the filter's
 //! `shadowfit_factor_at` as before.
 

@@ -31,8 +31,18 @@ fn bar(width: f32) -> Harness<'static, ViewSettings> {
 #[test]
 fn the_bar_has_a_button_for_each_view_that_chooses_it() {
     let mut harness = bar(1280.0);
-    let labels =
-        ["Final", "Truth", "Errors", "Pixels per texel", "Maps", "Texel grid", "Demand", "Map updates", "Outside"];
+    let labels = [
+        "Final",
+        "Truth",
+        "Errors",
+        "Pixels per texel",
+        "Maps",
+        "Texel grid",
+        "Demand",
+        "Map updates",
+        "Outside",
+        "Traced",
+    ];
     for (mode, label) in ViewMode::ALL.into_iter().zip(labels) {
         let name = format!("View: {label}");
         harness.get_by_role_and_label(Role::Button, &name).click();
@@ -63,6 +73,7 @@ fn legends_explain_the_colours_of_their_views() {
         (ViewMode::Maps, ErrorMarks::Off, &["map 1", "map 4"]),
         (ViewMode::Demand, ErrorMarks::Off, &["map 1", "Colours of 1/8 to 8 pixels per texel"]),
         (ViewMode::Updates, ErrorMarks::Off, &["kept", "drawn anew", "moves"]),
+        (ViewMode::Traced, ErrorMarks::Off, &["traced", "left to the filter"]),
     ] {
         let view = ViewSettings { mode, marks, ..ViewSettings::default() };
         let harness = overlay(view, &figures);

@@ -6,6 +6,10 @@
 /// colour blindness tell apart.
 pub const ERROR_COLORS: [[u8; 3]; 4] = [[213, 94, 0], [86, 180, 233], [204, 121, 167], [240, 228, 66]];
 
+/// Colours of pixels that face the light and of which the maps were not sure, as sRGB bytes: those that were traced, and
+/// those that were left to the filter. Of the same set.
+pub const EDGE_COLORS: [[u8; 3]; 2] = [[230, 159, 0], [86, 180, 233]];
+
 /// Pixels per texel and their colours, as sRGB bytes, an octave from one to the next: blue where texels are
 /// finer than pixels, red where they can be seen, nearly white at one pixel per texel.
 ///

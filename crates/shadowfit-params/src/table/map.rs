@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use shadowfit::DepthConvention;
-use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::settings::{Edges, FilterKind, MapFormat};
 
 use super::always_active;
 use crate::field::{Field, Plain as _, choice, code, field};
@@ -180,6 +180,57 @@ pub(super) const ROWS: &[Parameter] = &[
             Point, Hardware2x2, Pcf3x3, Pcf5x5, Pcf7x7, Vogel8, Vogel16, Vogel32, Pcss
         ]),
         inert: always_active,
+    },
+    Parameter {
+        id: "map.edges",
+        group: Group::Map,
+        label: "Edges",
+        unit: "",
+        help: "Whether the filter makes the edges of shadows, or rays do where the maps are not sure. Rays make them exact, \
+           whatever the texels; they need the scene's triangles and a depth buffer before the picture is shaded, and time \
+           for each pixel near an edge.",
+        kind: Kind::Choice(&[
+            ChoiceOption { id: "filtered", label: "Filtered", help: "The filter's shadow everywhere." },
+            ChoiceOption {
+                id: "traced",
+                label: "Traced",
+                help: "Where all texels that the filter reads agree, they decide; elsewhere rays do.",
+            },
+        ]),
+        field: Field {
+            get: |s| Some(Value::Option(usize::from(s.technique.edges.are_traced()))),
+            set: |s, value| {
+                let edges = &mut s.technique.edges;
+                *edges = match (value, *edges) {
+                    (Value::Option(0), _) => Edges::Filtered,
+                    (Value::Option(_), Edges::Filtered) => Edges::Traced { samples: Edges::USUAL_SAMPLES },
+                    (_, same) => same,
+                };
+            },
+            code: code!(edges),
+            is_of_variant: false,
+        },
+        inert: always_active,
+    },
+    Parameter {
+        id: "map.edge_samples",
+        group: Group::Map,
+        label: "Rays per pixel",
+        unit: "rays",
+        help: "Rays toward the sun from each pixel that the maps are not sure of. One gives exact, jagged edges, four smooth \
+           ones; the time that rays take grows with their number.",
+        kind: Kind::Number(Number {
+            min: 1.0,
+            max: Edges::MAX_SAMPLES as f64,
+            step: 1.0,
+            logarithmic: true,
+            decimals: 0,
+            unset: None,
+        }),
+        field: field!(technique.edges, Edges::Traced { samples } => samples),
+        inert: |s| {
+            (!s.technique.edges.are_traced()).then_some("No rays are traced; set Edges to Traced (map.edges = traced).")
+        },
     },
     Parameter {
         id: "map.fade",

@@ -192,6 +192,12 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "The camera from outside, with its frustum and the boxes of the maps drawn. A caster outside a \
                        map's box throws no shadow there.",
             },
+            ChoiceOption {
+                id: "traced",
+                label: "Traced",
+                help: "The scene in grey, and in colours the pixels whose edges rays made, and those that were left to the \
+                       filter.",
+            },
         ]),
         field: choice!(view.mode in ViewMode::ALL),
         inert: always_active,

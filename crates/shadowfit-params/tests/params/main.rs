@@ -32,7 +32,7 @@ fn starts() -> [Settings; 5] {
         with(&[("fit.kind", "focused"), ("splits.scheme", "practical")]),
         with(&[("fit.kind", "oriented"), ("splits.scheme", "manual"), ("splits.choice", "view_depth")]),
         with(&[("fit.kind", "sphere"), ("splits.count", "1"), ("stabilise.mode", "snap")]),
-        with(&[("softness.measure", "metres"), ("view.inset_black", "0")]),
+        with(&[("softness.measure", "metres"), ("view.inset_black", "0"), ("map.edges", "traced")]),
     ]
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MapFormat, RectangleKind, SoftRadius, SplitScheme, Stabilise,
+    CasterPolicy, Edges, FilterKind, FitKind, MapFormat, RectangleKind, SoftRadius, SplitScheme, Stabilise,
 };
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_params::tool::Settings;
@@ -180,6 +180,7 @@ fn names_of_formats_and_filters_select_them() {
         ("pcss", FilterKind::Pcss),
     ];
     check("map.filter", |t| t.filter, &filters);
+    check("map.edges", |t| t.edges.samples(), &[("filtered", 0), ("traced", Edges::USUAL_SAMPLES)]);
     let measured = |t: &Technique| matches!(t.softness.radius, SoftRadius::Metres(_));
     check("softness.measure", measured, &[("sun_angle", false), ("metres", true)]);
 }
@@ -269,6 +270,17 @@ fn softness_keeps_its_width_when_it_is_measured_otherwise() {
         assert!((width(&settings) / before - 1.0).abs() < 1e-6, "{measure}");
     }
     assert!((written(&settings, row("softness.metres")).parse::<f32>().expect("a number") - before).abs() < 1e-6);
+}
+
+#[test]
+fn the_number_of_rays_is_there_while_edges_are_traced_and_stays_when_they_are_traced_again() {
+    let rays = row("map.edge_samples");
+    assert!(!rays.is_present(&Settings::default()) && rays.is_of_choice());
+    let mut settings = with(&[("map.edges", "traced"), ("map.edge_samples", "16"), ("map.edges", "traced")]);
+    assert_eq!(settings.technique.edges, Edges::Traced { samples: 16 });
+    assert!(set_from_str(&mut settings, "map.edge_samples", "65").is_err());
+    let preset = Technique::preset("exact-4").expect("a preset");
+    assert_eq!(preset, with(&[("map.edges", "traced")]).technique);
 }
 
 #[test]

@@ -11,6 +11,7 @@ technique.fit.up.z = 1.0;
 technique.fit.resolution = UVec2::new(1024, 512);
 technique.format = MapFormat::R32Float;
 technique.filter = FilterKind::Vogel8;
+technique.edges = Edges::Traced { samples: 9 };
 technique.fade = 0.2;
 technique.fit.depth = DepthConvention::Reversed;
 technique.softness.radius = SoftRadius::Metres(0.1);

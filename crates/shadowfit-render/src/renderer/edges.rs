@@ -1,7 +1,9 @@
 //! Exact edges: the surfaces of a picture are drawn before it, and resolved.
 
 use shadowfit::DepthConvention;
-use shadowfit_wgpu::resolve::{EdgeResult, NormalEncoding, ResolveCounts, ResolveError, ResolvePass, ResolveView};
+use shadowfit_wgpu::resolve::{
+    EdgeResult, NormalEncoding, ResolveCounts, ResolveError, ResolvePass, ResolveView, WhyFiltered,
+};
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError};
 use wgpu_profiler::GpuProfilerQuery;
 
@@ -24,6 +26,7 @@ pub(super) struct Edges {
     pass: ResolvePass,
     surfaces: Option<Surfaces>,
     counts: Option<ResolveCounts>,
+    result: EdgeResult,
 }
 
 /// The textures of a picture's surfaces.
@@ -40,7 +43,7 @@ impl Edges {
     pub(super) fn new(gpu: &Gpu) -> Result<Self, ShadowMapError> {
         let pass = ResolvePass::new(&gpu.device, &gpu.queue);
         let pass = pass.map_err(|error| ShadowMapError::Device(error.to_string()))?;
-        Ok(Self { pass, surfaces: None, counts: None })
+        Ok(Self { pass, surfaces: None, counts: None, result: EdgeResult::Filtered(WhyFiltered::Picture) })
     }
 
     pub(super) fn factors(&self) -> &wgpu::TextureView {
@@ -76,7 +79,7 @@ impl Surfaces {
 impl Renderer {
     /// How the edges of the last picture or probe came out.
     pub fn edge_result(&self) -> EdgeResult {
-        self.edges.pass.result()
+        self.edges.result
     }
 
     /// How many pixels of a picture or probe a frame or two back were traced; `None` before the first.
@@ -101,13 +104,29 @@ impl Renderer {
         (frame, plan): (&Frame<'_>, &Plan),
         (size, samples): ([u32; 2], u32),
     ) {
-        let descriptor: &ShadowMapDescriptor = self.sun.map().descriptor();
-        let wants = descriptor.edges.are_traced() && scene.rays().is_some() && frame.shadows;
-        let resolved = if wants { self.resolve(gpu, encoder, scene, (frame, plan), (size, samples)) } else { Ok(()) };
-        if !wants || resolved.is_err() {
+        let unresolved = EdgeResult::Filtered(WhyFiltered::Picture);
+        self.edges.result = match self.why_unresolved(scene, frame) {
+            Some(why) => EdgeResult::Filtered(why),
+            None => self.resolve(gpu, encoder, scene, (frame, plan), (size, samples)).unwrap_or(unresolved),
+        };
+        if self.edges.result != self.edges.pass.result() {
             self.edges.pass.skip();
         }
         self.frame_group = frame_group(&gpu.device, &self.layouts, &self.frame_uniform, self.edges.factors());
+    }
+
+    /// Why a picture needs no pass before it, if so.
+    fn why_unresolved(&self, scene: &GpuScene, frame: &Frame<'_>) -> Option<WhyFiltered> {
+        let descriptor: &ShadowMapDescriptor = self.sun.map().descriptor();
+        if !descriptor.edges.are_traced() {
+            Some(WhyFiltered::Technique)
+        } else if let Some(lack) = self.edges.pass.lacks() {
+            Some(WhyFiltered::Device(lack))
+        } else if scene.rays().is_none() {
+            Some(WhyFiltered::Rays)
+        } else {
+            (!frame.shadows).then_some(WhyFiltered::Picture)
+        }
     }
 
     fn resolve(
@@ -117,7 +136,7 @@ impl Renderer {
         scene: &GpuScene,
         (frame, plan): (&Frame<'_>, &Plan),
         (size, samples): ([u32; 2], u32),
-    ) -> Result<(), ResolveError> {
+    ) -> Result<EdgeResult, ResolveError> {
         self.prepare_parts(gpu, scene, Drawn::Surfaces(samples));
         let kept = self.edges.surfaces.take().filter(|surfaces| surfaces.key == (size, samples));
         let surfaces = kept.unwrap_or_else(|| Surfaces::new(&gpu.device, size, samples));
@@ -131,7 +150,7 @@ impl Renderer {
         let resolved = self.edges.pass.record_timed(encoder, &self.sun, scene.rays(), &view, timestamps);
         self.timer.end(query, encoder);
         self.edges.surfaces = Some(surfaces);
-        resolved.map(|_| ())
+        resolved
     }
 
     /// Draws depths and normals.

@@ -4,6 +4,8 @@ use glam::{DVec3, Vec3};
 use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera, diagnostics};
 use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 
+use shadowfit_wgpu::resolve::EdgeResult;
+
 use super::Stage;
 use crate::fitted::Fitted;
 
@@ -16,12 +18,16 @@ impl Stage {
             None => side.fit(&mut shot),
         };
         let (statistics, times) = (side.statistics, side.evaluator.renderer.pass_times());
+        let is_traced = side.evaluator.renderer.edge_result() == EdgeResult::Traced;
+        let traced = side.traced_share().filter(|_| is_traced);
         let judge_ms = times.probe_ms.map(|probe| probe + side.live.gpu_ms().unwrap_or(0.0));
         let format = self.settings.technique.format;
         let mut figures = Figures {
             frame_ms,
             shadow_pass_ms: times.shadow_ms,
             scene_pass_ms: times.scene_ms,
+            edges_ms: times.edges_ms.filter(|_| is_traced),
+            traced,
             judge_ms,
             shadow_draws: Some(statistics.shadow_draws),
             shadow_triangles: Some(statistics.shadow_triangles),

@@ -6,6 +6,7 @@ use shadowfit_params::Inputs;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_study::{Evaluator, Judging, RayUse, View, atmosphere};
+use shadowfit_wgpu::resolve::EdgeResult;
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
 
 use super::live::Live;
@@ -191,9 +192,34 @@ impl Side {
         }
     }
 
+    /// Share of the pixels whose edges were traced of those that face the light, in per cent; a frame or two late.
+    pub(super) fn traced_share(&mut self) -> Option<f32> {
+        let renderer = &mut self.evaluator.renderer;
+        let counts = renderer.take_edge_counts().or(renderer.edge_counts())?;
+        let traced = f64::from(counts.unsure) * 100.0;
+        (counts.facing > 0).then(|| (traced / f64::from(counts.facing)) as f32)
+    }
+
+    /// Why edges are filtered in the picture that was drawn last, where the technique traces them and nothing is worse.
+    fn note_filtered_edges(&mut self, settings: &Settings) {
+        let wants = settings.technique.edges.are_traced() && settings.view.shadows;
+        if let EdgeResult::Filtered(why) = self.evaluator.renderer.edge_result()
+            && wants
+            && self.problem.is_none()
+        {
+            self.problem = Some(format!("Edges are filtered: {why}"));
+        }
+    }
+
     /// Fits, judges and draws the view that the settings ask for.
     pub(super) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         self.problem = None;
+        self.draw_anew(shot, target);
+        self.note_filtered_edges(shot.settings);
+    }
+
+    /// Draws the view unless it would be as it was last.
+    fn draw_anew(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         let fitted = self.fit(shot);
         let maps = fitted.maps.to_vec();
         let seen = shot.view();

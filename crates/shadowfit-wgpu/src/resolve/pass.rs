@@ -1,5 +1,7 @@
 //! The pass itself: what it needs of a device, its pipelines, and a frame of it.
 
+use core::fmt;
+
 use shadowfit_rays::RayScene;
 
 use super::error::ResolveError;
@@ -69,6 +71,21 @@ pub enum WhyFiltered {
     NoMaps,
     /// Two sets of maps are mixed while the sun [steps](SunShadows::set_light_steps).
     Fading,
+}
+
+impl fmt::Display for WhyFiltered {
+    /// A clause, such as "this graphics device has no compute shaders".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Technique => "the technique says so",
+            Self::Device(Unsupported::Compute) => "this graphics device has no compute shaders",
+            Self::Device(Unsupported::DepthLoads) => "OpenGL's shaders cannot read the depth buffer",
+            Self::Rays => "there are no rays, since this graphics device cannot hold the scene's triangles for them",
+            Self::Picture => "the picture was not resolved",
+            Self::NoMaps => "the sun gives no light, or has no maps yet",
+            Self::Fading => "one set of maps fades into another one",
+        })
+    }
 }
 
 /// How many pixels of a picture were traced.
@@ -151,10 +168,16 @@ impl ResolvePass {
     }
 
     /// The factors of the picture that was resolved last, an `R32Float` texture of the depth texture's size: the share of
-    /// the light that reaches a pixel, 0..=1, and -1 where the filter decides. One pixel where edges are filtered.
+    /// the light that reaches a pixel, 0..=1, and -1 where the filter decides. The lowest bit of a factor is set where it was
+    /// traced, and clear elsewhere. One pixel where edges are filtered.
     pub fn factors(&self) -> &wgpu::TextureView {
         let traced = self.target.as_ref().filter(|_| self.result == EdgeResult::Traced);
         traced.map_or(&self.nothing.0, |target| &target.factors)
+    }
+
+    /// What the device lacks, so that all edges are filtered.
+    pub fn lacks(&self) -> Option<Unsupported> {
+        self.lacks
     }
 
     /// How the edges of the last picture came out.

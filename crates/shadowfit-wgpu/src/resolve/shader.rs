@@ -45,8 +45,9 @@ pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Opt
 
 /// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
 /// `shadowfit_resolved(position, normal, pixel) -> f32` is the share of the light that reaches a point that the depth
-/// buffer shows: resolved, and the filter's where it was not. The arguments are those of `shadowfit_factor_at`. It reads
-/// one texture at a binding of the group: 0 for [`ResolvePass::group`](super::ResolvePass::group), any other one for a
+/// buffer shows: resolved, and the filter's where it was not. The arguments are those of `shadowfit_factor_at`.
+/// `shadowfit_is_traced(pixel) -> bool` and `shadowfit_is_filtered(pixel) -> bool` say how it was found. They read one
+/// texture at a binding of the group: 0 for [`ResolvePass::group`](super::ResolvePass::group), any other one for a
 /// bind group of the engine's own with [`ResolvePass::factors`](super::ResolvePass::factors).
 pub fn resolved_wgsl(options: &WgslOptions<'_>, binding: u32) -> String {
     options.fill(include_str!("../shaders/resolved.wgsl"), binding)

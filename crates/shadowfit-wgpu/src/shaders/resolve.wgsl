@@ -52,6 +52,8 @@ struct Resolve {
 
 // What stands in the texture where the filter decides.
 const FILTERED: f32 = -1.0;
+// The lowest bit of a factor says whether the pixel was traced.
+const TRACED_BIT: u32 = 1u;
 
 // Neighbours lie on one plane where their depths change by this share of the change more or less. A surface that is bent
 // by as little has a normal that is off by less than a degree.

@@ -160,7 +160,8 @@ fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocat
         verdict = verdict_of(vec2<i32>(id.xy));
         var factor = select(verdict, FILTERED, verdict == UNSURE || verdict == NO_SURFACE);
         factor = select(select(factor, 0.0, verdict == FACES_AWAY), 1.0, verdict == BEYOND);
-        textureStore(factors, resolve.corner + id.xy, vec4<f32>(factor, 0.0, 0.0, 0.0));
+        let untraced = bitcast<f32>(bitcast<u32>(factor) & ~TRACED_BIT);
+        textureStore(factors, resolve.corner + id.xy, vec4<f32>(untraced, 0.0, 0.0, 0.0));
     }
     // Neighbours reserve their places together.
     var slot = 0u;

@@ -61,6 +61,14 @@ fn across_light(pixel: vec2<i32>) -> Across {
     return Across(x * cos(turn) + y * sin(turn), y * cos(turn) - x * sin(turn));
 }
 
+// A factor with the bit that tells it from one that was not traced, still in 0..=1.
+fn traced(factor: f32) -> f32 {
+    // The least and the greatest with that bit that no device rounds: the lesser ones may be flushed to zero.
+    let least = bitcast<f32>(0x00800001u);
+    let greatest = bitcast<f32>(0x3f7fffffu);
+    return bitcast<f32>(bitcast<u32>(clamp(factor, least, greatest)) | TRACED_BIT);
+}
+
 @compute @workgroup_size(TRACE_THREADS)
 fn trace(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -93,5 +101,5 @@ fn trace(
         lit += select(1.0, 0.0, shadowfit_rays_blocked(start, direction));
     }
     let factor = mix(lit / f32(resolve.point_count), 1.0, shadowfit_faded(surface.position));
-    textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(factor, 0.0, 0.0, 0.0));
+    textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(traced(factor), 0.0, 0.0, 0.0));
 }
