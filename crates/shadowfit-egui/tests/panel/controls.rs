@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapSelection, SoftRadius, SplitScheme,
+    CasterPolicy, Edges, FilterKind, FitKind, MAX_MAPS, MapFormat, MapSelection, SoftRadius, SplitScheme,
 };
 use shadowfit::{Maps, Slices, Technique};
 use shadowfit_egui::Panel;
@@ -30,6 +30,7 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
     technique.fit.resolution = UVec2::new(2048, 1024);
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
+    technique.edges = Edges::Traced { samples: 4 };
     // Their softness and the steps of their depths count.
     (technique.filter, technique.format) = (FilterKind::Vogel16, MapFormat::Depth16Unorm);
     settings.light.animate = true;

@@ -201,8 +201,10 @@ fn the_keys_of_artefacts_and_views_are_in_the_table() {
     let harness = bar(1280.0);
     let buttons: Vec<_> = harness.query_all_by_role(Role::Button).collect();
     for (index, button) in buttons.iter().enumerate() {
+        // The tenth has 0.
+        let key = (index + 1) % 10;
         let name = button.accesskit_node().label().expect("a name").replace("View: ", "").to_lowercase();
-        let does = &find(&(index + 1).to_string()).does;
+        let does = &find(&key.to_string()).does;
         assert!(does.contains(name.trim_end_matches('s')), "{name}: {does}");
     }
 }
