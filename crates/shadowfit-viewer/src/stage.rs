@@ -18,6 +18,8 @@ mod why;
 #[cfg(test)]
 mod depth_tests;
 #[cfg(test)]
+mod edges_tests;
+#[cfg(test)]
 mod live_tests;
 #[cfg(test)]
 mod memory_tests;

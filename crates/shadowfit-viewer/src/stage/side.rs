@@ -48,6 +48,13 @@ pub(super) struct Shown {
     target: wgpu::Texture,
 }
 
+/// Why edges are filtered, where the technique traces them.
+pub(super) fn filtered_edges(settings: &Settings, result: EdgeResult) -> Option<String> {
+    let wants = settings.technique.edges.are_traced() && settings.view.shadows;
+    let EdgeResult::Filtered(why) = result else { return None };
+    wants.then(|| format!("Edges are filtered: {why}"))
+}
+
 impl Side {
     /// A side whose pictures have `samples` per pixel.
     ///
@@ -200,22 +207,12 @@ impl Side {
         (counts.facing > 0).then(|| (traced / f64::from(counts.facing)) as f32)
     }
 
-    /// Why edges are filtered in the picture that was drawn last, where the technique traces them and nothing is worse.
-    fn note_filtered_edges(&mut self, settings: &Settings) {
-        let wants = settings.technique.edges.are_traced() && settings.view.shadows;
-        if let EdgeResult::Filtered(why) = self.evaluator.renderer.edge_result()
-            && wants
-            && self.problem.is_none()
-        {
-            self.problem = Some(format!("Edges are filtered: {why}"));
-        }
-    }
-
     /// Fits, judges and draws the view that the settings ask for.
     pub(super) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         self.problem = None;
         self.draw_anew(shot, target);
-        self.note_filtered_edges(shot.settings);
+        let result = self.evaluator.renderer.edge_result();
+        self.problem = self.problem.take().or_else(|| filtered_edges(shot.settings, result));
     }
 
     /// Draws the view unless it would be as it was last.
