@@ -71,15 +71,14 @@ fn gpu_the_view_of_traced_pixels_colours_those_that_were_traced_and_no_others() 
 }
 
 #[test]
-fn gpu_edges_that_are_filtered_though_the_technique_traces_them_are_told_with_the_reason() {
-    let (mut stage, target) = stage();
-    stage.draw(&target);
-    assert_eq!(stage.side.evaluator.renderer.edge_result(), EdgeResult::Traced);
+fn edges_that_are_filtered_though_the_technique_traces_them_are_told_with_the_reason() {
+    let exact = Technique::preset("exact-4").expect("a preset");
+    let mut settings = Settings::default().with_technique(exact);
     let lacking = EdgeResult::Filtered(WhyFiltered::Device(Unsupported::Compute));
-    let text = filtered_edges(&stage.settings, lacking).expect("they are told");
+    let text = filtered_edges(&settings, lacking).expect("they are told");
     assert_eq!(text, "Edges are filtered: this graphics device has no compute shaders");
-    stage.settings.view.shadows = false;
-    assert_eq!(filtered_edges(&stage.settings, lacking), None, "there are none");
-    stage.draw(&target);
-    assert_eq!(stage.problem(), None);
+    assert_eq!(filtered_edges(&settings, EdgeResult::Traced), None);
+    settings.view.shadows = false;
+    assert_eq!(filtered_edges(&settings, lacking), None, "there are none");
+    assert_eq!(filtered_edges(&Settings::default(), lacking), None, "the technique has them filtered");
 }

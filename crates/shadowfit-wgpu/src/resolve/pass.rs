@@ -327,7 +327,7 @@ impl ResolvePass {
         // This only polls; what is finished shows below.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.counts.iter_mut().for_each(|counts| _ = counts.has_failed());
-        let (_, counts) = ReadBack::newest(self.counts.iter_mut())?.take()?;
+        let ((), counts) = ReadBack::newest(self.counts.iter_mut())?.take()?;
         let [traced, facing, filtered, before] = counts[..] else { return None };
         let unsure = before.max(traced);
         Some(ResolveCounts { facing, unsure, traced, filtered: filtered + unsure - traced })

@@ -130,7 +130,9 @@ impl Unknown {
             match &stale.boxes {
                 Some(boxes) if self.count + boxes.len() <= MAX_UNKNOWN / 2 => {
                     let around = reach(map, sun);
-                    boxes.iter().for_each(|aabb| self.push(&aabb.relative_to(eye), around, (bit, 0)));
+                    for aabb in boxes {
+                        self.push(&aabb.relative_to(eye), around, (bit, 0));
+                    }
                 }
                 _ => self.maps |= bit,
             }
