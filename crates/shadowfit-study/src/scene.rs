@@ -56,6 +56,8 @@ impl core::error::Error for NothingToDraw {}
 pub struct PreparedScene {
     /// The scene on the GPU.
     pub gpu_scene: GpuScene,
+    /// Why its casters cannot be traced, once that was found out.
+    no_gpu_rays: Option<RayError>,
     posed: PosedScene,
 }
 
@@ -97,13 +99,13 @@ impl PreparedScene {
             origin: origin_of(&bounds),
             rays: PosedRays::default(),
         };
-        Ok(Self { gpu_scene, posed })
+        Ok(Self { gpu_scene, no_gpu_rays: None, posed })
     }
 
     /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. Nothing
     /// changes where it has that pose already.
     pub fn set_time(&mut self, gpu: &Gpu, animation: usize, seconds: f32) {
-        let Self { gpu_scene, posed } = self;
+        let Self { gpu_scene, posed, .. } = self;
         let pose = posed.scene.pose(Some(animation), seconds);
         if pose == posed.pose {
             return;
@@ -123,7 +125,12 @@ impl PreparedScene {
     ///
     /// [`RayError`] for a scene that is too large for the device, and one without compute shaders; edges are filtered then.
     pub fn make_gpu_rays(&mut self, gpu: &Gpu) -> Result<(), RayError> {
-        self.gpu_scene.make_rays(gpu, &self.posed.scene, self.posed.origin)
+        if let Some(error) = &self.no_gpu_rays {
+            return Err(error.clone());
+        }
+        let made = self.gpu_scene.make_rays(gpu, &self.posed.scene, self.posed.origin);
+        self.no_gpu_rays = made.as_ref().err().cloned();
+        made
     }
 }
 

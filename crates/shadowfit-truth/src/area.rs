@@ -12,7 +12,7 @@ use crate::truth::{Truth, TruthSettings, is_blocked};
 /// Sums of |factor − share of the pixel's area that is lit| over the pixels that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AreaTally {
-    /// Pixels whose points all lie on one plane.
+    /// Pixels whose points all lie on one surface: nearly on the plane of their centre, which faces nearly the same way.
     pub single: u64,
     /// Sum over those.
     pub single_error: f64,
@@ -37,6 +37,9 @@ impl AreaTally {
         [mean(self.single_error, self.single), mean(self.several_error, self.several)]
     }
 }
+
+/// Least cosine between the normals of points of one surface: 11°.
+const SAME_SURFACE: f64 = 0.98;
 
 /// Shuffles the rays of a pixel: a prime near the golden section of 256, that of 16 × 16 points.
 const SHUFFLE: u32 = 157;
@@ -91,8 +94,8 @@ fn seen(
         let plane = tracer.plane_normal(hit.triangle);
         let depth = tracer.refine(hit, plane, camera.eye, through);
         let position = camera.eye + through * depth;
-        is_single &= (position - on_plane).dot(normal).abs() <= width;
         let facing = if plane.dot(through) > 0.0 { -plane } else { plane };
+        is_single &= (position - on_plane).dot(normal).abs() <= width && facing.dot(normal) >= SAME_SURFACE;
         points += 1;
         let is_facing = facing.dot(settings.light.ray_from(position).direction) > 0.0;
         // Neighbouring points of the pixel have points of the sun that are no neighbours.
