@@ -14,13 +14,13 @@
 //! ```no_run
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, sun: &mut shadowfit_wgpu::SunShadows,
 //! #         rays: &shadowfit_rays::RayScene, depth: &wgpu::TextureView, clip_from_eye: shadowfit::glam::Mat4,
-//! #         encoder: &mut wgpu::CommandEncoder) -> Result<(), Box<dyn std::error::Error>> {
+//! #         eye: shadowfit::glam::DVec3, encoder: &mut wgpu::CommandEncoder) -> Result<(), Box<dyn std::error::Error>> {
 //! use shadowfit::DepthConvention;
 //! use shadowfit_wgpu::resolve::{ResolvePass, ResolveView};
 //!
 //! let mut exact = ResolvePass::new(device, queue)?; // once, for each view
 //! // In each frame, between the depth pre-pass and the picture:
-//! let view = ResolveView::new(depth, clip_from_eye, DepthConvention::Reversed);
+//! let view = ResolveView::new(depth, clip_from_eye, DepthConvention::Reversed, eye);
 //! let edges = exact.record(encoder, sun, Some(rays), &view)?; // says why where edges are filtered
 //! // The picture's shader calls `shadowfit_resolved` of `resolved_wgsl`, with `exact.group()` bound.
 //! # Ok(()) }

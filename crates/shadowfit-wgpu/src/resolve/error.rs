@@ -3,6 +3,7 @@
 use core::fmt;
 
 use shadowfit::DepthConvention;
+use shadowfit::glam::DVec3;
 
 /// Why a picture cannot be resolved; nothing is recorded then, and the filter decides everywhere.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +41,8 @@ pub enum ResolveError {
     },
     /// A distance of the rays' start that is not a finite number, or is negative.
     RayOffset(f32),
-    /// The eye, or the matrix of the view, is not finite.
-    NotFinite,
+    /// An eye that is not finite.
+    Eye(DVec3),
     /// The device refused to make a resource, for example because it is out of memory; with its own words.
     Device(String),
 }
@@ -77,7 +78,7 @@ impl fmt::Display for ResolveError {
             Self::RayOffset(offset) => {
                 write!(f, "rays start {offset} m above the surface: give a finite distance that is not negative")
             }
-            Self::NotFinite => write!(f, "the view's eye is not finite: give a world position in metres"),
+            Self::Eye(eye) => write!(f, "the view's eye is at {eye}: give a finite world position, in metres"),
             Self::Device(message) => {
                 write!(f, "edges cannot be traced, since the device refused it: {message}")
             }

@@ -53,23 +53,27 @@ pub(super) const FLOATS: wgpu::BindingType = wgpu::BindingType::Texture {
 };
 
 impl Layouts {
-    pub(super) fn new(device: &wgpu::Device) -> Self {
+    /// Where the device `computes`; otherwise only what the picture's shader reads.
+    pub(super) fn new(device: &wgpu::Device, computes: bool) -> Self {
         let stages = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let storage = |read_only| bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
         let arguments = [storage(true), storage(false)];
+        let select = [storage(true), storage(false), storage(true), bindings::UNIFORM];
+        // Devices without storage buffers refuse layouts of them.
+        let used = if computes { usize::MAX } else { 0 };
         Self {
             read: bindings::layout(device, "shadowfit resolved", stages, (0, &[FLOATS])),
             arguments: bindings::layout(
                 device,
                 "shadowfit resolve arguments",
                 wgpu::ShaderStages::COMPUTE,
-                (0, &arguments),
+                (0, &arguments[..used.min(arguments.len())]),
             ),
             select: bindings::layout(
                 device,
                 "shadowfit resolve select",
                 wgpu::ShaderStages::COMPUTE,
-                (0, &[storage(true), storage(false), storage(true), bindings::UNIFORM]),
+                (0, &select[..used.min(select.len())]),
             ),
         }
     }

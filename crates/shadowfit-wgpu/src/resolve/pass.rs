@@ -123,7 +123,7 @@ impl ResolvePass {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ResolveError> {
         let lacks = supported(&device.limits(), device.adapter_info().backend).err();
         let made = || {
-            let layouts = Layouts::new(device);
+            let layouts = Layouts::new(device, lacks.is_none());
             let texture = factors(device, [1, 1]);
             let nothing = (texture.clone(), layouts.group(device, &texture));
             let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };

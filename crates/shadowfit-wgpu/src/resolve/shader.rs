@@ -106,9 +106,11 @@ pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape) -> String {
     [&look_up(descriptor), &rays, &shared(shape), &list, &threads, pass].concat()
 }
 
-/// The look-up into the maps, for positions relative to the eye.
+/// The look-up into the maps, for positions relative to the eye. Nothing is resolved while two sets of maps are mixed:
+/// the present one stands first in the uniform of both.
 fn look_up(descriptor: &ShadowMapDescriptor) -> String {
-    receiver_wgsl(descriptor, &WgslOptions::group(RECEIVER_GROUP))
+    let one_set = ShadowMapDescriptor { cross_fades: false, ..*descriptor };
+    receiver_wgsl(&one_set, &WgslOptions::group(RECEIVER_GROUP))
 }
 
 fn shared(Shape { samples, normals }: Shape) -> String {

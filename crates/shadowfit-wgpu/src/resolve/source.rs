@@ -66,7 +66,7 @@ fn checked_matrix(view: &ResolveView<'_>, [_, _, width, height]: [u32; 4]) -> Re
         return Err(ResolveError::Depth(view.convention));
     }
     if !view.eye.is_finite() {
-        return Err(ResolveError::NotFinite);
+        return Err(ResolveError::Eye(view.eye));
     }
     if !(view.ray_offset >= 0.0 && view.ray_offset.is_finite()) {
         return Err(ResolveError::RayOffset(view.ray_offset));

@@ -40,7 +40,8 @@ pub struct Normals<'a> {
     pub encoding: NormalEncoding,
 }
 
-/// How channels have the coordinates of a normal. Zero in all of them stands for no normal.
+/// How channels have the coordinates of a normal. Zero in all of them stands for no normal: it follows from the depths of
+/// neighbours there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalEncoding {
     /// As they are, -1..1.

@@ -73,7 +73,7 @@ struct Surface {
     steps: vec2<f32>,
     // Unit normal on the side of the eye; zero where there is none.
     normal: vec3<f32>,
-    // Whether the normal is known: neighbours lie on one plane, or there is a texture of normals.
+    // Whether the normal is known: neighbours lie on one plane, or the texture of normals has it.
     is_known: bool,
     // Whether all samples of the pixel lie on the plane.
     is_single: bool,
@@ -121,7 +121,9 @@ fn change(pixel: vec2<i32>, axis: vec2<i32>, depth: f32) -> vec2<f32> {
     let most = BENT * abs(after + before) + ROUNDINGS * rounding(depth);
     let is_plane = next != 0.0 && previous != 0.0 && abs(after - before) <= most;
     let takes_after = previous == 0.0 || (next != 0.0 && abs(after) <= abs(before));
-    let one_side = select(before, after, takes_after);
+    // A pixel between two that show nothing is taken to be as deep all over.
+    let is_alone = next == 0.0 && previous == 0.0;
+    let one_side = select(select(before, after, takes_after), 0.0, is_alone);
     return vec2<f32>(select(one_side, 0.5 * (after + before), is_plane), select(0.0, 1.0, is_plane));
 }
 
@@ -143,6 +145,17 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return select(vec3<f32>(0.0), v * inverseSqrt(squared), squared > 0.0 && squared < 3e38);
 }
 
+// The normal of a pixel's triangle in the texture of normals; zero where it has none.
+fn stored_normal(pixel: vec2<i32>) -> vec3<f32> {
+    if NORMALS == NO_NORMALS {
+        return vec3<f32>(0.0);
+    }
+    let stored = textureLoad(normals, vec2<i32>(resolve.corner) + pixel, 0).xyz;
+    // Zero stands for no normal in either encoding.
+    let is_none = all(stored == vec3<f32>(0.0));
+    return select(unit(select(stored * 2.0 - 1.0, stored, NORMALS == SIGNED_NORMALS)), stored, is_none);
+}
+
 // What a pixel shows. depth: its depth, not 0.
 fn surface_of(pixel: vec2<i32>, depth: f32) -> Surface {
     let m = resolve.world_from_pixel;
@@ -154,24 +167,23 @@ fn surface_of(pixel: vec2<i32>, depth: f32) -> Surface {
     // Away from the eye, through the same pixel.
     let ray = moved(m[2], surface);
     let away = select(-ray, ray, dot(ray, resolve.forward) > 0.0);
-    if NORMALS != NO_NORMALS {
-        let stored = textureLoad(normals, vec2<i32>(resolve.corner) + pixel, 0).xyz;
-        let normal = unit(select(stored * 2.0 - 1.0, stored, NORMALS == SIGNED_NORMALS));
+    let normal = stored_normal(pixel);
+    if any(normal != vec3<f32>(0.0)) {
         surface.normal = select(normal, -normal, dot(normal, away) > 0.0);
         // A plane's depth changes so that its points stay on it.
         let across = dot(normal, moved(m[0], surface));
         let down = dot(normal, moved(m[1], surface));
         surface.steps = -vec2<f32>(across, down) / dot(normal, ray);
-        surface.is_known = any(normal != vec3<f32>(0.0));
+        surface.is_known = true;
     } else {
         let across = change(pixel, vec2<i32>(1, 0), depth);
         let down = change(pixel, vec2<i32>(0, 1), depth);
         surface.steps = vec2<f32>(across.x, down.x);
         let right = moved(m[0] + m[2] * across.x, surface);
         let below = moved(m[1] + m[2] * down.x, surface);
-        let normal = unit(cross(right, below));
-        surface.normal = select(normal, -normal, dot(normal, away) > 0.0);
-        surface.is_known = across.y * down.y > 0.0 && any(normal != vec3<f32>(0.0));
+        let crossed = unit(cross(right, below));
+        surface.normal = select(crossed, -crossed, dot(crossed, away) > 0.0);
+        surface.is_known = across.y * down.y > 0.0 && any(crossed != vec3<f32>(0.0));
     }
     surface.is_single = is_single(pixel, depth, surface.steps);
     return surface;
