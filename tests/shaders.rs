@@ -27,22 +27,26 @@ mod pixel_gpu;
 mod prefixes;
 mod read_back;
 mod refusals_gpu;
+mod resolve_gpu;
 mod several_maps_gpu;
 mod sweep_gpu;
 mod tents_gpu;
 mod tint_gpu;
 mod wrap_gpu;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use shadowfit::DepthConvention;
-use shadowfit::settings::{FilterKind, MapFormat, MapSelection};
+use shadowfit::settings::{Edges, FilterKind, MapFormat, MapSelection};
 use shadowfit_classics::mapped::SampleFrame;
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
+use shadowfit_rays::{RayWgslOptions, rays_wgsl, refit_wgsl};
 use shadowfit_render::{Overlay, shaders};
 use shadowfit_wgpu::demand::demand_wgsl;
+use shadowfit_wgpu::resolve::{NormalEncoding, resolve_wgsl, resolved_wgsl};
 use shadowfit_wgpu::{
     CullingPiece, MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl,
     stored_wgsl,
@@ -66,6 +70,34 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
     all
 }
 
+/// Every kind of picture that the resolve passes' WGSL differs for: samples per pixel, and normals.
+fn resolved_pictures() -> [(u32, Option<NormalEncoding>); 6] {
+    let normals = [None, Some(NormalEncoding::Signed), Some(NormalEncoding::Unsigned)];
+    core::array::from_fn(|index| ([1, 4][index / 3], normals[index % 3]))
+}
+
+/// The modules of the resolve passes: each map with one kind of picture, in turn, and each format with all of them.
+fn resolve_modules() -> Vec<(String, String)> {
+    let pictures = resolved_pictures();
+    let in_turn = descriptors().into_iter().zip(pictures.into_iter().cycle());
+    let formats = MapFormat::ALL.into_iter().map(|format| ShadowMapDescriptor { format, ..Default::default() });
+    let all = formats.flat_map(|map| pictures.map(|picture| (map, picture)));
+    let [_, count, select, _] = resolve_wgsl(&ShadowMapDescriptor::default(), 1, None);
+    let mut modules =
+        vec![("resolve count, compute".to_owned(), count), ("resolve select, compute".to_owned(), select)];
+    for (number, (map, (samples, normals))) in in_turn.chain(all).enumerate() {
+        let map = ShadowMapDescriptor { first_binding: number as u32 % 3, ..map };
+        let kind = format!("{map:?}, {samples} samples, normals {normals:?}, compute");
+        let [classify, _, _, trace] = resolve_wgsl(&map, samples, normals);
+        modules.push((format!("resolve classify, {kind}"), classify));
+        // Rays read nothing that depends on the filter.
+        if map.filter == FilterKind::default() {
+            modules.push((format!("resolve trace, {kind}"), trace));
+        }
+    }
+    modules
+}
+
 /// Every module that is handed to a device, and the pieces for engines, with names.
 fn modules() -> Vec<(String, String)> {
     let mut all = vec![
@@ -86,6 +118,8 @@ fn modules() -> Vec<(String, String)> {
         ("culling piece".to_owned(), culling_wgsl(&WgslOptions::group(0))),
         ("need, compute".to_owned(), demand_wgsl(1)),
         ("need of four samples, compute".to_owned(), demand_wgsl(4)),
+        ("refit, compute".to_owned(), refit_wgsl()),
+        ("rays piece".to_owned(), rays_wgsl(&RayWgslOptions::group(0))),
     ];
     for format in MapFormat::ALL {
         let map = ShadowMapDescriptor { format, ..Default::default() };
@@ -97,6 +131,7 @@ fn modules() -> Vec<(String, String)> {
         all.extend([(format!("clear, {depth:?}"), clear), (format!("mend, {depth:?}"), mend)]);
     }
     all.extend(sample_modules());
+    all.extend(resolve_modules());
     for map in descriptors() {
         let sets = if map.cross_fades { "two sets" } else { "one set" };
         let kind = format!("{:?} {:?} {:?} {:?} {sets}", map.format, map.filter, map.depth, map.selection);
@@ -110,6 +145,11 @@ fn modules() -> Vec<(String, String)> {
         let receiver = receiver_wgsl(&map, &WgslOptions::group(1));
         let stored = stored_wgsl(&map, &WgslOptions::group(1));
         all.push((format!("receiver piece with views, {kind}"), receiver.clone() + &stored));
+        if map.filter == FilterKind::default() {
+            let resolved = resolved_wgsl(&WgslOptions::group(2), 0);
+            all.push((format!("receiver piece with what was resolved, {kind}"), receiver.clone() + &resolved));
+            all.push((format!("surfaces, {kind}"), shaders::surfaces(&map)));
+        }
         all.push((format!("receiver piece, {kind}"), receiver));
     }
     all
@@ -176,19 +216,26 @@ fn parse(name: &str, source: &str) -> Module {
 }
 
 /// A file's text with its placeholders filled in, in every way that a module may.
-fn filled(text: &str) -> Vec<String> {
-    let mut all = Vec::new();
+fn filled(text: &str) -> BTreeSet<String> {
+    let mut all = BTreeSet::new();
     for group in ["0", "1", "2", "3"] {
         for closer in ["<=", ">="] {
-            all.push(
-                text.replace("MATERIAL_GROUP", group)
-                    .replace("GROUP", group)
-                    .replace("MAX_MAPS", &MAX_MAPS.to_string())
-                    .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string())
-                    .replace("COMPARE", closer)
-                    .replace("FAR", if closer == ">=" { "0.0" } else { "1.0" })
-                    .replace("BINDING_", ""),
-            );
+            for (count, depth) in [("u32", "0"), ("atomic<u32>", "at")] {
+                all.insert(
+                    text.replace("MATERIAL_GROUP", group)
+                        .replace("group(GROUP)", &format!("group({group})"))
+                        .replace("MAX_MAPS", &MAX_MAPS.to_string())
+                        .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string())
+                        .replace("MAX_DEPTH", &shadowfit_rays::MAX_DEPTH.to_string())
+                        .replace("MAX_POINTS", &Edges::MAX_SAMPLES.to_string())
+                        .replace("MAX_UNKNOWN", &layout::MAX_UNKNOWN.to_string())
+                        .replace("COMPARE", closer)
+                        .replace("LIST_COUNT", count)
+                        .replace("DEPTH_INDEX", depth)
+                        .replace(" FAR,", if closer == ">=" { " 0.0," } else { " 1.0," })
+                        .replace("BINDING_", ""),
+                );
+            }
         }
     }
     all

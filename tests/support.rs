@@ -3,7 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use shadowfit::PerspectiveCamera;
+use shadowfit::glam::Vec3;
 use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_scene::{Lens, Scene};
+use shadowfit_study::View;
 
 /// A glTF file of two triangles, with lines that are skipped and an image that is missing.
 pub(crate) const SCENE_WITH_NOTES: &str = r#"{
@@ -27,6 +31,24 @@ pub(crate) const NOTES: [&str; 2] =
 pub(crate) fn software_gpu() -> Gpu {
     pollster::block_on(Gpu::headless(AdapterChoice::Software))
         .unwrap_or_else(|error| panic!("this test draws, and {error}"))
+}
+
+/// The view from a scene's own camera under its own sun, in pictures of this size.
+pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {
+    let camera = scene.cameras.first().expect("a camera");
+    let Lens::Perspective { fov_y, near, far } = camera.lens else { panic!("a perspective camera") };
+    let [_, up, back, eye] = scene.pose(None, 0.0).world_from_node[camera.node].to_cols_array_2d();
+    let axis = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+    let camera = PerspectiveCamera {
+        eye: axis(eye).as_dvec3(),
+        forward: -axis(back).normalize(),
+        up: axis(up).normalize(),
+        fov_y,
+        aspect: size[0] as f32 / size[1] as f32,
+        near,
+        far: far.expect("a far plane"),
+    };
+    View { camera, direction: scene.sun.expect("a sun").direction, is_first: true }
 }
 
 /// The folder of the workspace.

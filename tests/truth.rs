@@ -4,3 +4,4 @@
 mod agreement_gpu;
 mod artefacts_gpu;
 mod shapes;
+mod traced_gpu;

@@ -3,6 +3,7 @@
 use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
+use shadowfit::settings::Edges;
 use shadowfit_classics::mapped::SampleUniform;
 use shadowfit_classics::occlusion::OcclusionUniform;
 use shadowfit_classics::sky_box::SkyBoxUniform;
@@ -12,12 +13,17 @@ use shadowfit_render::{
     Overlay, QuadVertex, shaders,
 };
 use shadowfit_wgpu::demand::{DemandUniform, demand_wgsl};
+use shadowfit_wgpu::resolve::{ResolveUniform, UnknownUniform, resolve_wgsl};
 use shadowfit_wgpu::{
     CasterUniform, CullingPiece, FadingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor,
     WgslOptions, culling_wgsl,
 };
 
 use super::parse;
+
+/// Boxes around unknown casters that a picture may have.
+pub(super) const MAX_UNKNOWN: usize =
+    (size_of::<ResolveUniform>() - offset_of!(ResolveUniform, unknown)) / size_of::<UnknownUniform>();
 
 /// A Rust struct: its name in WGSL, its size, and its fields' names and offsets, in bytes.
 struct Layout {
@@ -233,6 +239,48 @@ fn the_uniform_of_the_demand_pass_lies_as_in_wgsl() {
 }
 
 #[test]
+fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
+    let resolve = layout!(
+        "Resolve" = ResolveUniform {
+            world_from_pixel,
+            eye,
+            far_depth,
+            forward,
+            ray_offset,
+            corner,
+            size,
+            depth_rounding,
+            point_reach,
+            point_count,
+            unsure_maps,
+            unknown_count,
+            frame,
+            padding,
+            points,
+            unknown,
+        }
+    );
+    let unknown = layout!("Unknown" = UnknownUniform { least, maps, most, is_filtered });
+    let [classify, _, select, trace] =
+        resolve_wgsl(&ShadowMapDescriptor::default(), 4, None).map(|source| parse("resolve", &source));
+    for module in [classify, trace] {
+        assert_same(&module, &resolve);
+        assert_same(&module, &unknown);
+        let (members, _) = reflected(&module, "Resolve");
+        let [.., points, unknown] = members else { panic!("two arrays at the end") };
+        let counts = [points, unknown].map(|member| match module.types[member.ty].inner {
+            TypeInner::Array { size: naga::ArraySize::Constant(count), .. } => count.get() as usize,
+            _ => panic!("an array of a fixed number"),
+        });
+        assert_eq!(counts, [Edges::MAX_SAMPLES as usize, MAX_UNKNOWN]);
+    }
+    // It is written as four numbers: how many pixels, and the frame.
+    let (members, span) = reflected(&select, "Budget");
+    let names: Vec<_> = members.iter().map(|member| (member.name.as_deref().unwrap_or(""), member.offset)).collect();
+    assert_eq!((&names[..2], span), (&[("pixels", 0), ("frame", 4)][..], 16));
+}
+
+#[test]
 fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languages() {
     let module = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let (members, _) = reflected(&module, "shadowfit_Receiver");
@@ -254,6 +302,9 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Marks",
         "Block",
         "Demand",
+        "Resolve",
+        "Budget",
+        "shadowfit_rays_Refit",
         "Occlusion",
         "Sample",
         "SkyBox",

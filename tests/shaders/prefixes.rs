@@ -2,6 +2,7 @@
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit_wgpu::resolve::resolved_wgsl;
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};
 
 use super::parse;
@@ -46,6 +47,23 @@ fn two_suns_of_different_kinds_fit_into_one_shader_and_into_one_bind_group() {
     for text in [receivers, culling] {
         assert!(!text.to_lowercase().contains("shadowfit_"), "a name has kept its prefix");
     }
+}
+
+#[test]
+fn what_was_resolved_is_read_by_a_prefix_and_at_a_binding_of_the_engine_s() {
+    let map = ShadowMapDescriptor { first_binding: 4, ..ShadowMapDescriptor::default() };
+    let text = receiver_wgsl(&map, &named(1, "sun")) + &resolved_wgsl(&named(2, "sun"), 7);
+    assert!(!text.to_lowercase().contains("shadowfit_"), "a name has kept its prefix");
+    let shaded = "
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    return vec4<f32>(sun_resolved(pixel.xyz, pixel.xyz, pixel.xy));
+}";
+    assert_valid("resolved", &(text.clone() + shaded));
+    let module = parse("resolved", &text);
+    let bindings = module.global_variables.iter().filter_map(|(_, global)| global.binding);
+    let mut bindings: Vec<(u32, u32)> = bindings.map(|binding| (binding.group, binding.binding)).collect();
+    bindings.sort_unstable();
+    assert_eq!(bindings, [(1, 4), (1, 5), (1, 6), (2, 7)]);
 }
 
 #[test]

@@ -1,0 +1,155 @@
+//! Pictures that cannot be resolved: each is refused with its value, and the filter decides. Devices that cannot compute.
+
+use shadowfit::DepthConvention;
+use shadowfit::glam::{DVec3, Mat4};
+use shadowfit_wgpu::SunShadows;
+use shadowfit_wgpu::demand::Unsupported;
+use shadowfit_wgpu::resolve::{EdgeResult, ResolveError, ResolvePass, ResolveView, WhyFiltered};
+
+use super::pass_gpu::{SIZE, assert_filtered, look, stage, technique};
+use super::stage::{Drawn, Stage, traced};
+use crate::support::software_gpu;
+
+const BOUND: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
+const DRAWN: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT;
+
+/// Refuses a picture, and leaves everything to the filter until the next good one.
+fn refused<'a>(
+    stage: &mut Stage,
+    drawn: &'a Drawn,
+    edit: impl FnOnce(&mut ResolveView<'a>),
+    words: &[&str],
+) -> ResolveError {
+    let look = look();
+    let good = stage.draw_surfaces(&look);
+    assert_eq!(stage.resolve(&look, &good, |_| ()), Ok(EdgeResult::Traced));
+    let error = stage.resolve(&look, drawn, edit).expect_err("it is refused");
+    for word in words {
+        assert!(error.to_string().contains(word), "{error}: {word}");
+    }
+    assert_filtered(stage, WhyFiltered::Picture);
+    assert_eq!(stage.resolve(&look, &good, |_| ()), Ok(EdgeResult::Traced), "after {error}");
+    error
+}
+
+#[test]
+fn textures_that_the_pass_cannot_read_are_refused_with_what_they_are() {
+    let mut stage = stage();
+    let good = stage.draw(&look());
+    let depth16 = wgpu::TextureFormat::Depth16Unorm;
+    let textures = [
+        (stage.texture(SIZE, depth16, 1, BOUND | DRAWN), vec!["Depth16Unorm", "24 or 32 bits"]),
+        (stage.texture(SIZE, wgpu::TextureFormat::R32Float, 1, BOUND), vec!["R32Float", "depth format"]),
+        (
+            stage.texture(SIZE, wgpu::TextureFormat::Depth32Float, 1, DRAWN),
+            vec!["RENDER_ATTACHMENT", "TEXTURE_BINDING"],
+        ),
+    ];
+    for (depth, words) in textures {
+        let drawn = Drawn { depth, normals: None };
+        let error = refused(&mut stage, &drawn, |view| view.normals = None, &words);
+        let texture = drawn.depth.texture();
+        let (format, usage) = (texture.format(), texture.usage());
+        assert_eq!(error, ResolveError::Texture { format, samples: 1, usage });
+    }
+    let (float, whole) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Rgba8Uint);
+    let normals = [
+        (stage.texture([SIZE[0], 64], float, 1, BOUND), vec!["160 × 64", "160 × 90"]),
+        (stage.texture(SIZE, whole, 1, BOUND), vec!["Rgba8Uint", "float format"]),
+        (stage.texture(SIZE, float, 4, BOUND | DRAWN), vec!["one sample"]),
+        (stage.texture(SIZE, float, 1, DRAWN), vec!["TEXTURE_BINDING"]),
+    ];
+    for (normals, words) in normals {
+        let edit = |view: &mut ResolveView<'_>| view.normals = None;
+        let drawn = Drawn { depth: good.depth.clone(), normals: Some(normals) };
+        let (format, size) = (texture_of(&drawn).format(), [texture_of(&drawn).width(), texture_of(&drawn).height()]);
+        let error = refused(&mut stage, &drawn, |_| (), &words);
+        assert_eq!(error, ResolveError::Normals { format, size, expected: SIZE });
+        assert_eq!(stage.resolve(&look(), &drawn, edit), Ok(EdgeResult::Traced), "without them");
+    }
+}
+
+fn texture_of(drawn: &Drawn) -> &wgpu::Texture {
+    drawn.normals.as_ref().expect("normals").texture()
+}
+
+#[test]
+fn rectangles_outside_the_texture_are_refused_with_both_sizes() {
+    let mut stage = stage();
+    let drawn = stage.draw(&look());
+    let [width, height] = SIZE;
+    for rectangle @ [x, y, across, down] in [
+        [1, 0, width, height],
+        [0, 0, width, height + 1],
+        [0, 0, 0, height],
+        [0, 3, width, 0],
+        [u32::MAX, 0, 2, 2],
+        [5, 6, u32::MAX, 7],
+    ] {
+        let words = [format!("{across} × {down}"), format!("({x}, {y})"), "160 × 90".to_owned()];
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let error = refused(&mut stage, &drawn, |view| view.rectangle = Some(rectangle), &words);
+        assert_eq!(error, ResolveError::Rectangle { rectangle, texture: SIZE });
+    }
+}
+
+#[test]
+fn views_that_make_no_sense_are_refused_with_their_values() {
+    let mut stage = stage();
+    let drawn = stage.draw(&look());
+    for matrix in [Mat4::ZERO, Mat4::NAN, Mat4::from_diagonal(shadowfit::glam::Vec4::new(1.0, 1.0, 0.0, 1.0))] {
+        let error = refused(&mut stage, &drawn, |view| view.clip_from_eye = matrix, &["no finite inverse"]);
+        assert_eq!(error, ResolveError::SingularMatrix);
+    }
+    let (plain, reversed) = (DepthConvention::ZeroToOne, DepthConvention::Reversed);
+    let error = refused(&mut stage, &drawn, |view| view.convention = plain, &["ZeroToOne", "drawn with"]);
+    assert_eq!(error, ResolveError::OtherDepth(plain));
+    let other = look().camera.clip_from_world(plain);
+    let error = refused(&mut stage, &drawn, |view| view.clip_from_eye = other, &["Reversed", "drawn with"]);
+    assert_eq!(error, ResolveError::OtherDepth(reversed));
+    let opengl = DepthConvention::NegativeOneToOne;
+    let error = refused(&mut stage, &drawn, |view| view.convention = opengl, &["NegativeOneToOne", "0..1"]);
+    assert_eq!(error, ResolveError::Depth(opengl));
+    for (offset, word) in [(-0.5, "-0.5"), (f32::NAN, "NaN"), (f32::INFINITY, "inf")] {
+        let error = refused(&mut stage, &drawn, |view| view.ray_offset = offset, &[word, "not negative"]);
+        assert!(matches!(error, ResolveError::RayOffset(found) if found.to_bits() == offset.to_bits()));
+    }
+    for (eye, word) in [(DVec3::NAN, "NaN"), (DVec3::new(0.0, f64::INFINITY, 2.0), "inf")] {
+        let error = refused(&mut stage, &drawn, |view| view.eye = eye, &[word, "finite world position"]);
+        assert!(matches!(error, ResolveError::Eye(_)));
+    }
+}
+
+#[test]
+fn a_device_of_webgl2_limits_filters_edges_and_says_what_it_lacks_without_an_error() {
+    let (device, queue) = pollster::block_on(software_gpu().adapter.request_device(&wgpu::DeviceDescriptor {
+        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
+        ..Default::default()
+    }))
+    .expect("a device of fewer limits");
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let sun = SunShadows::new(&device, &queue, &traced(technique(), 1)).expect("maps");
+    let mut pass = ResolvePass::new(&device, &queue).expect("what engines read at least");
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: 16, height: 16, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: BOUND | DRAWN,
+        view_formats: &[],
+    });
+    let look = look();
+    let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let clip_from_eye = look.camera.clip_from_world(look.convention);
+    let view = ResolveView::new(&depth, clip_from_eye, look.convention, look.camera.eye);
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let found = pass.record(&mut encoder, &sun, None, &view);
+    let why = WhyFiltered::Device(Unsupported::Compute);
+    assert_eq!((found, pass.result()), (Ok(EdgeResult::Filtered(why)), EdgeResult::Filtered(why)));
+    assert_eq!((pass.factors().texture().width(), pass.take_counts()), (1, None));
+    queue.submit([encoder.finish()]);
+    let error = pollster::block_on(scope.pop());
+    assert!(error.is_none(), "{error:?}");
+}

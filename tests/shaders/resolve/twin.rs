@@ -1,0 +1,442 @@
+//! What the first resolve pass finds about each pixel, in plain Rust: the arithmetic of `resolve.wgsl`,
+//! `resolve_classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
+//! back.
+
+use shadowfit::glam::{DMat4, DVec3, DVec4, Vec2, Vec3, Vec4};
+use shadowfit::settings::MapSelection;
+use shadowfit::{Bias, DepthConvention, FittedMap};
+use shadowfit_wgpu::resolve::NormalEncoding;
+use shadowfit_wgpu::{MapUniform, MapView, ReceiverUniform, ShadowMapDescriptor};
+
+use super::stage::{Drawn, Look, Stage};
+use crate::shaders::read_back::texels;
+
+/// What is found about a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
+    NoSurface,
+    /// Beyond the distance of shadows.
+    Beyond,
+    FacesAway,
+    /// Left to the filter.
+    Filtered,
+    Unsure,
+    /// The maps are sure.
+    Sure(f32),
+}
+
+/// By how much thresholds are moved, to see which pixels lie next to one: in texels for places, as a share for the others;
+/// depths by a few roundings as well.
+pub(super) type Slack = f32;
+
+/// The slack of pixels that count as next to a threshold.
+pub(super) const NEXT_TO: Slack = 1e-3;
+
+// The constants of the WGSL.
+const FOOTPRINT: f32 = 2.0;
+const MOST_BLOCKS: f32 = 6.0;
+const ROUNDED_TEXEL: f32 = 0.02;
+const BENT: f32 = 0.015_625;
+const ROUNDINGS: f32 = 4.0;
+const MIN_COSINE: f32 = 0.01;
+/// By how much a depth on a plane may be rounded otherwise: by 2⁻²⁴ in each of some sums.
+const DEPTH_ROUNDING: f32 = 5e-7;
+/// WebGPU's places of four samples.
+const FOUR: [Vec2; 4] =
+    [Vec2::new(-0.125, -0.375), Vec2::new(0.375, -0.125), Vec2::new(-0.375, 0.125), Vec2::new(0.125, 0.375)];
+
+/// A picture and the maps that it is classified by.
+pub(super) struct Twin {
+    size: [i32; 2],
+    convention: DepthConvention,
+    world_from_pixel: [Vec4; 4],
+    forward: Vec3,
+    /// Sample by sample.
+    depths: Vec<f32>,
+    samples: usize,
+    normals: Option<(Vec<[f32; 4]>, NormalEncoding)>,
+    point_reach: f32,
+    descriptor: ShadowMapDescriptor,
+    receiver: ReceiverUniform,
+    /// Layer by layer.
+    stored: Vec<f32>,
+    slack: Slack,
+}
+
+struct Surface {
+    position: Vec3,
+    w: f32,
+    steps: Vec2,
+    normal: Vec3,
+    is_known: bool,
+    is_single: bool,
+}
+
+struct Projected {
+    texel: Vec2,
+    surface: f32,
+    depth: f32,
+    gradient: Vec2,
+}
+
+struct Choice {
+    first: i32,
+    second: i32,
+    weight: f32,
+    clamped: i32,
+    far: f32,
+}
+
+impl Twin {
+    /// Of the picture that a stage has drawn and resolved. `point_reach`: the greatest distance of a ray's start from the
+    /// first sample, across or down, in pixels.
+    pub(super) fn new(stage: &Stage, look: &Look, drawn: &Drawn, point_reach: f32) -> Self {
+        let map = stage.sun.map();
+        let from_eye = MapView { origin: look.camera.eye, ..*stage.sun.map_view().expect("a frame") };
+        let normals = drawn
+            .normals
+            .as_ref()
+            .zip(look.normals)
+            .map(|(normals, encoding)| (texels(&stage.gpu.device, &stage.gpu.queue, normals.texture()), encoding));
+        let to_world = world_from_pixel(look);
+        Self {
+            size: look.size.map(u32::cast_signed),
+            convention: look.convention,
+            world_from_pixel: to_world.as_mat4().to_cols_array_2d().map(Vec4::from),
+            forward: forward(&to_world, look),
+            depths: stage.depths(&drawn.depth),
+            samples: look.samples as usize,
+            normals,
+            point_reach,
+            descriptor: *map.descriptor(),
+            receiver: on_planes(stage.sun.maps(), &from_eye, map.descriptor()),
+            stored: stage.stored(),
+            slack: 0.0,
+        }
+    }
+
+    /// The verdict of each pixel, rows from the top.
+    pub(super) fn verdicts(&self) -> Vec<Verdict> {
+        let [width, height] = self.size;
+        (0..width * height).map(|index| self.verdict([index % width, index / width])).collect()
+    }
+
+    /// The verdicts of a pixel where thresholds are a little lower or higher.
+    pub(super) fn nearby(&mut self, index: usize, slack: Slack) -> Vec<Verdict> {
+        let at = [index as i32 % self.size[0], index as i32 / self.size[0]];
+        let found = [-slack, slack].map(|slack| {
+            self.slack = slack;
+            self.verdict(at)
+        });
+        self.slack = 0.0;
+        found.to_vec()
+    }
+
+    fn verdict(&self, pixel: [i32; 2]) -> Verdict {
+        let depth = self.depth_at(pixel);
+        if depth == 0.0 {
+            return Verdict::NoSurface;
+        }
+        let surface = self.surface_of(pixel, depth);
+        let faded = self.faded(surface.position);
+        if faded >= 1.0 {
+            return Verdict::Beyond;
+        }
+        let facing = dot(surface.normal, self.receiver.to_light.into());
+        if surface.is_known && surface.is_single && facing <= self.slack * 0.01 {
+            return Verdict::FacesAway;
+        }
+        if !surface.is_single {
+            return Verdict::Filtered;
+        }
+        if !surface.is_known {
+            return Verdict::Unsure;
+        }
+        match self.of_map(&surface) {
+            Some(factor) => Verdict::Sure(factor * (1.0 - faded) + faded),
+            None => Verdict::Unsure,
+        }
+    }
+
+    fn far_depth(&self) -> f32 {
+        self.convention.far()
+    }
+
+    fn sample(&self, [x, y]: [i32; 2], sample: usize) -> f32 {
+        let count = (self.size[0] * self.size[1]) as usize;
+        self.depths[sample * count + (y * self.size[0] + x) as usize] - self.far_depth()
+    }
+
+    fn depth_at(&self, [x, y]: [i32; 2]) -> f32 {
+        if x < 0 || y < 0 || x >= self.size[0] || y >= self.size[1] { 0.0 } else { self.sample([x, y], 0) }
+    }
+
+    fn rounding(&self, depth: f32) -> f32 {
+        (depth + self.far_depth()).abs() * (1.0 / 8_388_608.0) + 1.0 / 1_073_741_824.0
+    }
+
+    fn place(&self, sample: usize) -> Vec2 {
+        if self.samples == 1 { Vec2::ZERO } else { FOUR[sample] }
+    }
+
+    fn change(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], depth: f32) -> (f32, bool) {
+        let next = self.depth_at([x + right, y + down]);
+        let previous = self.depth_at([x - right, y - down]);
+        let (after, before) = (next - depth, depth - previous);
+        let most = (BENT * (after + before).abs() + ROUNDINGS * self.rounding(depth)) * (1.0 + self.slack);
+        let is_plane = next != 0.0 && previous != 0.0 && (after - before).abs() <= most;
+        let takes_after = previous == 0.0 || (next != 0.0 && after.abs() <= before.abs());
+        if is_plane {
+            (0.5 * (after + before), true)
+        } else if next == 0.0 && previous == 0.0 {
+            (0.0, false)
+        } else {
+            (if takes_after { after } else { before }, false)
+        }
+    }
+
+    fn is_single(&self, pixel: [i32; 2], depth: f32, steps: Vec2) -> bool {
+        (1..self.samples).all(|sample| {
+            let offset = self.place(sample) - self.place(0);
+            let expected = depth + (steps.x * offset.x + steps.y * offset.y);
+            let most = BENT * (steps.x.abs() + steps.y.abs()) + ROUNDINGS * self.rounding(depth);
+            (self.sample(pixel, sample) - expected).abs() <= most * (1.0 + self.slack)
+        })
+    }
+
+    fn stored_normal(&self, [x, y]: [i32; 2]) -> Vec3 {
+        let Some((normals, encoding)) = &self.normals else { return Vec3::ZERO };
+        let [a, b, c, _] = normals[(y * self.size[0] + x) as usize];
+        let stored = Vec3::new(a, b, c);
+        match encoding {
+            _ if stored == Vec3::ZERO => Vec3::ZERO,
+            NormalEncoding::Signed => unit(stored),
+            NormalEncoding::Unsigned => unit(stored * 2.0 - 1.0),
+        }
+    }
+
+    fn surface_of(&self, pixel: [i32; 2], depth: f32) -> Surface {
+        let m = self.world_from_pixel;
+        let place = Vec2::new(pixel[0] as f32, pixel[1] as f32) + self.place(0);
+        let homogeneous = transformed(&m, Vec4::new(place.x, place.y, depth, 1.0));
+        let w = homogeneous.w;
+        let position = homogeneous.truncate() / w;
+        let moved = |change: Vec4| (change.truncate() - position * change.w) / w;
+        let ray = moved(m[2]);
+        let away = if dot(ray, self.forward) > 0.0 { ray } else { -ray };
+        let toward_eye = |normal: Vec3| if dot(normal, away) > 0.0 { -normal } else { normal };
+        let stored = self.stored_normal(pixel);
+        let (normal, steps, is_known) = if stored == Vec3::ZERO {
+            let (across, is_flat_across) = self.change(pixel, [1, 0], depth);
+            let (down, is_flat_down) = self.change(pixel, [0, 1], depth);
+            let normal = unit(moved(m[0] + m[2] * across).cross(moved(m[1] + m[2] * down)));
+            let is_known = is_flat_across && is_flat_down && normal != Vec3::ZERO;
+            (toward_eye(normal), Vec2::new(across, down), is_known)
+        } else {
+            let normal = toward_eye(stored);
+            let [across, down] = [m[0], m[1]].map(|change| dot(stored, moved(change)));
+            (normal, -Vec2::new(across, down) / dot(stored, ray), true)
+        };
+        let is_single = self.is_single(pixel, depth, steps);
+        Surface { position, w, steps, normal, is_known, is_single }
+    }
+
+    fn view_depth(&self, position: Vec3) -> f32 {
+        let [x, y, z, w] = self.receiver.view;
+        dot(Vec3::new(x, y, z), position) + w
+    }
+
+    fn faded(&self, position: Vec3) -> f32 {
+        let beyond = self.view_depth(position) - self.receiver.fade_near;
+        if beyond <= self.slack * 0.01 {
+            return 0.0;
+        }
+        let share = (beyond / self.receiver.fade_width.max(1e-30)).clamp(0.0, 1.0);
+        share * share * (3.0 - 2.0 * share)
+    }
+
+    fn free(&self, entry: u32, map: &MapUniform, position: Vec3) -> f32 {
+        let uv = texture_place(map, position.extend(1.0));
+        let size = Vec2::from(map.size);
+        let free = uv.truncate().min(Vec2::ONE - uv.truncate()) * size;
+        let is_held = uv.cmpge(Vec3::ZERO).all() && uv.cmple(Vec3::ONE).all();
+        if entry < self.receiver.map_count && is_held { free.min_element() } else { -1.0 }
+    }
+
+    fn is_open(&self, choice: &Choice, entry: i32, view_depth: f32, map: &MapUniform) -> bool {
+        match self.descriptor.selection {
+            MapSelection::Coverage { .. } => choice.first < 0 || (choice.second < 0 && choice.weight < 1.0),
+            MapSelection::ViewDepth { .. } if choice.first < 0 => view_depth < map.far,
+            MapSelection::ViewDepth { .. } => {
+                choice.first + 1 == entry && view_depth > map.blend_near && map.blend_near < choice.far
+            }
+        }
+    }
+
+    fn choose(&self, position: Vec3) -> Choice {
+        let view_depth = self.view_depth(position) + self.slack * 0.01;
+        let reach = self.descriptor.softness.reach(self.descriptor.filter);
+        let blend = self.descriptor.selection.blend();
+        let mut choice = Choice { first: -1, second: -1, weight: 1.0, clamped: -1, far: 0.0 };
+        for entry in 0..self.descriptor.maps {
+            let map = &self.receiver.maps[entry as usize];
+            let number = entry.cast_signed();
+            if !self.is_open(&choice, number, view_depth, map) {
+                continue;
+            }
+            let free = self.free(entry, map, position) + self.slack;
+            if self.descriptor.selection.is_by_coverage() {
+                if free >= reach {
+                    if choice.first < 0 {
+                        let beyond = free - reach;
+                        choice = Choice {
+                            first: number,
+                            weight: if beyond < blend { beyond / blend } else { 1.0 },
+                            ..choice
+                        };
+                    } else {
+                        choice.second = number;
+                    }
+                } else if free >= 0.0 && choice.clamped < 0 {
+                    choice.clamped = number;
+                }
+            } else if free >= 0.0 {
+                if choice.first < 0 {
+                    choice = Choice { first: number, far: map.far, ..choice };
+                } else {
+                    choice.second = number;
+                }
+            }
+        }
+        if choice.first < 0 {
+            choice.first = choice.clamped;
+        }
+        choice
+    }
+
+    /// The factor by the map that a point reads first; `None` where it is not sure.
+    fn of_map(&self, surface: &Surface) -> Option<f32> {
+        let choice = self.choose(surface.position);
+        if choice.first < 0 || choice.first == choice.clamped {
+            return None;
+        }
+        let map = &self.receiver.maps[choice.first as usize];
+        let projected = self.project(map, surface.position, surface.normal);
+        self.footprint(map, &projected, self.spread_in(map, surface))
+    }
+
+    fn project(&self, map: &MapUniform, position: Vec3, normal: Vec3) -> Projected {
+        let cosine = dot(normal, self.receiver.to_light.into()).clamp(MIN_COSINE, 1.0);
+        let sine = (1.0 - cosine * cosine).sqrt();
+        let offset = normal * (map.normal_offset * sine);
+        let uv = texture_place(map, (position + offset).extend(1.0));
+        let [u, v] = [map.depth_per_texel_u, map.depth_per_texel_v].map(|change| dot(change.into(), normal));
+        let gradient = Vec2::new(u, v) / cosine;
+        let rise = map.receiver_plane * (gradient.x.abs() + gradient.y.abs());
+        let depth = uv.z + map.constant_depth + map.slope_depth * sine / cosine + rise;
+        let texel = uv.truncate() * Vec2::from(map.size) + self.slack;
+        Projected { texel, surface: uv.z, depth, gradient }
+    }
+
+    fn spread_in(&self, map: &MapUniform, surface: &Surface) -> Vec2 {
+        let m = self.world_from_pixel;
+        let moved = |change: Vec4| (change.truncate() - surface.position * change.w) / surface.w;
+        let [a, b] = [m[0] + m[2] * surface.steps.x, m[1] + m[2] * surface.steps.y]
+            .map(|change| texture_place(map, moved(change).extend(0.0)).truncate());
+        self.point_reach * (a.abs() + b.abs()) * Vec2::from(map.size)
+    }
+
+    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2) -> Option<f32> {
+        let first = (projected.texel - spread - 0.5).floor() - (FOOTPRINT - 1.0);
+        let last = (projected.texel + spread - 0.5).floor() + FOOTPRINT;
+        let blocks = ((last - first + 1.0) * 0.5).ceil();
+        let is_whole = first.cmpge(Vec2::ZERO).all() && (first + 2.0 * blocks).cmple(Vec2::from(map.size)).all();
+        if !(is_whole && blocks.cmple(Vec2::splat(MOST_BLOCKS)).all()) {
+            return None;
+        }
+        let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
+        let toward_light = if is_reversed { 1.0 } else { -1.0 };
+        let steepness = projected.gradient.x.abs() + projected.gradient.y.abs();
+        let rounding = map.constant_depth + toward_light * ROUNDED_TEXEL * steepness;
+        let is_closer = |a: f32, b: f32| if is_reversed { a >= b } else { a <= b };
+        let [mut is_lit, mut is_shadowed] = [true; 2];
+        for row in 0..(2.0 * blocks.y) as u32 {
+            for column in 0..(2.0 * blocks.x) as u32 {
+                // Depths of a block are those of its corner, and half a texel on.
+                let texel = first + Vec2::new(column as f32, row as f32);
+                let corner = first + 1.0 + 2.0 * Vec2::new((column / 2) as f32, (row / 2) as f32);
+                let offset = corner - projected.texel;
+                let change = projected.gradient.x * offset.x + projected.gradient.y * offset.y;
+                let biased = (projected.depth + change).clamp(0.0, 1.0);
+                let [x, y] = [(column, projected.gradient.x), (row, projected.gradient.y)]
+                    .map(|(place, gradient)| if place % 2 == 0 { -gradient * 0.5 } else { gradient * 0.5 });
+                let plane = (projected.surface + rounding + change + (y + x)).clamp(0.0, 1.0);
+                let stored = self.stored_at(map, texel);
+                let moved = self.slack * (steepness + DEPTH_ROUNDING / NEXT_TO);
+                is_lit &= is_closer(plane + moved, stored);
+                is_shadowed &= !is_closer(biased + moved, stored);
+            }
+        }
+        if is_shadowed { Some(0.0) } else { is_lit.then_some(1.0) }
+    }
+
+    fn stored_at(&self, map: &MapUniform, texel: Vec2) -> f32 {
+        let size = Vec2::from(map.size);
+        let shifted = texel + Vec2::from(map.wrap);
+        let at = Vec2::select(shifted.cmpge(size), shifted - size, shifted);
+        let [width, height] = self.descriptor.resolution;
+        let index = (map.layer * height + at.y as u32) * width + at.x as u32;
+        self.stored[index as usize]
+    }
+}
+
+/// A matrix times a vector, from the first column on.
+fn transformed(m: &[Vec4; 4], v: Vec4) -> Vec4 {
+    ((m[0] * v.x + m[1] * v.y) + m[2] * v.z) + m[3] * v.w
+}
+
+fn texture_place(map: &MapUniform, position: Vec4) -> Vec3 {
+    transformed(&map.uv_from_world.map(Vec4::from), position).truncate()
+}
+
+fn dot(a: Vec3, b: Vec3) -> f32 {
+    (a.x * b.x + a.y * b.y) + a.z * b.z
+}
+
+fn unit(v: Vec3) -> Vec3 {
+    let squared = dot(v, v);
+    if squared > 0.0 && squared < 3e38 { v * (1.0 / squared.sqrt()) } else { Vec3::ZERO }
+}
+
+/// From a pixel's column and row, and its depth minus the far plane's.
+fn world_from_pixel(look: &Look) -> DMat4 {
+    let [width, height] = look.size.map(f64::from);
+    let clip_from_pixel = DMat4::from_cols(
+        DVec4::X * (2.0 / width),
+        DVec4::Y * (-2.0 / height),
+        DVec4::Z,
+        DVec4::new(1.0 / width - 1.0, 1.0 - 1.0 / height, f64::from(look.convention.far()), 1.0),
+    );
+    look.camera.clip_from_world(look.convention).as_dmat4().inverse() * clip_from_pixel
+}
+
+fn forward(to_world: &DMat4, look: &Look) -> Vec3 {
+    let [x, y] = look.size.map(|side| f64::from(side) * 0.5 - 0.5);
+    let far = f64::from(look.convention.far());
+    let [less, more] = [0.25, 0.75].map(|depth| to_world.project_point3(DVec3::new(x, y, depth - far)));
+    let forward = if look.convention == DepthConvention::Reversed { less - more } else { more - less };
+    forward.normalize_or_zero().as_vec3()
+}
+
+/// The uniform of the look-up, with the change of a plane's depth whatever the bias.
+fn on_planes(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> ReceiverUniform {
+    let mut uniform = ReceiverUniform::new(maps, view, descriptor);
+    for slot in uniform.maps.iter_mut().take(uniform.map_count as usize) {
+        let map = &maps[slot.layer as usize];
+        let with_plane = FittedMap { bias: Bias { receiver_plane: 1.0, ..map.bias }, ..*map };
+        let MapUniform { depth_per_texel_u, depth_per_texel_v, .. } =
+            MapUniform::new(&with_plane, view.origin, descriptor);
+        *slot = MapUniform { depth_per_texel_u, depth_per_texel_v, ..*slot };
+    }
+    uniform
+}

@@ -1,0 +1,13 @@
+//! The resolve pass as an engine meets it: against its twin in plain Rust, and with pictures, budgets, boxes and schedules
+//! of all kinds.
+
+#[path = "resolve/errors_gpu.rs"]
+mod errors_gpu;
+#[path = "resolve/pass_gpu.rs"]
+mod pass_gpu;
+#[path = "resolve/stage.rs"]
+mod stage;
+#[path = "resolve/twin.rs"]
+mod twin;
+#[path = "resolve/twin_gpu.rs"]
+mod twin_gpu;
