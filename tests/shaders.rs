@@ -82,17 +82,19 @@ fn resolve_modules() -> Vec<(String, String)> {
     let in_turn = descriptors().into_iter().zip(pictures.into_iter().cycle());
     let formats = MapFormat::ALL.into_iter().map(|format| ShadowMapDescriptor { format, ..Default::default() });
     let all = formats.flat_map(|map| pictures.map(|picture| (map, picture)));
-    let [_, count, select, _] = resolve_wgsl(&ShadowMapDescriptor::default(), 1, None);
+    let [_, count, select, ..] = resolve_wgsl(&ShadowMapDescriptor::default(), 1, None);
     let mut modules =
         vec![("resolve count, compute".to_owned(), count), ("resolve select, compute".to_owned(), select)];
     for (number, (map, (samples, normals))) in in_turn.chain(all).enumerate() {
         let map = ShadowMapDescriptor { first_binding: number as u32 % 3, ..map };
         let kind = format!("{map:?}, {samples} samples, normals {normals:?}, compute");
-        let [classify, _, _, trace] = resolve_wgsl(&map, samples, normals);
+        let [classify, _, _, trace, blocks, levels] = resolve_wgsl(&map, samples, normals);
         modules.push((format!("resolve classify, {kind}"), classify));
         // Rays read nothing that depends on the filter.
         if map.filter == FilterKind::default() {
             modules.push((format!("resolve trace, {kind}"), trace));
+            modules.push((format!("resolve blocks, {kind}"), blocks));
+            modules.push((format!("resolve levels, {kind}"), levels));
         }
     }
     modules
@@ -230,6 +232,7 @@ fn filled(text: &str) -> BTreeSet<String> {
                         .replace("MAX_POINTS", &Edges::MAX_SAMPLES.to_string())
                         .replace("MAX_UNKNOWN", &layout::MAX_UNKNOWN.to_string())
                         .replace("COMPARE", closer)
+                        .replace("IS_REVERSED", if closer == ">=" { "true" } else { "false" })
                         .replace("LIST_COUNT", count)
                         .replace("DEPTH_INDEX", depth)
                         .replace(" FAR,", if closer == ">=" { " 0.0," } else { " 1.0," })

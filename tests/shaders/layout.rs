@@ -254,14 +254,14 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
             point_count,
             unsure_maps,
             unknown_count,
-            frame,
+            sun_tangent,
             padding,
             points,
             unknown,
         }
     );
     let unknown = layout!("Unknown" = UnknownUniform { least, maps, most, is_filtered });
-    let [classify, _, select, trace] =
+    let [classify, _, select, trace, blocks, _] =
         resolve_wgsl(&ShadowMapDescriptor::default(), 4, None).map(|source| parse("resolve", &source));
     for module in [classify, trace] {
         assert_same(&module, &resolve);
@@ -274,10 +274,15 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
         });
         assert_eq!(counts, [Edges::MAX_SAMPLES as usize, MAX_UNKNOWN]);
     }
-    // It is written as four numbers: how many pixels, and the frame.
-    let (members, span) = reflected(&select, "Budget");
-    let names: Vec<_> = members.iter().map(|member| (member.name.as_deref().unwrap_or(""), member.offset)).collect();
-    assert_eq!((&names[..2], span), (&[("pixels", 0), ("frame", 4)][..], 16));
+    // These are written as four numbers: how many pixels, and the frame; and a layer.
+    for (module, name, fields) in
+        [(&select, "Budget", &[("pixels", 0), ("frame", 4)][..]), (&blocks, "Layer", &[("layer", 0)])]
+    {
+        let (members, span) = reflected(module, name);
+        let named: Vec<_> =
+            members.iter().map(|member| (member.name.as_deref().unwrap_or(""), member.offset)).collect();
+        assert_eq!((&named[..fields.len()], span), (fields, 16), "{name}");
+    }
 }
 
 #[test]
@@ -304,6 +309,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Demand",
         "Resolve",
         "Budget",
+        "Layer",
         "shadowfit_rays_Refit",
         "Occlusion",
         "Sample",

@@ -90,9 +90,9 @@ fn bits(factors: &[f32]) -> Vec<u32> {
     factors.iter().map(|factor| factor.to_bits()).collect()
 }
 
-/// Pixels whose factors differ.
+/// Pixels whose factors differ, by more than the bit that says which were traced.
 fn different(a: &[f32], b: &[f32]) -> usize {
-    a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits()).count()
+    a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 1e-6).count()
 }
 
 /// Pixels that show something and are left to the filter.

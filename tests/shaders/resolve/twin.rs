@@ -79,6 +79,14 @@ struct Projected {
     gradient: Vec2,
 }
 
+/// What the texels around a point say.
+enum Footprint {
+    /// They do not all lie in the map, or are too many.
+    TooWide,
+    Unsure,
+    Sure(f32),
+}
+
 struct Choice {
     first: i32,
     second: i32,
@@ -314,15 +322,27 @@ impl Twin {
         choice
     }
 
-    /// The factor by the map that a point reads first; `None` where it is not sure.
+    /// The factor by the finest map in which a pixel's footprint is whole and not too wide, or by the one that it reads by
+    /// view depth; `None` where it is not sure.
     fn of_map(&self, surface: &Surface) -> Option<f32> {
         let choice = self.choose(surface.position);
         if choice.first < 0 || choice.first == choice.clamped {
             return None;
         }
-        let map = &self.receiver.maps[choice.first as usize];
-        let projected = self.project(map, surface.position, surface.normal);
-        self.footprint(map, &projected, self.spread_in(map, surface))
+        for entry in choice.first as u32..self.receiver.map_count {
+            let map = &self.receiver.maps[entry as usize];
+            if entry as i32 > choice.first && self.free(entry, map, surface.position) < 0.0 {
+                continue;
+            }
+            let projected = self.project(map, surface.position, surface.normal);
+            let found = self.footprint(map, &projected, self.spread_in(map, surface));
+            match found {
+                Footprint::TooWide if self.descriptor.selection.is_by_coverage() => {}
+                Footprint::TooWide | Footprint::Unsure => return None,
+                Footprint::Sure(factor) => return Some(factor),
+            }
+        }
+        None
     }
 
     fn project(&self, map: &MapUniform, position: Vec3, normal: Vec3) -> Projected {
@@ -346,13 +366,13 @@ impl Twin {
         self.point_reach * (a.abs() + b.abs()) * Vec2::from(map.size)
     }
 
-    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2) -> Option<f32> {
+    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2) -> Footprint {
         let first = (projected.texel - spread - 0.5).floor() - (FOOTPRINT - 1.0);
         let last = (projected.texel + spread - 0.5).floor() + FOOTPRINT;
         let blocks = ((last - first + 1.0) * 0.5).ceil();
         let is_whole = first.cmpge(Vec2::ZERO).all() && (first + 2.0 * blocks).cmple(Vec2::from(map.size)).all();
         if !(is_whole && blocks.cmple(Vec2::splat(MOST_BLOCKS)).all()) {
-            return None;
+            return Footprint::TooWide;
         }
         let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
         let toward_light = if is_reversed { 1.0 } else { -1.0 };
@@ -377,7 +397,11 @@ impl Twin {
                 is_shadowed &= !is_closer(biased + moved, stored);
             }
         }
-        if is_shadowed { Some(0.0) } else { is_lit.then_some(1.0) }
+        match (is_shadowed, is_lit) {
+            (true, _) => Footprint::Sure(0.0),
+            (false, true) => Footprint::Sure(1.0),
+            _ => Footprint::Unsure,
+        }
     }
 
     fn stored_at(&self, map: &MapUniform, texel: Vec2) -> f32 {

@@ -36,11 +36,13 @@ pub(super) struct Shape {
     pub(super) normals: Option<NormalEncoding>,
 }
 
-/// The WGSL of the passes that classify pixels, count workgroups, leave pixels out, and trace rays: entry points
-/// `classify`, `count_groups`, `select_pixels` and `trace`. `samples`: those of the depth texture per pixel.
-pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 4] {
+/// The WGSL of the passes that classify pixels, count workgroups, leave pixels out, trace rays, and bound the depths of maps
+/// for suns with a radius: entry points `classify`, `count_groups`, `select_pixels`, `trace`, `gather_blocks` and
+/// `join_blocks`. `samples`: those of the depth texture per pixel.
+pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 6] {
     let shape = Shape { samples, normals };
-    [classify(descriptor, shape), arguments(), select(), trace(descriptor, shape)]
+    let [blocks, levels] = pyramid(descriptor);
+    [classify(descriptor, shape), arguments(), select(), trace(descriptor, shape), blocks, levels]
 }
 
 /// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
