@@ -301,7 +301,7 @@ fn edges_are_filtered_while_light_steps_fade_and_right_before_and_after() {
 /// Whether a ray from a point toward the light meets a box.
 fn is_under(point: Vec3, look: &Look, aabb: &Aabb, around: f32) -> bool {
     let inverse = 1.0 / -look.direction.as_dvec3();
-    let [least, most] = [aabb.min - around, aabb.max + around].map(|corner| corner.as_dvec3());
+    let [least, most] = [aabb.min - around, aabb.max + around].map(Vec3::as_dvec3);
     let (a, b) = ((least - point.as_dvec3()) * inverse, (most - point.as_dvec3()) * inverse);
     a.max(b).min_element() >= a.min(b).max_element().max(0.0)
 }

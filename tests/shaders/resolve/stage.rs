@@ -362,9 +362,10 @@ impl Stage {
         let is_depth = kind.starts_with("texture_depth");
         let is_array = kind.contains("array");
         let ty = wgpu::BindingType::Texture {
-            sample_type: match is_depth {
-                true => wgpu::TextureSampleType::Depth,
-                false => wgpu::TextureSampleType::Float { filterable: false },
+            sample_type: if is_depth {
+                wgpu::TextureSampleType::Depth
+            } else {
+                wgpu::TextureSampleType::Float { filterable: false }
             },
             view_dimension: if is_array { wgpu::TextureViewDimension::D2Array } else { wgpu::TextureViewDimension::D2 },
             multisampled: kind.contains("multisampled"),

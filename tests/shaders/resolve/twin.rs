@@ -131,7 +131,8 @@ impl Twin {
 
     /// The verdicts of a pixel where thresholds are a little lower or higher.
     pub(super) fn nearby(&mut self, index: usize, slack: Slack) -> Vec<Verdict> {
-        let at = [index as i32 % self.size[0], index as i32 / self.size[0]];
+        let index = (index as u32).cast_signed();
+        let at = [index % self.size[0], index / self.size[0]];
         let found = [-slack, slack].map(|slack| {
             self.slack = slack;
             self.verdict(at)
@@ -331,7 +332,7 @@ impl Twin {
         }
         for entry in choice.first as u32..self.receiver.map_count {
             let map = &self.receiver.maps[entry as usize];
-            if entry as i32 > choice.first && self.free(entry, map, surface.position) < 0.0 {
+            if entry.cast_signed() > choice.first && self.free(entry, map, surface.position) < 0.0 {
                 continue;
             }
             let projected = self.project(map, surface.position, surface.normal);
