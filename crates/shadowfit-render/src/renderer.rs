@@ -38,6 +38,8 @@ pub struct Renderer {
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
+    /// The factors that it binds.
+    bound_factors: wgpu::TextureView,
     edges: Edges,
     judged: JudgedInput,
     lines: VertexBuffer,
@@ -79,6 +81,7 @@ impl Renderer {
             samples,
             frame_uniform,
             frame_group,
+            bound_factors: edges.factors().clone(),
             edges,
             judged: JudgedInput::new(device),
             lines: VertexBuffer::new(device, "lines"),

@@ -112,7 +112,10 @@ impl Renderer {
         if self.edges.result != self.edges.pass.result() {
             self.edges.pass.skip();
         }
-        self.frame_group = frame_group(&gpu.device, &self.layouts, &self.frame_uniform, self.edges.factors());
+        if self.bound_factors != *self.edges.factors() {
+            self.bound_factors = self.edges.factors().clone();
+            self.frame_group = frame_group(&gpu.device, &self.layouts, &self.frame_uniform, &self.bound_factors);
+        }
     }
 
     /// Why a picture needs no pass before it, if so.

