@@ -15,9 +15,9 @@ pub(crate) use of_map::{Drawn, MapPipelines};
 /// Bind group layouts of this crate.
 #[derive(Debug)]
 pub(crate) struct Layouts {
-    /// The uniform of a frame, and the factors of its picture.
+    /// The uniform of a frame, and the factors of its picture, for what is lit.
     pub(crate) frame: wgpu::BindGroupLayout,
-    /// The uniform of a pass that needs no frame.
+    /// A uniform: of a frame, or of a pass that needs no frame.
     pub(crate) uniform: wgpu::BindGroupLayout,
     pub(crate) material: wgpu::BindGroupLayout,
 }
@@ -39,13 +39,20 @@ impl Layouts {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let floats = wgpu::TextureSampleType::Float { filterable: false };
-        let of_frame = [bindings::UNIFORM, bindings::texture(floats, false)];
         Self {
-            frame: bindings::layout(device, "frame", visibility, &of_frame),
+            frame: frame_layout(device, [bindings::UNIFORM, bindings::texture(floats, false)]),
             uniform: bindings::layout(device, "uniform", visibility, &[bindings::UNIFORM]),
             material: material_layout(device),
         }
     }
+}
+
+/// The uniform of a frame, and what fragments read beside it.
+fn frame_layout(device: &wgpu::Device, [uniform, factors]: [wgpu::BindingType; 2]) -> wgpu::BindGroupLayout {
+    let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let entries =
+        [entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT, uniform), entry(1, wgpu::ShaderStages::FRAGMENT, factors)];
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries })
 }
 
 impl Pipelines {
@@ -78,7 +85,7 @@ impl Maker<'_> {
     }
 
     fn sky(&self, layouts: &Layouts, constants: &[(&str, f64)]) -> wgpu::RenderPipeline {
-        let (layout, module) = (self.layout(&[&layouts.frame]), self.module("sky", shaders::sky()));
+        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("sky", shaders::sky()));
         self.pipeline(&Shape {
             depth: depth(false, wgpu::CompareFunction::GreaterEqual),
             samples: self.samples,
@@ -88,7 +95,7 @@ impl Maker<'_> {
     }
 
     fn lines(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
-        let (layout, module) = (self.layout(&[&layouts.frame]), self.module("lines", shaders::lines()));
+        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("lines", shaders::lines()));
         let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4, 2 => Float32x3, 3 => Float32x4];
         self.pipeline(&Shape {
             buffers: &[Some(instances::<[LineVertex; 2]>(&attributes))],
@@ -100,7 +107,7 @@ impl Maker<'_> {
     }
 
     fn quads(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
-        let (layout, module) = (self.layout(&[&layouts.frame]), self.module("quads", shaders::quads()));
+        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("quads", shaders::quads()));
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
         self.pipeline(&Shape {
             buffers: &[Some(instances::<QuadVertex>(&attributes))],

@@ -38,6 +38,8 @@ pub struct Renderer {
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
+    /// The same with the factors of its picture.
+    lit_group: wgpu::BindGroup,
     /// The factors that it binds.
     bound_factors: wgpu::TextureView,
     edges: Edges,
@@ -73,7 +75,9 @@ impl Renderer {
         let pipelines = Pipelines::new(device, &layouts, sun.map(), samples);
         let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
         let edges = Edges::new(gpu)?;
-        let frame_group = frame_group(device, &layouts, &frame_uniform, edges.factors());
+        let resources = [frame_uniform.as_entire_binding()];
+        let frame_group = bindings::group(device, "frame", &layouts.uniform, &resources);
+        let lit_group = lit_group(device, &layouts, &frame_uniform, edges.factors());
         Ok(Self {
             layouts,
             pipelines,
@@ -81,6 +85,7 @@ impl Renderer {
             samples,
             frame_uniform,
             frame_group,
+            lit_group,
             bound_factors: edges.factors().clone(),
             edges,
             judged: JudgedInput::new(device),
@@ -248,7 +253,7 @@ impl Renderer {
     }
 }
 
-fn frame_group(
+fn lit_group(
     device: &wgpu::Device,
     layouts: &Layouts,
     uniform: &wgpu::Buffer,

@@ -171,7 +171,7 @@ impl Maker<'_> {
     }
 
     fn inset(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
-        let layout = self.layout(&[&layouts.frame, map.receiver_layout()]);
+        let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
         let module = self.module("inset", shaders::inset(map.descriptor()));
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Float32x3];
         self.pipeline(&Shape {

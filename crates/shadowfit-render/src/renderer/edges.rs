@@ -7,7 +7,7 @@ use shadowfit_wgpu::resolve::{
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError};
 use wgpu_profiler::GpuProfilerQuery;
 
-use super::{Plan, Renderer, frame_group};
+use super::{Plan, Renderer, lit_group};
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
 use crate::frame::Frame;
@@ -114,7 +114,7 @@ impl Renderer {
         }
         if self.bound_factors != *self.edges.factors() {
             self.bound_factors = self.edges.factors().clone();
-            self.frame_group = frame_group(&gpu.device, &self.layouts, &self.frame_uniform, &self.bound_factors);
+            self.lit_group = lit_group(&gpu.device, &self.layouts, &self.frame_uniform, &self.bound_factors);
         }
     }
 

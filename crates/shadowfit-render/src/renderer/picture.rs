@@ -71,9 +71,11 @@ impl Renderer {
             pass.set_bind_group(JUDGED_GROUP, judged, &[]);
         }
         self.draw_scene(pass, scene, &plan.opaque, pipeline);
+        pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_pipeline(self.pipelines.sky(plan.overlay));
         pass.draw(0..3, 0..1);
         self.draw_scene(pass, scene, &plan.blended, pipeline);
+        pass.set_bind_group(0, &self.frame_group, &[]);
         self.lines.draw(pass, &self.pipelines.lines, 6);
     }
 
@@ -107,7 +109,7 @@ impl Renderer {
         draws: &[Draw],
         pipeline: impl Fn(&Part) -> &'a wgpu::RenderPipeline,
     ) {
-        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(0, &self.lit_group, &[]);
         pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
         for draw in draws {
             pass.set_pipeline(pipeline(&scene.parts[draw.part]));

@@ -102,10 +102,12 @@ fn surface_of(in: SceneOut) -> Surface {
 
 // Share of the sun's light that reaches a visible point. What is blended is not among the surfaces that were resolved.
 fn mapped_factor(in: SceneOut, surface: Surface) -> f32 {
-    if material.blended > 0.0 {
-        return mix(1.0, shadowfit_factor_at(in.position, surface.geometric, in.clip.xy), frame.shadows);
+    // No branch on a uniform alone: software rasterisers build a shader for each draw then.
+    var factor = select(shadowfit_stored_factor(in.clip.xy), -1.0, material.blended > 0.0);
+    if factor < 0.0 {
+        factor = shadowfit_factor_at(in.position, surface.geometric, in.clip.xy);
     }
-    return mix(1.0, shadowfit_resolved(in.position, surface.geometric, in.clip.xy), frame.shadows);
+    return mix(1.0, factor, frame.shadows);
 }
 
 // Colour of a visible point that a share of the sun's light reaches.
