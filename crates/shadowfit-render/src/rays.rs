@@ -7,7 +7,7 @@ use shadowfit::Aabb;
 use shadowfit_rays::{
     AlphaImage, CutMaterial, CutOut, ImageId, MeshId, RayError, RayInstance, RayMesh, RayScene, VertexBuffer, Wrap,
 };
-use shadowfit_scene::{AlphaMode, Image, Primitive, Scene, Texture};
+use shadowfit_scene::{AlphaMode, Image, Primitive, Scene};
 
 use crate::Gpu;
 
@@ -126,19 +126,13 @@ fn cut_outs(
         let vertices = corners.map(|corner| corner as usize);
         let uv = |vertex: usize| {
             let uv = primitive.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO);
-            texture.map_or(uv, |texture| in_image(&texture, uv))
+            texture.map_or(uv, |texture| texture.in_image(uv))
         };
         let alpha = |vertex: usize| primitive.colors.get(vertex).copied().unwrap_or(Vec4::ONE).w;
         CutOut { uvs: vertices.map(uv), alphas: vertices.map(alpha), material: shared }
     };
     let triangles: Range<u32> = 0..(primitive.indices.len() / 3) as u32;
     Ok(triangles.zip(primitive.indices.as_chunks::<3>().0.iter().map(cut_out)).collect())
-}
-
-/// Where a mesh's texture coordinates lie in a texture's image.
-fn in_image(texture: &Texture, uv: Vec2) -> Vec2 {
-    let at = uv.extend(1.0);
-    Vec2::new(texture.uv_from_texcoord[0].dot(at), texture.uv_from_texcoord[1].dot(at))
 }
 
 fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {

@@ -194,6 +194,14 @@ pub struct Texture {
     pub uv_from_texcoord: [Vec3; 2],
 }
 
+impl Texture {
+    /// Where texture coordinates of a mesh lie in the image.
+    pub fn in_image(&self, uv: Vec2) -> Vec2 {
+        let at = uv.extend(1.0);
+        Vec2::new(self.uv_from_texcoord[0].dot(at), self.uv_from_texcoord[1].dot(at))
+    }
+}
+
 /// Wrap mode of a texture axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {

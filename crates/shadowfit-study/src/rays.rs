@@ -1,7 +1,7 @@
 //! A scene's casters for rays: the same triangles and cut-outs that the renderer draws into the shadow map.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit_scene::{AlphaMode, Deformed, Image, Instance, Pose, Primitive, Scene, Texture};
+use shadowfit_scene::{AlphaMode, Deformed, Image, Instance, Pose, Primitive, Scene};
 use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
 /// The casters of a scene in one pose. Blended surfaces cast nothing and are left out, as in the
@@ -141,7 +141,7 @@ fn cut_out(scene: &Scene, primitive: &Primitive, corners: [u32; 3]) -> Option<Cu
     let vertices = corners.map(|corner| corner as usize);
     let uv = |vertex: usize| {
         let uv = primitive.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO);
-        texture.map_or(uv, |texture| in_image(&texture, uv))
+        texture.map_or(uv, |texture| texture.in_image(uv))
     };
     Some(CutOut {
         uvs: vertices.map(uv),
@@ -154,12 +154,6 @@ fn cut_out(scene: &Scene, primitive: &Primitive, corners: [u32; 3]) -> Option<Cu
     })
 }
 
-/// Where a mesh's texture coordinates lie in a texture's image.
-fn in_image(texture: &Texture, uv: Vec2) -> Vec2 {
-    let at = uv.extend(1.0);
-    Vec2::new(texture.uv_from_texcoord[0].dot(at), texture.uv_from_texcoord[1].dot(at))
-}
-
 fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
     match wrap {
         shadowfit_scene::Wrap::Repeat => Wrap::Repeat,
@@ -170,6 +164,7 @@ fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
 
 #[cfg(test)]
 mod tests {
+    use shadowfit_scene::Texture;
     use shadowfit_scene::builtin::default_scene;
 
     use super::*;
@@ -207,7 +202,7 @@ mod tests {
             nearest: false,
             uv_from_texcoord: [Vec3::new(0.0, 2.0, 0.25), Vec3::new(-1.0, 0.0, 1.0)],
         };
-        assert_eq!(in_image(&texture, Vec2::new(0.5, 0.125)), Vec2::new(0.5, 0.5));
+        assert_eq!(texture.in_image(Vec2::new(0.5, 0.125)), Vec2::new(0.5, 0.5));
     }
 
     #[test]

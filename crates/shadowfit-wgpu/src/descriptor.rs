@@ -124,6 +124,11 @@ impl ShadowMapDescriptor {
         if !(0.0..=MapSelection::MAX_BLEND).contains(&self.selection.blend()) {
             return Err(ShadowMapError::Blend(self.selection.blend()));
         }
+        if let Edges::Traced { samples } = self.edges
+            && !(1..=Edges::MAX_SAMPLES).contains(&samples)
+        {
+            return Err(ShadowMapError::Samples(samples));
+        }
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(ShadowMapError::Depth(self.depth));
         }

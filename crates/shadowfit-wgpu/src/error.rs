@@ -4,7 +4,7 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
-use shadowfit::settings::{FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
+use shadowfit::settings::{Edges, FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, FitError};
 
 use crate::limits::RESOLUTIONS;
@@ -24,6 +24,8 @@ pub enum ShadowMapError {
     Maps(u32),
     /// A blend outside 0..=[`MapSelection::MAX_BLEND`], in texels.
     Blend(f32),
+    /// A number of rays for a pixel outside 1..=[`Edges::MAX_SAMPLES`].
+    Samples(u32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
     /// Radii of soft filters that are not 0 ≤ floor ≤ ceiling, with a ceiling of 1 to [`Softness::MAX_RADIUS`] texels.
@@ -130,6 +132,9 @@ impl fmt::Display for ShadowMapError {
             Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {} are possible", MapSelection::MAX_BLEND),
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
+            }
+            Self::Samples(samples) => {
+                write!(f, "{samples} rays for each pixel that is traced: 1 to {} are possible", Edges::MAX_SAMPLES)
             }
             Self::Softness { floor, ceiling } => write_softness(f, *floor, *ceiling),
             Self::SoftRadius(tangent) => {

@@ -3,6 +3,12 @@
 use shadowfit::DepthConvention;
 use shadowfit::glam::{DMat4, DVec4, Mat4};
 
+/// Whether a part (left, top, width, height) is not empty and lies in a texture of a size, all in pixels.
+pub(crate) fn lies_in([left, top, width, height]: [u32; 4], [columns, rows]: [u32; 2]) -> bool {
+    let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
+    is_inside(left, width, columns) && is_inside(top, height, rows)
+}
+
 /// From a pixel's column and row (its centre), and its depth minus the far plane's, to homogeneous positions in the space
 /// that `clip_from_world` takes; `None` for a matrix without an inverse. `size`: of the picture, in pixels. Most of the
 /// view lies near depth 1 where depth is not reversed: differences from it are exact in f32, and so small that the matrix

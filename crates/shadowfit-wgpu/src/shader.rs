@@ -218,12 +218,18 @@ fn filter(filter: FilterKind) -> String {
     }
 }
 
+/// One of several places in the unit disc: each turned from the last by the golden angle, at radii that give each the same
+/// area (H. Vogel, "A better way to construct the sunflower head", 1979).
+pub(crate) fn in_disc(index: u32, count: u32) -> [f32; 2] {
+    let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let (radius, angle) = (((f64::from(index) + 0.5) / f64::from(count)).sqrt(), f64::from(index) * golden);
+    [(radius * angle.cos()) as f32, (radius * angle.sin()) as f32]
+}
+
 /// The look-ups over a disc one by one, so that their places are constants.
 fn disc_taps(taps: u32) -> String {
-    let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let tap = |index: u32| {
-        let (radius, angle) = (((f64::from(index) + 0.5) / f64::from(taps)).sqrt(), f64::from(index) * golden);
-        let (x, y) = ((radius * angle.cos()) as f32, (radius * angle.sin()) as f32);
+        let [x, y] = in_disc(index, taps);
         format!("    sum += shadowfit_disc_tap(disc, vec2<f32>({x:?}, {y:?}), projected);\n")
     };
     format!(

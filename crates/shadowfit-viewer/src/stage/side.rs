@@ -203,7 +203,7 @@ impl Side {
     pub(super) fn traced_share(&mut self) -> Option<f32> {
         let renderer = &mut self.evaluator.renderer;
         let counts = renderer.take_edge_counts().or(renderer.edge_counts())?;
-        let traced = f64::from(counts.unsure) * 100.0;
+        let traced = f64::from(counts.traced) * 100.0;
         (counts.facing > 0).then(|| (traced / f64::from(counts.facing)) as f32)
     }
 

@@ -6,6 +6,7 @@ use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
 use super::error::{DemandPassError, Unsupported};
 use super::view::{DemandUniform, DemandView};
 use crate::bindings;
+use crate::pixels::lies_in;
 use crate::read_back::ReadBack;
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
@@ -168,13 +169,7 @@ impl DemandPass {
             return Err(DemandPassError::Texture { format, samples, usage, expected_samples: self.samples });
         }
         let size = [texture.width(), texture.height()];
-        let [left, top, width, height] = rectangle;
-        let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
-        if is_inside(left, width, size[0]) && is_inside(top, height, size[1]) {
-            Ok(())
-        } else {
-            Err(DemandPassError::Rectangle { rectangle, texture: size })
-        }
+        if lies_in(rectangle, size) { Ok(()) } else { Err(DemandPassError::Rectangle { rectangle, texture: size }) }
     }
 }
 

@@ -15,6 +15,7 @@ use super::view::ResolveView;
 use crate::bindings;
 use crate::caught::caught;
 use crate::demand::{Unsupported, supported};
+use crate::pixels::lies_in;
 use crate::read_back::ReadBack;
 use crate::{FadingUniform, ShadowMapDescriptor, SunShadows};
 
@@ -459,11 +460,6 @@ fn check_textures(view: &ResolveView<'_>) -> Result<(), ResolveError> {
             return Err(ResolveError::Normals { format, size: found, expected: size });
         }
     }
-    let rectangle @ [left, top, width, height] = view.part();
-    let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
-    if is_inside(left, width, size[0]) && is_inside(top, height, size[1]) {
-        Ok(())
-    } else {
-        Err(ResolveError::Rectangle { rectangle, texture: size })
-    }
+    let rectangle = view.part();
+    if lies_in(rectangle, size) { Ok(()) } else { Err(ResolveError::Rectangle { rectangle, texture: size }) }
 }

@@ -3,6 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use shadowfit::settings::Edges;
 
+use crate::shader::in_disc;
+
 /// Most points of a pixel.
 pub(super) const MAX_POINTS: usize = Edges::MAX_SAMPLES as usize;
 /// Most boxes around casters of which too little is known.
@@ -61,14 +63,6 @@ pub(super) fn points(count: u32, samples: u32, is_soft: bool) -> ([[f32; 4]; MAX
         reach = reach.max(point[0].abs()).max(point[1].abs());
     }
     (points, reach)
-}
-
-/// One of several points of the unit disc, each turned from the last by the golden angle, at radii that give each the same
-/// area (H. Vogel, "A better way to construct the sunflower head", 1979).
-fn in_disc(index: u32, count: u32) -> [f32; 2] {
-    let golden = core::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
-    let (radius, angle) = (((index as f32 + 0.5) / count as f32).sqrt(), index as f32 * golden);
-    [radius * angle.cos(), radius * angle.sin()]
 }
 
 /// One of several points of a pixel, from its centre, in pixels: the centre alone, a rotated grid of four, and else
