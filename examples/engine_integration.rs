@@ -5,6 +5,7 @@
 //! ```sh
 //! cargo run --example engine_integration              # writes out/engine_integration.png
 //! cargo run --example engine_integration -- some.png
+//! cargo run --example engine_integration -- --exact   # writes out/engine_integration_exact.png
 //! ```
 //!
 //! The engine is not made for shadowfit: its maths is the crate ultraviolet, whose types pass through mint; its shaders
@@ -13,8 +14,11 @@
 //! 50 km from the world's origin, to show that shadows stand still there.
 //!
 //! What the engine has to do for its shadows is marked with STEP 1 to STEP 10: each part begins at its comment and ends at
-//! the next empty line. A test counts these lines.
+//! the next empty line. With `--exact` edges are exact, by rays where the maps are not sure; what that takes is marked with
+//! EXACT, most of it in `engine_integration/exact.rs`. A test counts the lines of both.
 
+#[path = "engine_integration/exact.rs"]
+mod exact;
 #[path = "engine_integration/gpu.rs"]
 mod gpu;
 #[path = "engine_integration/scene.rs"]
@@ -26,6 +30,7 @@ use anyhow::{Context, Result};
 use ultraviolet::projection::rh_yup::perspective_reversed_infinite_z_wgpu_dx_gl as perspective;
 use ultraviolet::{DVec3, Mat4, Vec3, Vec4};
 
+use exact::Exact;
 use gpu::{DEPTH, Gpu, HDR, Pipeline, SAMPLES, SIZE, SRGB};
 use scene::{PLACE, Scene, relative};
 
@@ -33,6 +38,9 @@ use scene::{PLACE, Scene, relative};
 use shadowfit::mint::{dvec3, frustum_from_eye_from_clip, mat4, vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, Technique};
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
+
+// EXACT resolve: name the setting.
+use shadowfit::settings::Edges;
 
 /// Frames until the picture.
 const FRAMES: u32 = 12;
@@ -69,7 +77,7 @@ struct Camera {
 @group(0) @binding(0) var<uniform> camera: Camera;
 
 struct Varyings {
-    @builtin(position) clip: vec4<f32>,
+    @builtin(position) @invariant clip: vec4<f32>,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) color: vec4<f32>,
@@ -146,24 +154,31 @@ struct Engine {
     gpu: Gpu,
     scene: Scene,
     targets: Targets,
-    camera_uniform: wgpu::Buffer,
-    camera_group: wgpu::BindGroup,
+    /// The camera's uniform, and the group that binds it.
+    camera: (wgpu::Buffer, wgpu::BindGroup),
     scene_pipeline: wgpu::RenderPipeline,
     tone: (wgpu::RenderPipeline, wgpu::BindGroup),
+    exact: Option<Exact>,
     // STEP 2: one object for each sun, and a pipeline for what blocks its light.
     sun: SunShadows,
     caster_pipeline: wgpu::RenderPipeline,
 }
 
 fn main() -> Result<()> {
-    let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("out/engine_integration.png"), PathBuf::from);
+    let (flags, paths): (Vec<_>, Vec<_>) = std::env::args_os().skip(1).partition(|argument| argument == "--exact");
+    let is_exact = !flags.is_empty();
+    let usual = if is_exact { "out/engine_integration_exact.png" } else { "out/engine_integration.png" };
+    let path = paths.first().map_or_else(|| PathBuf::from(usual), PathBuf::from);
     let forward = Vec3::new(0.26, -0.14, -1.0).normalized();
     let mut camera = Camera { eye: PLACE + DVec3::new(-8.0, 3.4, 15.5), forward };
-    let mut engine = Engine::new(pollster::block_on(Gpu::open())?)?;
+    let mut engine = Engine::new(pollster::block_on(Gpu::open())?, is_exact)?;
     for frame in 0..FRAMES {
         camera.eye += DVec3::new(0.02, 0.0, -0.02);
         let drawn = engine.draw(&camera, frame)?;
         println!("frame {frame}: {drawn} draws into the maps, of {} objects", engine.scene.objects.len());
+        if let Some(exact) = &mut engine.exact {
+            println!("  edges: {}", exact.report());
+        }
     }
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
@@ -176,13 +191,14 @@ fn main() -> Result<()> {
 }
 
 impl Engine {
-    fn new(gpu: Gpu) -> Result<Self> {
+    fn new(gpu: Gpu, is_exact: bool) -> Result<Self> {
         let scene = Scene::new(&gpu);
         let uniform = wgpu::BufferBindingType::Uniform;
         let camera_layout =
             gpu.layout(wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None });
         let camera_uniform = gpu.buffer(&[0; 96], wgpu::BufferUsages::UNIFORM);
         let camera_group = gpu.group(&camera_layout, camera_uniform.as_entire_binding());
+        let camera = (camera_uniform, camera_group);
         let targets = Targets {
             multisampled: gpu.target(HDR, SAMPLES),
             depth: gpu.target(DEPTH, SAMPLES),
@@ -199,7 +215,12 @@ impl Engine {
 
         // STEP 2: choose a technique. The recommended one has four maps of 2048² texels and a tent of 5×5.
         let technique = Technique::default().with_max_distance(DISTANCE);
-        let sun = SunShadows::new(&gpu.device, &gpu.queue, &technique)?;
+        let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique)?;
+
+        if is_exact {
+            // EXACT resolve: choose traced edges before pipelines are made. Four rays for a pixel make them smooth.
+            sun.set_technique(&technique.with_edges(Edges::Traced { samples: 4 }))?;
+        }
 
         // STEP 4: a pipeline for the casters, with the engine's own vertices and the map's states. The map's matrix is
         // at a bind group of the engine's choice, and nothing but depth is written.
@@ -212,9 +233,16 @@ impl Engine {
         let look_up = receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
         let groups = [Some(&camera_layout), Some(sun.map().receiver_layout())];
 
-        let scene_pipeline = scene_pipeline(&gpu, look_up, &groups);
+        let wgsl = look_up + VERTEX + SHADED;
+        let vertices_alone = shaded(wgsl.clone(), &groups[..1]);
+        let exact = is_exact.then(|| Exact::new(&gpu, vertices_alone)).transpose()?;
+        let (wgsl, groups) = match &exact {
+            Some(exact) => exact.shaded(&wgsl, groups.to_vec()),
+            None => (wgsl, groups.to_vec()),
+        };
+        let scene_pipeline = gpu.pipeline(shaded(wgsl, &groups));
         // STEP 2: the engine keeps both.
-        Ok(Self { gpu, scene, targets, camera_uniform, camera_group, scene_pipeline, tone, sun, caster_pipeline })
+        Ok(Self { gpu, scene, targets, camera, scene_pipeline, tone, exact, sun, caster_pipeline })
     }
 
     /// Draws a frame, and returns the number of draws into the maps.
@@ -242,6 +270,7 @@ impl Engine {
             drawn += self.scene.draw(pass, piece.casters.iter().copied());
         });
 
+        self.record_exact(&mut encoder, camera)?;
         self.scene_pass(&mut encoder);
         // STEP 10: count what the depth buffer shows, for the next frames. Nothing waits for it.
         self.sun.record_demand(&mut encoder, &self.targets.depth, mat4(clip_from_eye), DepthConvention::Reversed)?;
@@ -256,12 +285,15 @@ impl Engine {
         let clip_from_cell = camera.clip_from_eye() * Mat4::from_translation(-eye);
         let to_light = Vec4::from(-SUNLIGHT.normalized());
         let queue = &self.gpu.queue;
-        queue.write_buffer(&self.camera_uniform, 0, clip_from_cell.as_byte_slice());
-        queue.write_buffer(&self.camera_uniform, 64, Vec4::from(eye).as_byte_slice());
-        queue.write_buffer(&self.camera_uniform, 80, to_light.as_byte_slice());
+        queue.write_buffer(&self.camera.0, 0, clip_from_cell.as_byte_slice());
+        queue.write_buffer(&self.camera.0, 64, Vec4::from(eye).as_byte_slice());
+        queue.write_buffer(&self.camera.0, 80, to_light.as_byte_slice());
     }
 
     fn scene_pass(&self, encoder: &mut wgpu::CommandEncoder) {
+        // EXACT pre-pass: the picture takes up the depths.
+        let depths = if self.exact.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
+
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -273,18 +305,17 @@ impl Engine {
                     store: wgpu::StoreOp::Discard,
                 },
             })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.targets.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(depth_attachment(&self.targets.depth, depths)),
             ..Default::default()
         });
         pass.set_pipeline(&self.scene_pipeline);
-        pass.set_bind_group(0, &self.camera_group, &[]);
+        pass.set_bind_group(0, &self.camera.1, &[]);
         // STEP 9: bind the maps where the pasted WGSL looks for them.
         pass.set_bind_group(1, self.sun.receiver_group(), &[]);
 
+        if let Some(exact) = &self.exact {
+            exact.bind(&mut pass);
+        }
         self.scene.draw(&mut pass, 0..self.scene.objects.len() as u32);
     }
 
@@ -305,22 +336,28 @@ impl Engine {
     }
 }
 
-/// The shaded pass's pipeline, with WGSL that its own is pasted behind.
-fn scene_pipeline(gpu: &Gpu, pasted: String, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::RenderPipeline {
-    gpu.pipeline(Pipeline {
-        wgsl: pasted + VERTEX + SHADED,
+/// The shaded pass's pipeline. It draws what is at the depth that is there, too.
+fn shaded<'a>(wgsl: String, groups: &'a [Option<&'a wgpu::BindGroupLayout>]) -> Pipeline<'a> {
+    Pipeline {
+        wgsl,
         groups,
         vertices: &Scene::LAYOUT,
         primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
         depth: Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
             stencil: Default::default(),
             bias: Default::default(),
         }),
-        color: Some((HDR, SAMPLES)),
-    })
+        color: Some(HDR),
+        samples: SAMPLES,
+    }
+}
+
+fn depth_attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
 }
 
 fn tone_pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
@@ -330,6 +367,7 @@ fn tone_pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipel
         vertices: &[],
         primitive: wgpu::PrimitiveState::default(),
         depth: None,
-        color: Some((SRGB, 1)),
+        color: Some(SRGB),
+        samples: 1,
     })
 }

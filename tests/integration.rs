@@ -1,8 +1,9 @@
 //! What an engine has to write for its shadows: how many lines of the example `engine_integration` they are, and that the
 //! guide and the READMEs show code that stands in the examples and in tested docs.
 //!
-//! The lines of a step begin after a comment with its number (`// STEP 3: ...`), and end at the next empty line, or where
-//! a brace closes that was opened before the step. Comments do not count.
+//! The lines of a step begin after a comment with its number (`// STEP 3: ...`), those of a part of exact edges after one
+//! with its name (`// EXACT triangles: ...`), and both end at the next empty line, or where a brace closes that was opened
+//! before them. Comments do not count.
 
 use std::path::Path;
 
@@ -11,8 +12,22 @@ use crate::support::workspace;
 /// Most lines that the steps may have together.
 const MOST_LINES: usize = 35;
 
+/// Most lines that exact edges may have beside the steps.
+const MOST_EXACT_LINES: usize = 40;
+
+/// What exact edges take.
+const PARTS: [&str; 3] = ["pre-pass", "triangles", "resolve"];
+
+/// Files of the example.
+const FILES: [&str; 4] = [
+    "engine_integration.rs",
+    "engine_integration/exact.rs",
+    "engine_integration/gpu.rs",
+    "engine_integration/scene.rs",
+];
+
 /// Words of code that has to do with shadows.
-const WORDS: [&str; 6] = ["shadow", "caster", "self.sun", "sun.", "sun:", "receiver"];
+const WORDS: [&str; 7] = ["shadow", "caster", "self.sun", "sun.", "sun:", "receiver", "rays."];
 
 fn read(path: impl AsRef<Path>) -> String {
     let path = workspace().join(path);
@@ -28,43 +43,76 @@ fn indentation(line: &str) -> usize {
     line.len() - line.trim_start().len()
 }
 
-/// Lines of code of the steps, with their numbers, and all other lines of code.
-fn steps(text: &str) -> (Vec<(u32, &str)>, Vec<&str>) {
+/// What a comment begins: a step, by its number, or a part of exact edges, by its name.
+fn beginning(line: &str) -> Option<&str> {
+    let rest = line.split_once("// STEP ").or_else(|| line.split_once("// EXACT "))?.1;
+    rest.split_once(':').map(|(name, _)| name)
+}
+
+/// Lines of code of the steps and parts, with their names, and all other lines of code.
+fn marked(text: &str) -> (Vec<(&str, &str)>, Vec<&str>) {
     let (mut inside, mut outside) = (Vec::new(), Vec::new());
-    let mut step: Option<(u32, usize)> = None;
+    let mut current: Option<(&str, usize)> = None;
     for line in text.lines() {
-        let number = line.split_once("// STEP ").and_then(|(_, rest)| rest.split_once(':')?.0.parse().ok());
-        if let Some(number) = number {
-            step = Some((number, indentation(line)));
+        if let Some(name) = beginning(line) {
+            current = Some((name, indentation(line)));
         }
-        let ends = |(_, start): &(u32, usize)| line.trim().is_empty() || indentation(line) < *start;
-        step = step.filter(|step| !ends(step));
-        match step {
+        let ends = |(_, start): &(&str, usize)| line.trim().is_empty() || indentation(line) < *start;
+        current = current.filter(|current| !ends(current));
+        match current {
             _ if is_comment(line) || line.trim().is_empty() => {}
-            Some((number, _)) => inside.push((number, line)),
+            Some((name, _)) => inside.push((name, line)),
             None => outside.push(line),
         }
     }
     (inside, outside)
 }
 
+fn example(file: &str) -> String {
+    read(Path::new("examples").join(file))
+}
+
+/// Names of the steps and parts of all marked lines.
+fn names(texts: &[String]) -> Vec<&str> {
+    texts.iter().flat_map(|text| marked(text).0).map(|(name, _)| name).collect()
+}
+
 #[test]
 fn an_engine_writes_at_most_35_lines_for_its_shadows() {
-    let example = read("examples/engine_integration.rs");
-    let (steps, _) = steps(&example);
-    let mut numbers: Vec<u32> = steps.iter().map(|(number, _)| *number).collect();
-    numbers.sort_unstable();
-    numbers.dedup();
-    assert_eq!(numbers, (1..=10).collect::<Vec<u32>>(), "the steps of the example");
-    println!("{} lines", steps.len());
-    assert!(steps.len() <= MOST_LINES, "{} lines: {steps:#?}", steps.len());
+    let texts = FILES.map(example);
+    let mut steps: Vec<u32> = names(&texts).into_iter().filter_map(|name| name.parse().ok()).collect();
+    let lines = steps.len();
+    println!("{lines} lines");
+    assert!(lines <= MOST_LINES, "{lines} lines: {steps:?}");
+    steps.sort_unstable();
+    steps.dedup();
+    assert_eq!(steps, (1..=10).collect::<Vec<u32>>(), "the steps of the example");
+    let guide = read("docs/INTEGRATION.md");
+    assert!(guide.contains(&format!("{lines} lines for four maps")), "the guide does not say that there are {lines}");
+}
+
+#[test]
+fn exact_edges_take_an_engine_as_many_lines_as_the_guide_says() {
+    let texts = FILES.map(example);
+    let names: Vec<&str> = names(&texts).into_iter().filter(|name| name.parse::<u32>().is_err()).collect();
+    assert!(names.iter().all(|name| PARTS.contains(name)), "parts of exact edges: {names:?}");
+    let parts @ [pre_pass, triangles, resolve] = PARTS.map(|part| names.iter().filter(|name| **name == part).count());
+    println!("{} lines: {parts:?}", names.len());
+    assert!(names.len() <= MOST_EXACT_LINES, "{} lines: {parts:?}", names.len());
+    let says = format!(
+        "{} lines more: {pre_pass} for a depth pre-pass, {triangles} for the triangles, and {resolve} for what is made of \
+         both.",
+        names.len()
+    );
+    let guide = read("docs/INTEGRATION.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(guide.contains(&says), "the guide does not say: {says}");
 }
 
 #[test]
 fn no_line_outside_of_the_steps_has_to_do_with_shadows() {
-    for file in ["engine_integration.rs", "engine_integration/gpu.rs", "engine_integration/scene.rs"] {
-        let text = read(Path::new("examples").join(file));
-        for line in steps(&text).1 {
+    for file in FILES {
+        let text = example(file);
+        for line in marked(&text).1 {
             let lower = line.to_lowercase();
             assert!(!WORDS.iter().any(|word| lower.contains(word)), "{file}: {line}");
         }
@@ -73,9 +121,9 @@ fn no_line_outside_of_the_steps_has_to_do_with_shadows() {
 
 #[test]
 fn a_step_ends_at_an_empty_line_or_where_an_earlier_brace_closes() {
-    let text = "a\n// STEP 1: why\n// and how\nb\n\nc\n{\n    // STEP 2: x\n    d {\n        e\n    }\n}\nf\n";
-    let (inside, outside) = steps(text);
-    assert_eq!(inside, [(1, "b"), (2, "    d {"), (2, "        e"), (2, "    }")]);
+    let text = "a\n// STEP 1: why\n// and how\nb\n\nc\n{\n    // EXACT x: y\n    d {\n        e\n    }\n}\nf\n";
+    let (inside, outside) = marked(text);
+    assert_eq!(inside, [("1", "b"), ("x", "    d {"), ("x", "        e"), ("x", "    }")]);
     assert_eq!(outside, ["a", "c", "{", "}", "f"]);
 }
 
@@ -108,7 +156,7 @@ fn trimmed(text: &str) -> Vec<String> {
 
 #[test]
 fn every_block_of_code_in_the_integration_guide_stands_in_an_example() {
-    let examples = ["engine_integration", "fit_once", "gpu_casters/engine", "still_maps"];
+    let examples = ["engine_integration", "engine_integration/exact", "fit_once", "gpu_casters/engine", "still_maps"];
     let examples = examples.map(|name| trimmed(&read(format!("examples/{name}.rs"))));
     let blocks = blocks(&read("docs/INTEGRATION.md"));
     assert!(blocks.len() >= 10, "the guide has {} blocks", blocks.len());

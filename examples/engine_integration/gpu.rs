@@ -31,8 +31,9 @@ pub(crate) struct Pipeline<'a> {
     pub(crate) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(crate) primitive: wgpu::PrimitiveState,
     pub(crate) depth: Option<wgpu::DepthStencilState>,
-    /// Format and samples; `None` for depth alone.
-    pub(crate) color: Option<(wgpu::TextureFormat, u32)>,
+    /// `None` for depth alone.
+    pub(crate) color: Option<wgpu::TextureFormat>,
+    pub(crate) samples: u32,
 }
 
 impl Gpu {
@@ -54,7 +55,7 @@ impl Gpu {
             bind_group_layouts: pipeline.groups,
             immediate_size: 0,
         });
-        let targets = [pipeline.color.map(|(format, _)| format.into())];
+        let targets = [pipeline.color.map(Into::into)];
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: Some(&layout),
@@ -66,10 +67,7 @@ impl Gpu {
             },
             primitive: pipeline.primitive,
             depth_stencil: pipeline.depth,
-            multisample: wgpu::MultisampleState {
-                count: pipeline.color.map_or(1, |(_, samples)| samples),
-                ..Default::default()
-            },
+            multisample: wgpu::MultisampleState { count: pipeline.samples, ..Default::default() },
             fragment: pipeline.color.is_some().then_some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some("fs"),
@@ -81,7 +79,7 @@ impl Gpu {
         })
     }
 
-    /// A pipeline that writes nothing but depth.
+    /// A pipeline that writes nothing but depth, of one sample.
     pub(crate) fn depth_pipeline(
         &self,
         wgsl: String,
@@ -90,7 +88,7 @@ impl Gpu {
         (primitive, depth): (wgpu::PrimitiveState, wgpu::DepthStencilState),
     ) -> wgpu::RenderPipeline {
         let groups = &[Some(group)];
-        self.pipeline(Pipeline { wgsl, groups, vertices, primitive, depth: Some(depth), color: None })
+        self.pipeline(Pipeline { wgsl, groups, vertices, primitive, depth: Some(depth), color: None, samples: 1 })
     }
 
     /// A layout of one binding, at 0.

@@ -66,7 +66,7 @@ impl Scene {
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let (mut vertices, mut ranges) = (Vec::new(), [const { 0..0 }; 3]);
-        for (range, mesh) in ranges.iter_mut().zip([cube(), column(), ball()]) {
+        for (range, mesh) in ranges.iter_mut().zip(meshes()) {
             *range = vertices.len() as u32..(vertices.len() + mesh.len()) as u32;
             vertices.extend(mesh);
         }
@@ -80,6 +80,12 @@ impl Scene {
             moves,
             ranges,
         }
+    }
+
+    /// Triangles of each mesh, by their corners.
+    pub(crate) fn triangles() -> [Vec<[[f32; 3]; 3]>; 3] {
+        let corners = |triangle: &[Vertex; 3]| triangle.map(|[position, _]| position);
+        meshes().map(|mesh| mesh.as_chunks().0.iter().map(corners).collect())
     }
 
     /// Rolls the ball, and writes where all objects are, relative to `origin`.
@@ -96,13 +102,15 @@ impl Scene {
         queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&instances));
     }
 
-    /// Least and greatest corner of each object relative to a place in world space, in metres. The difference is taken
-    /// in f64.
+    /// Least and greatest corner of each object relative to a place in world space, in metres.
     pub(crate) fn bounds(&self, origin: DVec3) -> impl Iterator<Item = [Vec3; 2]> {
-        self.objects.iter().map(move |object| {
-            let center = relative(object.center, origin);
-            [center - object.half_size, center + object.half_size]
-        })
+        self.placed(origin).map(|(_, center, half_size)| [center - half_size, center + half_size])
+    }
+
+    /// Mesh, middle and half the size of each object relative to a place in world space, in metres. The difference is
+    /// taken in f64.
+    pub(crate) fn placed(&self, origin: DVec3) -> impl Iterator<Item = (Mesh, Vec3, Vec3)> {
+        self.objects.iter().map(move |object| (object.mesh, relative(object.center, origin), object.half_size))
     }
 
     /// Draws objects by number, and returns how many.
@@ -161,6 +169,11 @@ fn objects() -> Vec<Object> {
     add(Mesh::Cube, [-22.0, 8.0, 9.0], [4.0, 16.0, 4.0], stone, 0.0);
     add(Mesh::Ball, [-1.6, 0.9, 5.6], [1.8; 3], red, 0.0);
     objects
+}
+
+/// All meshes, in the order of [`Mesh`].
+fn meshes() -> [Vec<Vertex>; 3] {
+    [cube(), column(), ball()]
 }
 
 /// Position and normal.

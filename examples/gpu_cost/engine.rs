@@ -61,7 +61,7 @@ impl<'a> Engine<'a> {
         let camera_uniform = bindings::uniform_buffer::<Mat4>(device, "camera");
         let camera_layout = bindings::layout(device, "camera", wgpu::ShaderStages::VERTEX, &[bindings::UNIFORM]);
         let camera_group = bindings::group(device, "camera", &camera_layout, &[camera_uniform.as_entire_binding()]);
-        let depth = target(device, DEPTH_FORMAT);
+        let depth = target(device, SIZE, DEPTH_FORMAT);
         let maker = Maker { device, samples: 1 };
         Ok(Self {
             caster_pipeline: caster_pipeline(&maker, sun.map()),
@@ -207,10 +207,10 @@ impl<'a> Engine<'a> {
 }
 
 /// What a pass draws a picture into.
-pub(crate) fn target(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
+pub(crate) fn target(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
     let usage =
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-    bindings::plain_texture(device, "picture", SIZE, format, usage).create_view(&Default::default())
+    bindings::plain_texture(device, "picture", size, format, usage).create_view(&Default::default())
 }
 
 fn caster_pipeline(maker: &Maker<'_>, map: &ShadowMap) -> wgpu::RenderPipeline {

@@ -66,7 +66,7 @@ impl Fullscreen {
         let [first, second] = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(depth)];
         let group = |layout, resource| bindings::group(device, "fullscreen", layout, &[resource]);
         let groups = [group(&layouts[0], first), group(&layouts[1], second)];
-        let color = target(device, COLOR);
+        let color = target(device, SIZE, COLOR);
         Self { pipeline: pipeline(device, map, &layouts), groups, color }
     }
 

@@ -1,5 +1,5 @@
 //! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, a
-//! sun that moves, rays.
+//! sun that moves, exact edges, rays.
 //!
 //! ```sh
 //! cargo run --release --example gpu_cost                                   # the courtyard
@@ -26,6 +26,7 @@ mod streaming;
 #[path = "../shared/table.rs"]
 mod table;
 mod timer;
+mod traced;
 
 use std::path::PathBuf;
 
@@ -53,6 +54,9 @@ struct Args {
     /// Width and height of the maps, in texels; some are drawn at half of it
     #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(512..=8192))]
     map: u32,
+    /// Height of the picture of exact edges, in pixels, in place of 720 and 1080
+    #[arg(long, value_parser = clap::value_parser!(u32).range(36..=4320))]
+    height: Option<u32>,
     /// Only these parts
     #[arg(long, value_enum, num_args = 1..)]
     only: Vec<Part>,
@@ -75,6 +79,8 @@ enum Part {
     Demand,
     /// A minute of a sun that moves
     Day,
+    /// Exact edges, and the instances of their rays
+    Edges,
     /// Rays and classes on the GPU
     Rays,
 }
@@ -84,6 +90,7 @@ struct Bench {
     gpu: Gpu,
     frames: usize,
     map: u32,
+    height: Option<u32>,
 }
 
 /// Frames on a GPU, and on software adapters, whose times say little.
@@ -100,7 +107,7 @@ fn main() -> Result<()> {
         gpu.name()
     );
     let usual = if gpu.is_software() { SOFTWARE_FRAMES } else { FRAMES };
-    let bench = Bench { frames: args.frames.unwrap_or(usual).max(1), map: args.map, gpu };
+    let bench = Bench { frames: args.frames.unwrap_or(usual).max(1), map: args.map, height: args.height, gpu };
     let mut scenes = vec![BenchScene::built_in()];
     for file in &args.scenes {
         scenes.push(BenchScene::load(file).with_context(|| format!("{}: cannot be drawn", file.display()))?);
@@ -137,6 +144,10 @@ fn main() -> Result<()> {
     }
     if wants(Part::Day) {
         add(day::time(&bench, &scenes[0])?);
+    }
+    if wants(Part::Edges) {
+        add(traced::time(&bench, &scenes[0])?);
+        add(traced::time_instances(&bench)?);
     }
     if wants(Part::Rays) {
         add(rays::time(&bench, &args.scenes)?);

@@ -33,7 +33,7 @@ const STRIDE: u32 = 7919;
 /// The walk, kept and drawn anew.
 pub(crate) fn time(bench: &Bench) -> Result<Table> {
     // The few frames of software adapters would pass before anything comes or goes.
-    let bench = &Bench { gpu: bench.gpu.clone(), frames: bench.frames.max(2 * FRAMES), map: bench.map };
+    let bench = &Bench { gpu: bench.gpu.clone(), frames: bench.frames.max(2 * FRAMES), ..*bench };
     let scene = scene((bench.frames + bench.warm_up()) / FRAMES);
     let mut rows = Vec::new();
     let mut unit: Option<[f64; 3]> = None;

@@ -2,7 +2,7 @@
 //! the index and the value. And that a refusal changes nothing.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{MapSelection, SplitScheme};
+use shadowfit::settings::{Edges, MapSelection, SplitScheme};
 use shadowfit::{
     Bias, FitError, FitInput, FitState, FittedMap, LightProjection, PerspectiveCamera, Scratch, Technique,
 };
@@ -124,6 +124,18 @@ fn a_blend_that_is_out_of_range_or_no_number_is_an_error() {
         let error = ShadowMap::new(&gpu.device, &descriptor(MapSelection::Coverage { blend })).expect_err("no map");
         assert!(matches!(error, ShadowMapError::Blend(_)) && error.to_string().contains(&blend.to_string()), "{error}");
     }
+}
+
+#[test]
+fn a_number_of_rays_that_is_out_of_range_is_an_error() {
+    let gpu = software_gpu();
+    let traced = |samples| ShadowMapDescriptor { edges: Edges::Traced { samples }, ..ShadowMapDescriptor::default() };
+    for samples in [0, Edges::MAX_SAMPLES + 1] {
+        let error = ShadowMap::new(&gpu.device, &traced(samples)).expect_err("no map");
+        assert_eq!(error, ShadowMapError::Samples(samples));
+        assert!(error.to_string().contains(&samples.to_string()), "{error}");
+    }
+    assert!(ShadowMap::new(&gpu.device, &traced(Edges::MAX_SAMPLES)).is_ok());
 }
 
 #[test]

@@ -84,16 +84,16 @@ fn trace(
     let surface = surface_of(pixel, depth_at(pixel));
     let height = height_of(surface);
     let beside = heights_beside(pixel, surface);
-    // A surface that leaves the plane on both sides may do so in between.
+    // A surface that leaves the plane on one side may do so before it: a plane through the pixel and a neighbour cuts off
+    // what stands out between them, by as much for a pixel as it leaves the surface on the other side.
     let off = abs(beside);
-    let rough = max(min(off.x, off.y), min(off.z, off.w));
+    let rough = vec2<f32>(max(off.x, off.y), max(off.z, off.w));
     let across = across_light(pixel);
     var lit = 0.0;
     for (var at = 0u; at < resolve.point_count; at += 1u) {
         // On a bent surface a point of the plane may lie below: it is lifted toward where neighbours are.
         let place = resolve.points[at].xy;
-        let toward = vec4<f32>(max(place.x, 0.0), max(-place.x, 0.0), max(place.y, 0.0), max(-place.y, 0.0));
-        let bent = dot(max(beside, vec4<f32>(0.0)), toward) + rough * max(abs(place.x), abs(place.y));
+        let bent = dot(rough, abs(place));
         let above = surface.normal * (height + bent);
         let start = point_of(pixel, surface, place) + above + resolve.eye;
         let aside = resolve.points[at].zw * resolve.sun_tangent;

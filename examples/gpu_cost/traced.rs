@@ -1,0 +1,353 @@
+//! Exact edges: finding the pixels that the maps are not sure of, and their rays, beside the look-up and the rays of all
+//! pixels; and what it takes to move instances.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use glam::{Affine3A, DVec3, Mat4, Quat, Vec3};
+use shadowfit::settings::Edges;
+use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Technique};
+use shadowfit_rays::{MeshId, RayInstance, RayMesh, RayScene, RayWgslOptions, rays_wgsl};
+use shadowfit_render::{GpuProfilerQuery, GpuTimer, bindings};
+use shadowfit_wgpu::resolve::{ResolveCounts, ResolvePass, ResolveView};
+use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl};
+
+use crate::Bench;
+use crate::cuboid::triangles;
+use crate::engine::{self, Engine};
+use crate::scene::BenchScene;
+use crate::table::{Table, ms, share};
+use crate::timer::{Timer, median};
+
+/// Heights of the pictures, in pixels, unless the call names one; they are 16:9.
+const HEIGHTS: [u32; 2] = [720, 1080];
+
+/// Instances, how many of them move in a frame, and for how many frames.
+const INSTANCES: usize = 10_000;
+const MOVING: usize = 1_000;
+const FRAMES: usize = 200;
+
+/// Pixels along a side of a workgroup, as in the WGSL.
+const SQUARE: u32 = 8;
+
+/// A picture of factors from a depth buffer. FACTOR is the factor of a point that faces the light.
+const SHADER: &str = "
+struct Picture {
+    world_from_pixel: mat4x4<f32>,
+    // Unit direction to the light.
+    to_light: vec4<f32>,
+}
+@group(0) @binding(0) var<uniform> picture: Picture;
+@group(0) @binding(1) var depths: texture_depth_2d;
+@group(0) @binding(2) var factors: texture_storage_2d<r32float, write>;
+
+// Relative to the eye, in metres, with the depth.
+fn position(pixel: vec2<i32>, depth: f32) -> vec3<f32> {
+    let homogeneous = picture.world_from_pixel * vec4<f32>(vec2<f32>(pixel) + 0.5, depth, 1.0);
+    return homogeneous.xyz / homogeneous.w;
+}
+
+// Change of the position to the next pixel along an axis, on the side that is nearer in depth.
+fn step_along(pixel: vec2<i32>, axis: vec2<i32>, depth: f32, p: vec3<f32>) -> vec3<f32> {
+    let next = textureLoad(depths, pixel + axis, 0);
+    let previous = textureLoad(depths, max(pixel - axis, vec2<i32>(0)), 0);
+    if abs(next - depth) < abs(depth - previous) {
+        return position(pixel + axis, next) - p;
+    }
+    return p - position(pixel - axis, previous);
+}
+
+@compute @workgroup_size(8, 8) fn factor(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(factors)) {
+        return;
+    }
+    let pixel = vec2<i32>(id.xy);
+    let depth = textureLoad(depths, pixel, 0);
+    var factor = 0.0;
+    if depth > 0.0 {
+        let p = position(pixel, depth);
+        let right = step_along(pixel, vec2<i32>(1, 0), depth, p);
+        let down = step_along(pixel, vec2<i32>(0, 1), depth, p);
+        let crossed = normalize(cross(down, right));
+        let normal = select(crossed, -crossed, dot(crossed, p) > 0.0);
+        if dot(normal, picture.to_light.xyz) > 0.0 {
+            factor = FACTOR;
+        }
+    }
+    textureStore(factors, pixel, vec4<f32>(factor));
+}
+";
+
+/// The look-up, and the rays of a pixel that edges trace: four points of its surface.
+const LOOK_UP: &str = "shadowfit_factor_at(p, normal, vec2<f32>(id.xy))";
+const RAYS: &str = "
+fn lit(p: vec3<f32>, right: vec3<f32>, down: vec3<f32>, normal: vec3<f32>) -> f32 {
+    var count = 0.0;
+    for (var at = 0u; at < 4u; at += 1u) {
+        let place = array<vec2<f32>, 4>(
+            vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125), vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
+        let start = p + right * place[at].x + down * place[at].y + normal * 0.001;
+        count += select(1.0, 0.0, shadowfit_rays_blocked(start, picture.to_light.xyz));
+    }
+    return count * 0.25;
+}
+";
+
+/// Passes over a picture.
+struct Pictures {
+    depth: wgpu::TextureView,
+    uniform: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    look_up: wgpu::ComputePipeline,
+    rays: wgpu::ComputePipeline,
+    size: [u32; 2],
+}
+
+impl Pictures {
+    fn new(bench: &Bench, size: [u32; 2], map: &ShadowMap, rays: &RayScene) -> Self {
+        let device = &bench.gpu.device;
+        let depth = engine::target(device, size, shadowfit_render::passes::DEPTH_FORMAT);
+        let factors = wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: wgpu::TextureFormat::R32Float,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        };
+        let types = [bindings::UNIFORM, bindings::texture(wgpu::TextureSampleType::Depth, false), factors];
+        let layout = bindings::layout(device, "picture", wgpu::ShaderStages::COMPUTE, &types);
+        let uniform = bindings::uniform_buffer::<[f32; 20]>(device, "picture");
+        let usage = wgpu::TextureUsages::STORAGE_BINDING;
+        let texture = bindings::plain_texture(device, "factors", size, wgpu::TextureFormat::R32Float, usage);
+        let view = texture.create_view(&Default::default());
+        let [depths, factors] = [&depth, &view].map(wgpu::BindingResource::TextureView);
+        let group = bindings::group(device, "picture", &layout, &[uniform.as_entire_binding(), depths, factors]);
+        let look_up = receiver_wgsl(map.descriptor(), &WgslOptions::group(1)) + &SHADER.replace("FACTOR", LOOK_UP);
+        let all = SHADER.replace("FACTOR", "lit(p, right, down, normal)");
+        let all = [rays_wgsl(&RayWgslOptions::group(1)).as_str(), RAYS, &all].concat();
+        Self {
+            look_up: pipeline(device, [&layout, map.receiver_layout()], look_up),
+            rays: pipeline(device, [&layout, rays.layout()], all),
+            depth,
+            uniform,
+            group,
+            size,
+        }
+    }
+
+    /// Takes a camera, and the direction of travel of the light.
+    fn look(&self, queue: &wgpu::Queue, camera: &PerspectiveCamera, direction: Vec3) {
+        let [width, height] = self.size.map(|side| side as f32);
+        let clip_from_pixel = Mat4::from_translation(Vec3::new(-1.0, 1.0, 0.0))
+            * Mat4::from_scale(Vec3::new(2.0 / width, -2.0 / height, 1.0));
+        let world_from_pixel = camera.clip_from_world(DepthConvention::Reversed).inverse() * clip_from_pixel;
+        let mut uniform = [0.0; 20];
+        uniform[..16].copy_from_slice(&world_from_pixel.to_cols_array());
+        uniform[16..19].copy_from_slice(&(-direction.normalize()).to_array());
+        queue.write_buffer(&self.uniform, 0, bytemuck::cast_slice(&uniform));
+    }
+
+    /// Records a pass over all pixels, timed.
+    fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (pipeline, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+        timer: &GpuTimer,
+    ) {
+        let query = timer.begin("picture", encoder);
+        let timestamp_writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_bind_group(1, group, &[]);
+        let [x, y] = self.size.map(|side| side.div_ceil(SQUARE));
+        pass.dispatch_workgroups(x, y, 1);
+        drop(pass);
+        timer.end(query, encoder);
+    }
+}
+
+fn pipeline(device: &wgpu::Device, groups: [&wgpu::BindGroupLayout; 2], wgsl: String) -> wgpu::ComputePipeline {
+    let source = wgpu::ShaderSource::Wgsl(wgsl.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &groups.map(Some),
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some("factor"),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
+/// The casters of a scene as meshes of their own, relative to the eye.
+struct Meshes {
+    rays: RayScene,
+    ids: Vec<MeshId>,
+}
+
+impl Meshes {
+    fn new(bench: &Bench, scene: &BenchScene) -> Result<Self> {
+        let mut rays = RayScene::new(&bench.gpu.device, &bench.gpu.queue)?;
+        let mut ids = Vec::new();
+        for caster in &scene.casters {
+            let vertices = caster.vertices.start as usize..caster.vertices.end as usize;
+            let corners = scene.vertices[vertices].as_chunks::<3>().0.iter().copied();
+            ids.push(rays.add_mesh(&RayMesh::from_triangles(corners)?)?);
+        }
+        Ok(Self { rays, ids })
+    }
+
+    fn place(&mut self, scene: &BenchScene, frame: usize, eye: DVec3) -> Result<()> {
+        let instance = |(number, mesh): (usize, &MeshId)| {
+            let bob = if scene.casters[number].moves { BenchScene::bob(frame, number) } else { Vec3::ZERO };
+            RayInstance::new(*mesh, Affine3A::from_translation(bob - eye.as_vec3()))
+        };
+        let instances: Vec<RayInstance> = self.ids.iter().enumerate().map(instance).collect();
+        self.rays.set_instances(eye, &instances)?;
+        Ok(())
+    }
+}
+
+/// Milliseconds of a frame's passes.
+#[derive(Default)]
+struct Times {
+    look_up: Vec<f64>,
+    classes: Vec<f64>,
+    resolve: Vec<f64>,
+    rays: Vec<f64>,
+    counts: Vec<ResolveCounts>,
+}
+
+/// Times edges along the walk, in pictures of some heights.
+pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
+    let mut rows = Vec::new();
+    for height in bench.height.map_or(HEIGHTS.to_vec(), |height| vec![height]) {
+        let size = [height * 16 / 9, height];
+        rows.push(row(size, walk(bench, scene, size)?));
+    }
+    Ok(Table {
+        title: "Exact edges",
+        note: format!(
+            "Compute passes over the depth buffer of the {}, medians along the walk: PCF 5×5 for every pixel; finding the \
+             pixels that the maps are not sure of, with a budget of none; four rays for each of these; and four rays for \
+             every pixel that faces the light. Shares are of the pixels, the ratio is that of resolving to rays for all.",
+            scene.name
+        ),
+        columns: ["picture", "5×5", "classes", "their rays", "both", "all rays", "of all", "facing", "traced"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    })
+}
+
+fn row([width, height]: [u32; 2], times: Times) -> Vec<String> {
+    let pixels = f64::from(width) * f64::from(height);
+    let part = |count: fn(&ResolveCounts) -> u32| {
+        let parts = times.counts.iter().map(|counts| f64::from(count(counts)) / pixels);
+        format!("{:.1}%", 100.0 * median(parts.collect()))
+    };
+    let (facing, traced) = (part(|counts| counts.facing), part(|counts| counts.unsure));
+    let difference = times.resolve.iter().zip(&times.classes).map(|(both, classes)| both - classes).collect();
+    let [look_up, classes, both, all] = [times.look_up, times.classes, times.resolve, times.rays].map(median);
+    let mut row = vec![format!("{width} × {height}")];
+    row.extend([look_up, classes, median(difference), both, all].map(ms));
+    row.extend([share(both, all), facing, traced]);
+    row
+}
+
+fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2]) -> Result<Times> {
+    let gpu = &bench.gpu;
+    let edges = Edges::Traced { samples: Edges::USUAL_SAMPLES };
+    let technique = Technique::default().with_resolution(bench.map, bench.map).with_edges(edges);
+    let mut engine = Engine::new(gpu, scene, &technique)?;
+    let mut meshes = Meshes::new(bench, scene)?;
+    let pictures = Pictures::new(bench, size, engine.sun.map(), &meshes.rays);
+    engine.depth = pictures.depth.clone();
+    let mut resolve = ResolvePass::new(&gpu.device, &gpu.queue)?;
+    let (mut timer, mut times) = (Timer::new(gpu), Times::default());
+    for frame in 0..bench.frames + bench.frames / 5 {
+        engine.update(frame)?;
+        let camera = engine.camera(frame);
+        meshes.place(scene, frame, camera.eye)?;
+        pictures.look(&gpu.queue, &camera, engine.direction);
+        timer.frame(gpu, |encoder, _| {
+            engine.shadow_passes(encoder, None);
+            engine.seen_pass(encoder, &camera)
+        })?;
+        let mut pass = |passes| {
+            timer.frame(gpu, |encoder, timer| {
+                pictures.record(encoder, passes, timer);
+                Ok(())
+            })
+        };
+        let look_up = pass((&pictures.look_up, engine.sun.map().receiver_group()))?;
+        let rays = pass((&pictures.rays, meshes.rays.group()))?;
+        let mut resolved = |budget| {
+            let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
+            let view = ResolveView::new(&pictures.depth, clip_from_eye, DepthConvention::Reversed, camera.eye);
+            timer.frame(gpu, |encoder, timer| {
+                let query = timer.begin("resolve", encoder);
+                let writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
+                let view = ResolveView { budget, ..view };
+                let result = resolve.record_timed(encoder, &engine.sun, Some(&meshes.rays), &view, writes);
+                timer.end(query, encoder);
+                result?;
+                Ok(())
+            })
+        };
+        let [both, classes] = [resolved(None)?, resolved(Some(0))?];
+        let counts = resolve.take_counts();
+        if frame >= bench.frames / 5 {
+            times.look_up.push(look_up);
+            times.rays.push(rays);
+            times.classes.push(classes);
+            times.resolve.push(both);
+            times.counts.extend(counts);
+        }
+    }
+    Ok(times)
+}
+
+/// Times frames in which some of many boxes move, on the CPU.
+pub(crate) fn time_instances(bench: &Bench) -> Result<Table> {
+    let mut rays = RayScene::new(&bench.gpu.device, &bench.gpu.queue)?;
+    let mesh = rays.add_mesh(&RayMesh::from_triangles(triangles(&Aabb::new(Vec3::splat(-0.5), Vec3::splat(0.5))))?)?;
+    let mut instances: Vec<RayInstance> = (0..INSTANCES).map(|number| RayInstance::new(mesh, place(number))).collect();
+    rays.set_instances(DVec3::ZERO, &instances)?;
+    let mut times = Vec::new();
+    for frame in 0..FRAMES {
+        for (number, instance) in instances.iter_mut().enumerate().step_by(INSTANCES / MOVING) {
+            instance.world_from_mesh = place(number);
+            instance.world_from_mesh.translation += glam::Vec3A::from(BenchScene::bob(frame, number));
+        }
+        let start = Instant::now();
+        rays.set_instances(DVec3::ZERO, &instances)?;
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+        bench.gpu.queue.submit([]);
+        bench.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+    }
+    let worst = times.iter().copied().fold(0.0, f64::max);
+    Ok(Table {
+        title: "Instances that move",
+        note: format!("`RayScene::set_instances` on the CPU, over {FRAMES} frames."),
+        columns: ["boxes", "of them move", "median", "worst", "uploaded"].map(str::to_owned).to_vec(),
+        rows: vec![vec![
+            INSTANCES.to_string(),
+            MOVING.to_string(),
+            ms(median(times)),
+            ms(worst),
+            format!("{} KiB", rays.uploaded() / 1024),
+        ]],
+    })
+}
+
+/// Where a box stands: 100 rows of 100 on a field, each turned.
+fn place(number: usize) -> Affine3A {
+    const ROW: usize = 100;
+    let at = Vec3::new((number % ROW) as f32, 0.0, (number / ROW) as f32) * 2.0;
+    Affine3A::from_rotation_translation(Quat::from_rotation_y(number as f32), at)
+}
