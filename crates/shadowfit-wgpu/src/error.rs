@@ -168,15 +168,15 @@ impl fmt::Display for ShadowMapError {
 impl core::error::Error for ShadowMapError {}
 
 fn write_depth_clamp(f: &mut fmt::Formatter<'_>, filter: FilterKind) -> fmt::Result {
-    let (traced, or_else) = if filter == FilterKind::Pcss {
-        ("", "another filter")
+    let (what, or_else) = if filter == FilterKind::Pcss {
+        ("PCSS".to_owned(), "another filter")
     } else {
-        (" whose edges are traced", "one that is not soft, or filtered edges")
+        (format!("{filter:?} whose edges are traced"), "one that is not soft, or filtered edges")
     };
     write!(
         f,
-        "{filter:?}{traced} with depth clamp: casters before the near plane have lost their distance; let the fit place \
-         its near plane by another caster policy, or take {or_else}"
+        "{what} with depth clamp: casters before the near plane have lost their distance; let the fit place its near plane \
+         by another caster policy, or take {or_else}"
     )
 }
 
