@@ -225,7 +225,8 @@ mod tests {
             assert_eq!(checked.is_err(), filter.is_soft(), "{filter:?}");
             let Err(error) = checked else { continue };
             let text = error.to_string();
-            let is_named = text.contains(&format!("{filter:?}")) && text.contains("caster policy");
+            let name = if filter == FilterKind::Pcss { "PCSS".to_owned() } else { format!("{filter:?}") };
+            let is_named = text.contains(&name) && text.contains("caster policy");
             let says_traced = text.contains("traced") != (filter == FilterKind::Pcss);
             assert!(is_named && says_traced, "{text}");
         }
