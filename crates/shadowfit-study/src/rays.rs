@@ -14,13 +14,16 @@ pub struct SceneRays {
     pub origin: DVec3,
     /// Number of the first triangle of each instance, and last how many there are. What casts nothing has none.
     firsts: Vec<u32>,
+    /// Whether each instance is mirrored: its cut-outs have other corners then.
+    mirrored: Vec<bool>,
 }
 
 impl SceneRays {
     /// Moves everything to another pose of the same scene.
     pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
         let casters = Casters::new(scene, pose, self.origin);
-        if casters.firsts == self.firsts && self.tracer.set_triangles(casters.corners()).is_ok() {
+        let keeps_cut_outs = casters.firsts == self.firsts && casters.mirrored == self.mirrored;
+        if keeps_cut_outs && self.tracer.set_triangles(casters.corners()).is_ok() {
             return;
         }
         // It is another scene.
@@ -32,7 +35,7 @@ impl SceneRays {
     pub fn from_origin(scene: &Scene, pose: &Pose, origin: DVec3) -> Self {
         let casters = Casters::new(scene, pose, origin);
         let tracer = Tracer::new(casters.corners()).with_cut_outs(casters.cut_outs());
-        Self { tracer, origin, firsts: casters.firsts }
+        Self { tracer, origin, firsts: casters.firsts, mirrored: casters.mirrored }
     }
 
     /// The instance of a triangle, an index into [`Scene::instances`]; `None` beyond the last triangle.
@@ -52,6 +55,7 @@ struct Casters<'a> {
     instances: Vec<Instance>,
     deformed: Vec<Option<Deformed>>,
     firsts: Vec<u32>,
+    mirrored: Vec<bool>,
 }
 
 impl<'a> Casters<'a> {
@@ -67,7 +71,8 @@ impl<'a> Casters<'a> {
             firsts.push(triangles);
         }
         let deformed = instances.iter().map(|instance| pose.deform(scene, instance)).collect();
-        Self { scene, pose, origin, instances, deformed, firsts }
+        let mirrored = instances.iter().map(|instance| pose.is_mirrored(scene, instance)).collect();
+        Self { scene, pose, origin, instances, deformed, firsts, mirrored }
     }
 
     /// Those that have triangles, each with its index.
@@ -93,7 +98,10 @@ impl<'a> Casters<'a> {
                 let corners = primitive.indices.as_chunks::<3>().0;
                 let is_masked = matches!(self.scene.materials[primitive.material].alpha, AlphaMode::Mask { .. });
                 let corners = if is_masked { corners } else { &[] };
-                let cut_out = move |corners: &[u32; 3]| cut_out(self.scene, primitive, *corners);
+                // As the triangles of mirrored instances have them.
+                let is_mirrored = self.mirrored[index];
+                let in_order = move |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+                let cut_out = move |corners: &[u32; 3]| cut_out(self.scene, primitive, in_order(*corners));
                 (self.firsts[index]..)
                     .zip(corners)
                     .filter_map(move |(number, corners)| Some((number, cut_out(corners)?)))
@@ -164,6 +172,7 @@ fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
 
 #[cfg(test)]
 mod tests {
+    use glam::Mat4;
     use shadowfit_scene::Texture;
     use shadowfit_scene::builtin::default_scene;
 
@@ -192,6 +201,44 @@ mod tests {
             );
         }
         assert_eq!(rays.instance(rays.tracer.len() as u32), None);
+    }
+
+    #[test]
+    fn holes_stay_where_they_are_in_a_triangle_that_is_mirrored() {
+        let scene = shadowfit_scene::builtin::BuiltinScene::Forest.build();
+        let mut mirrored = scene.clone();
+        for node in mirrored.nodes.iter_mut().filter(|node| node.parent.is_none()) {
+            let turned = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * node.rest.matrix();
+            node.rest.matrix = Some(turned);
+        }
+        // Where each masked triangle has which texture coordinates, its corners in any order.
+        let places = |rays: &SceneRays, mirror: f32| -> Vec<Vec<[u32; 5]>> {
+            let cut_outs = rays.tracer.cut_outs();
+            let of_triangle = |triangle: u32| {
+                let cut_out = &cut_outs.cut_outs()[cut_outs.index_of(triangle)? as usize];
+                let at = rays.tracer.corners(triangle).map(|corner| corner * Vec3::new(mirror, 1.0, 1.0));
+                let mut corners: Vec<[u32; 5]> = at
+                    .iter()
+                    .zip(cut_out.uvs)
+                    .map(|(at, uv)| [at.x, at.y, at.z, uv.x, uv.y].map(|number| (number + 0.0).to_bits()))
+                    .collect();
+                corners.sort_unstable();
+                Some(corners)
+            };
+            (0..rays.tracer.len() as u32).filter_map(of_triangle).collect()
+        };
+        let pose = scene.pose(None, 0.0);
+        let mut rays = SceneRays::from_origin(&scene, &pose, DVec3::ZERO);
+        let wanted = places(&rays, 1.0);
+        assert!(wanted.len() > 1000, "{}", wanted.len());
+        rays.set_pose(&mirrored, &mirrored.pose(None, 0.0));
+        let found = places(&rays, -1.0);
+        assert!(
+            found == wanted,
+            "{} of {} differ",
+            found.iter().zip(&wanted).filter(|(a, b)| a != b).count(),
+            wanted.len()
+        );
     }
 
     #[test]
