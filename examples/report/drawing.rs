@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
-use shadowfit::settings::{BiasSettings, Edges, FilterKind, MapFormat};
+use shadowfit::settings::{BiasSettings, Edges, FilterKind, MapFormat, SoftRadius, Softness};
 use shadowfit_params::{self as params, Inputs};
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::{Judging, NamedTechnique};
@@ -119,6 +119,15 @@ impl Drawing {
     /// How edges come out, if that is asked for.
     pub(crate) fn edges(&self) -> Option<Edges> {
         self.rays.map(|samples| if samples == 0 { Edges::Filtered } else { Edges::Traced { samples } })
+    }
+
+    /// The penumbrae of maps that are given: those of the sun that judges them, as wide as they come.
+    pub(crate) fn softness(&self) -> Softness {
+        if self.sun_radius == 0.0 {
+            return Softness::default();
+        }
+        let radius = SoftRadius::SunAngle(self.sun_radius.to_radians() as f32);
+        Softness { radius, ceiling: Softness::MAX_RADIUS, ..Softness::default() }
     }
 
     pub(crate) fn format(&self) -> MapFormat {

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit::settings::{BiasSettings, Edges, FilterKind, MapFormat, MapSelection};
-use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, Technique};
+use shadowfit::settings::{BiasSettings, MapFormat, MapSelection};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
@@ -122,8 +122,7 @@ impl Pictures {
         let fits = files.iter().zip(&args.fits).map(|(file, path)| {
             let maps = file.maps_in_order(ranking.scenarios(), path)?;
             let maps: Vec<Vec<FitMap>> = maps.into_iter().map(<[FitMap]>::to_vec).collect();
-            let look_up = (filter, args.drawing.format(), args.drawing.edges().unwrap_or_default());
-            let descriptor = descriptor(ranking.scenarios(), file, &maps, look_up);
+            let descriptor = descriptor(ranking.scenarios(), file, &maps, &args.drawing);
             let descriptor = descriptor.with_context(|| format!("{}: cannot be drawn", path.display()))?;
             let evaluator = evaluator(&gpu, &descriptor, judging);
             let evaluator = evaluator.with_context(|| format!("{}: cannot be drawn", path.display()))?;
@@ -184,7 +183,7 @@ fn descriptor(
     scenarios: &Scenarios,
     file: &FitFile,
     maps: &[Vec<FitMap>],
-    (filter, format, edges): (FilterKind, MapFormat, Edges),
+    drawing: &Drawing,
 ) -> Result<ShadowMapDescriptor> {
     let most = maps.iter().map(Vec::len).max().unwrap_or(0);
     let mut resolution = [*shadowfit_wgpu::RESOLUTIONS.start(); 2];
@@ -200,11 +199,11 @@ fn descriptor(
     Ok(ShadowMapDescriptor {
         resolution,
         maps: most.max(1) as u32,
-        format,
-        filter,
-        softness: Technique::default().softness,
+        format: drawing.format(),
+        filter: drawing.filter(),
+        softness: drawing.softness(),
         selection: choice(maps),
-        edges,
+        edges: drawing.edges().unwrap_or_default(),
         depth,
         depth_clamp: file.depth_clamp,
         ..ShadowMapDescriptor::default()
