@@ -1,6 +1,8 @@
 //! The resolve pass as an engine meets it: against its twin in plain Rust, and with pictures, budgets, boxes and schedules
 //! of all kinds.
 
+#[path = "resolve/any_hit_gpu.rs"]
+mod any_hit_gpu;
 #[path = "resolve/errors_gpu.rs"]
 mod errors_gpu;
 #[path = "resolve/pass_gpu.rs"]

@@ -32,19 +32,23 @@
 //! What is no part of the depth buffer, such as blended surfaces, particles and fog, calls the filter's
 //! `shadowfit_factor_at` as before.
 
+mod any_hit;
 mod error;
 mod group;
 mod noise;
 mod pass;
 mod pipeline;
 mod pyramid;
+mod result;
 mod shader;
 mod source;
 mod uniform;
 mod view;
 
+pub use any_hit::AnyHit;
 pub use error::ResolveError;
-pub use pass::{EdgeResult, ResolveCounts, ResolvePass, WhyFiltered};
+pub use pass::ResolvePass;
+pub use result::{EdgeResult, ResolveCounts, WhyFiltered};
 pub use shader::{resolve_wgsl, resolved_wgsl};
 pub use uniform::{ResolveUniform, UnknownUniform};
 pub use view::{NormalEncoding, Normals, ResolveView};

@@ -1,10 +1,11 @@
 //! Pictures that cannot be resolved: each is refused with its value, and the filter decides. Devices that cannot compute.
 
-use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, Mat4};
-use shadowfit_wgpu::SunShadows;
+use shadowfit::{Boxes, DepthConvention};
+use shadowfit_rays::RayScene;
 use shadowfit_wgpu::demand::Unsupported;
 use shadowfit_wgpu::resolve::{EdgeResult, ResolveError, ResolvePass, ResolveView, WhyFiltered};
+use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
 
 use super::pass_gpu::{SIZE, assert_filtered, look, stage, technique};
 use super::stage::{Drawn, Stage, traced};
@@ -121,35 +122,47 @@ fn views_that_make_no_sense_are_refused_with_their_values() {
 }
 
 #[test]
-fn a_device_of_webgl2_limits_filters_edges_and_says_what_it_lacks_without_an_error() {
-    let (device, queue) = pollster::block_on(software_gpu().adapter.request_device(&wgpu::DeviceDescriptor {
-        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
-        ..Default::default()
-    }))
-    .expect("a device of fewer limits");
-    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let sun = SunShadows::new(&device, &queue, &traced(technique(), 1)).expect("maps");
-    let mut pass = ResolvePass::new(&device, &queue).expect("what engines read at least");
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: 16, height: 16, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Depth32Float,
-        usage: BOUND | DRAWN,
-        view_formats: &[],
-    });
-    let look = look();
-    let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let clip_from_eye = look.camera.clip_from_world(look.convention);
-    let view = ResolveView::new(&depth, clip_from_eye, look.convention, look.camera.eye);
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let found = pass.record(&mut encoder, &sun, None, &view);
-    let why = WhyFiltered::Device(Unsupported::Compute);
-    assert_eq!((found, pass.result()), (Ok(EdgeResult::Filtered(why)), EdgeResult::Filtered(why)));
-    assert_eq!((pass.factors().texture().width(), pass.take_counts()), (1, None));
-    queue.submit([encoder.finish()]);
-    let error = pollster::block_on(scope.pop());
-    assert!(error.is_none(), "{error:?}");
+fn devices_that_lack_something_filter_edges_and_say_what_without_an_error() {
+    let webgl2 = wgpu::Limits::downlevel_webgl2_defaults();
+    // As many as rays have, and none for the list of pixels.
+    let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 6, ..wgpu::Limits::default() };
+    for (limits, lack, traces) in [(webgl2, Unsupported::Compute, false), (few, Unsupported::StorageBuffers, true)] {
+        let (device, queue) = pollster::block_on(
+            software_gpu()
+                .adapter
+                .request_device(&wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() }),
+        )
+        .expect("a device of fewer limits");
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let mut sun = SunShadows::new(&device, &queue, &traced(technique(), 1)).expect("maps");
+        let rays = RayScene::new(&device, &queue).ok();
+        assert_eq!(rays.is_some(), traces, "{lack:?}");
+        let mut pass = ResolvePass::new(&device, &queue).expect("what engines read at least");
+        let look = look();
+        let views = [look.camera.frustum().expect("a camera")];
+        let nothing = Boxes { origin: DVec3::ZERO, boxes: &[] };
+        let frame = SunFrame::new(&views, look.direction, nothing, Casters::fixed(nothing));
+        sun.update(&queue, &frame).expect("a good frame");
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 16, height: 16, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth32Float,
+            usage: BOUND | DRAWN,
+            view_formats: &[],
+        });
+        let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let clip_from_eye = look.camera.clip_from_world(look.convention);
+        let view = ResolveView::new(&depth, clip_from_eye, look.convention, look.camera.eye);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let found = pass.record(&mut encoder, &sun, rays.as_ref(), &view);
+        let why = WhyFiltered::Device(lack);
+        assert_eq!((found, pass.result()), (Ok(EdgeResult::Filtered(why)), EdgeResult::Filtered(why)));
+        assert_eq!((pass.lacks(), pass.factors().texture().width(), pass.take_counts()), (Some(lack), 1, None));
+        queue.submit([encoder.finish()]);
+        let error = pollster::block_on(scope.pop());
+        assert!(error.is_none(), "{error:?}");
+    }
 }

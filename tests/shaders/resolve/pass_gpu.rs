@@ -62,7 +62,7 @@ pub(super) fn look() -> Look {
 }
 
 /// What each pixel shows: its position in world space and its normal, and `None` for the sky.
-fn points(stage: &Stage, look: &Look, drawn: &Drawn) -> Vec<Option<[Vec4; 2]>> {
+pub(super) fn points(stage: &Stage, look: &Look, drawn: &Drawn) -> Vec<Option<[Vec4; 2]>> {
     let depths = stage.depths(&drawn.depth);
     let normals: Vec<[f32; 4]> = drawn.normals.as_ref().map_or_else(
         || vec![[0.0, 1.0, 0.0, 0.0]; PIXELS],

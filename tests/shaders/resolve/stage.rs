@@ -456,7 +456,7 @@ impl Stage {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    fn buffer(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub(super) fn buffer(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         // A buffer of no size cannot be bound.
         let contents = if contents.is_empty() { &[0; 32] } else { contents };
         self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
@@ -555,7 +555,7 @@ fn own_layout(device: &wgpu::Device, input: wgpu::BindingType) -> wgpu::BindGrou
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }
 
-fn storage(read_only: bool) -> wgpu::BindingType {
+pub(super) fn storage(read_only: bool) -> wgpu::BindingType {
     wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only },
         has_dynamic_offset: false,

@@ -42,13 +42,15 @@ pub enum DemandPassError {
     Lost,
 }
 
-/// What a device lacks for a [`DemandPass`](super::DemandPass).
+/// What a device lacks for a [`DemandPass`](super::DemandPass), or for a pass of the module `resolve`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsupported {
     /// Compute shaders with storage buffers.
     Compute,
     /// Reading depth textures in shaders without a sampler, which OpenGL does not have.
     DepthLoads,
+    /// As many storage buffers in a compute shader as rays need beside a list of pixels: 7.
+    StorageBuffers,
 }
 
 impl fmt::Display for DemandPassError {
@@ -58,6 +60,7 @@ impl fmt::Display for DemandPassError {
                 let what = match lack {
                     Unsupported::Compute => "run compute shaders with storage buffers",
                     Unsupported::DepthLoads => "load depth textures in compute shaders",
+                    Unsupported::StorageBuffers => "bind as many storage buffers to a compute shader as it takes",
                 };
                 write!(f, "what is visible cannot be counted here, since this device cannot {what}: fit from boxes")
             }

@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(supported(&limits, wgpu::Backend::Gl), Err(Unsupported::DepthLoads));
         let without = wgpu::Limits::downlevel_webgl2_defaults();
         assert_eq!(supported(&without, wgpu::Backend::Gl), Err(Unsupported::Compute));
-        for lack in [Unsupported::Compute, Unsupported::DepthLoads] {
+        for lack in [Unsupported::Compute, Unsupported::DepthLoads, Unsupported::StorageBuffers] {
             let text = DemandPassError::Unsupported(lack).to_string();
             assert!(text.contains("this device cannot") && text.ends_with("fit from boxes"), "{text}");
         }

@@ -43,6 +43,11 @@ pub enum ResolveError {
     RayOffset(f32),
     /// An eye that is not finite.
     Eye(DVec3),
+    /// The WGSL of an [`AnyHit`](super::AnyHit), or its layout beside that of the pass, makes no pipeline; in the words of
+    /// the shader compiler.
+    AnyHit(String),
+    /// The bind group of an [`AnyHit`](super::AnyHit) is missing, or it has none. Says whether it has one.
+    AnyHitGroup(bool),
     /// The device refused to make a resource, for example because it is out of memory; with its own words.
     Device(String),
 }
@@ -79,6 +84,16 @@ impl fmt::Display for ResolveError {
                 write!(f, "rays start {offset} m above the surface: give a finite distance that is not negative")
             }
             Self::Eye(eye) => write!(f, "the view's eye is at {eye}: give a finite world position, in metres"),
+            Self::AnyHit(message) => write!(f, "the engine's own test of hits does not compile: {message}"),
+            Self::AnyHitGroup(true) => write!(
+                f,
+                "the engine's own test of hits reads a bind group, and the view has none: set ResolveView::any_hit"
+            ),
+            Self::AnyHitGroup(false) => write!(
+                f,
+                "the view has a bind group for the engine's own test of hits, and the pass has no layout for it: make \
+                 the pass with ResolvePass::with_any_hit and a layout"
+            ),
             Self::Device(message) => {
                 write!(f, "edges cannot be traced, since the device refused it: {message}")
             }

@@ -1,13 +1,13 @@
 //! The pass itself: what it needs of a device, its pipelines, and a frame of it.
 
-use core::fmt;
-
 use shadowfit_rays::RayScene;
 
+use super::any_hit::AnyHit;
 use super::error::ResolveError;
 use super::group::{COUNTS, FLOATS, Layouts, Target, factors};
-use super::pipeline::pipeline;
+use super::pipeline::{module, pipeline};
 use super::pyramid::Pyramids;
+use super::result::{EdgeResult, ResolveCounts, WhyFiltered};
 use super::shader::{self, Shape};
 use super::source::{Source, is_fine};
 use super::uniform::ResolveUniform;
@@ -23,6 +23,8 @@ use crate::{FadingUniform, ShadowMapDescriptor, SunShadows};
 const SQUARE: u32 = 8;
 /// Pictures whose counts may be on their way back at once, as many as a GPU may be behind and one more.
 const FRAMES: usize = 4;
+/// Storage buffers of the pass that traces: those of the rays, and the list.
+const STORAGE_BUFFERS: u32 = 7;
 
 /// Finds the factors of a picture: see the [module](super). One for each view.
 #[derive(Debug)]
@@ -30,6 +32,7 @@ pub struct ResolvePass {
     device: wgpu::Device,
     queue: wgpu::Queue,
     lacks: Option<Unsupported>,
+    any_hit: Option<AnyHit>,
     layouts: Layouts,
     pipelines: Option<Pipelines>,
     resolve: wgpu::Buffer,
@@ -46,60 +49,6 @@ pub struct ResolvePass {
     result: EdgeResult,
     counts: Vec<ReadBack<()>>,
     recordings: u64,
-}
-
-/// How the edges of a frame came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EdgeResult {
-    /// Rays were traced where the maps were not sure.
-    Traced,
-    /// The filter decides everywhere.
-    Filtered(WhyFiltered),
-}
-
-/// Why the edges of a frame are filtered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhyFiltered {
-    /// The technique's edges are.
-    Technique,
-    /// The device lacks something.
-    Device(Unsupported),
-    /// There are no rays.
-    Rays,
-    /// No picture was resolved yet, or it was an error.
-    Picture,
-    /// The sun gives nothing, or had no frame yet.
-    NoMaps,
-    /// Two sets of maps are mixed while the sun [steps](SunShadows::set_light_steps).
-    Fading,
-}
-
-impl fmt::Display for WhyFiltered {
-    /// A clause, such as "this graphics device has no compute shaders".
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Technique => "the technique says so",
-            Self::Device(Unsupported::Compute) => "this graphics device has no compute shaders",
-            Self::Device(Unsupported::DepthLoads) => "OpenGL's shaders cannot read the depth buffer",
-            Self::Rays => "there are no rays, since this graphics device cannot hold the scene's triangles for them",
-            Self::Picture => "the picture was not resolved",
-            Self::NoMaps => "the sun gives no light, or has no maps yet",
-            Self::Fading => "one set of maps fades into another one",
-        })
-    }
-}
-
-/// How many pixels of a picture were traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ResolveCounts {
-    /// Pixels that face the light within the distance of shadows.
-    pub facing: u32,
-    /// Those of them that the maps were not sure of.
-    pub unsure: u32,
-    /// Those of them that were traced.
-    pub traced: u32,
-    /// Those that were left to the filter.
-    pub filtered: u32,
 }
 
 /// Pipelines for maps of a descriptor and pictures of a shape.
@@ -122,7 +71,27 @@ impl ResolvePass {
     ///
     /// [`ResolveError::Device`] for a device out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ResolveError> {
-        let lacks = supported(&device.limits(), device.adapter_info().backend).err();
+        Self::with(device, queue, None)
+    }
+
+    /// The same with an engine's own test of hits. On devices that trace nothing it is ignored.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolveError::AnyHit`] for WGSL that is not valid beside the pass's own, and [`ResolveError::Device`] for a
+    /// device out of memory. Whether the layout suits the WGSL and the device shows with the first picture.
+    pub fn with_any_hit(device: &wgpu::Device, queue: &wgpu::Queue, any_hit: AnyHit) -> Result<Self, ResolveError> {
+        let pass = Self::with(device, queue, Some(any_hit))?;
+        if pass.lacks.is_none() {
+            let shape = Shape { samples: 1, normals: None };
+            let wgsl = shader::trace(&ShadowMapDescriptor::default(), shape, pass.counts_wgsl());
+            caught(device, || module(device, wgsl)).map_err(|error| pass.refused(&error))?;
+        }
+        Ok(pass)
+    }
+
+    fn with(device: &wgpu::Device, queue: &wgpu::Queue, any_hit: Option<AnyHit>) -> Result<Self, ResolveError> {
+        let lacks = lacks(device);
         let made = || {
             let layouts = Layouts::new(device, lacks.is_none());
             let texture = factors(device, [1, 1]);
@@ -134,6 +103,7 @@ impl ResolvePass {
                 device: device.clone(),
                 queue: queue.clone(),
                 lacks,
+                any_hit,
                 layouts,
                 pipelines: None,
                 resolve: uniform(device, size_of::<ResolveUniform>()),
@@ -248,6 +218,19 @@ impl ResolvePass {
         }
     }
 
+    /// WGSL of the engine's own test of hits.
+    fn counts_wgsl(&self) -> Option<&str> {
+        self.any_hit.as_ref().map(|any_hit| any_hit.wgsl.as_str())
+    }
+
+    /// An error of a pipeline: the pass's own WGSL is valid.
+    fn refused(&self, error: &wgpu::Error) -> ResolveError {
+        match error {
+            wgpu::Error::Validation { .. } if self.any_hit.is_some() => ResolveError::AnyHit(error.to_string()),
+            _ => ResolveError::Device(error.to_string()),
+        }
+    }
+
     fn trace(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -257,6 +240,10 @@ impl ResolvePass {
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) -> Result<(), ResolveError> {
         check_textures(view)?;
+        let has_layout = self.any_hit.as_ref().is_some_and(|any_hit| any_hit.layout.is_some());
+        if has_layout != view.any_hit.is_some() {
+            return Err(ResolveError::AnyHitGroup(has_layout));
+        }
         let Some(map_view) = sun.map_view() else { return Ok(()) };
         let source = Source::new(sun, map_view, (view, rays.origin()))?;
         self.make(sun, rays, view, map_view.frame)?;
@@ -298,6 +285,9 @@ impl ResolvePass {
         pass.set_bind_group(0, &receiver, &[]);
         pass.set_bind_group(1, &trace, &[]);
         pass.set_bind_group(2, rays.group(), &[]);
+        if let Some(group) = view.any_hit {
+            pass.set_bind_group(AnyHit::GROUP, group, &[]);
+        }
         pass.dispatch_workgroups_indirect(&target.groups, 0);
         drop(pass);
         self.recordings += 1;
@@ -379,8 +369,9 @@ impl ResolvePass {
         }
         let Layouts { arguments, select, .. } = &self.layouts;
         let layouts = [sun.map().receiver_layout(), rays.layout(), arguments, select];
-        let made = caught(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts));
-        self.pipelines = Some(made.map_err(|error| ResolveError::Device(error.to_string()))?);
+        let own = self.any_hit.as_ref();
+        let made = caught(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts, own));
+        self.pipelines = Some(made.map_err(|error| self.refused(&error))?);
         Ok(())
     }
 }
@@ -390,20 +381,32 @@ impl Pipelines {
         device: &wgpu::Device,
         (descriptor, shape): (&ShadowMapDescriptor, Shape),
         [receiver, rays, arguments, select]: [&wgpu::BindGroupLayout; 4],
+        any_hit: Option<&AnyHit>,
     ) -> Self {
         let [layout, trace_layout] = [false, true].map(|read_only| layout(device, shape, read_only));
         let classify = (shader::classify(descriptor, shape), "classify");
-        let trace = (shader::trace(descriptor, shape), "trace");
+        let counts = any_hit.map(|any_hit| any_hit.wgsl.as_str());
+        let trace = (shader::trace(descriptor, shape, counts), "trace");
+        let own = any_hit.and_then(|any_hit| any_hit.layout.as_ref());
+        let traced: Vec<_> = [receiver, &trace_layout, rays].into_iter().chain(own).map(Some).collect();
         Self {
             classify: pipeline(device, &[Some(receiver), Some(&layout)], classify),
             arguments: pipeline(device, &[Some(arguments)], (shader::arguments(), "count_groups")),
             select: pipeline(device, &[Some(select)], (shader::select(), "select_pixels")),
-            trace: pipeline(device, &[Some(receiver), Some(&trace_layout), Some(rays)], trace),
+            trace: pipeline(device, &traced, trace),
             key: (*descriptor, shape),
             layout,
             trace_layout,
         }
     }
+}
+
+/// What a device lacks for the passes.
+fn lacks(device: &wgpu::Device) -> Option<Unsupported> {
+    let limits = device.limits();
+    let has_buffers = limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS;
+    let computes = supported(&limits, device.adapter_info().backend);
+    computes.err().or((!has_buffers).then_some(Unsupported::StorageBuffers))
 }
 
 /// The bounds of maps.

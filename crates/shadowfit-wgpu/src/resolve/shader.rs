@@ -37,12 +37,12 @@ pub(super) struct Shape {
 }
 
 /// The WGSL of the passes that classify pixels, count workgroups, leave pixels out, trace rays, and bound the depths of maps
-/// for suns with a radius: entry points `classify`, `count_groups`, `select_pixels`, `trace`, `gather_blocks` and
+/// for suns with a radius, without an engine's own test of hits: entry points `classify`, `count_groups`, `select_pixels`, `trace`, `gather_blocks` and
 /// `join_blocks`. `samples`: those of the depth texture per pixel.
 pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 6] {
     let shape = Shape { samples, normals };
     let [blocks, levels] = pyramid(descriptor);
-    [classify(descriptor, shape), arguments(), select(), trace(descriptor, shape), blocks, levels]
+    [classify(descriptor, shape), arguments(), select(), trace(descriptor, shape, None), blocks, levels]
 }
 
 /// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
@@ -100,8 +100,9 @@ pub(super) fn select() -> String {
     [&constants, &list, include_str!("../shaders/resolve_select.wgsl")].concat()
 }
 
-pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape) -> String {
-    let rays = rays_wgsl(&RayWgslOptions::group(RAYS_GROUP));
+/// `counts`: an engine's own test of hits.
+pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
+    let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
     let threads = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
     let list = LIST.replace("LIST_COUNT", "u32");
     let pass = include_str!("../shaders/resolve_trace.wgsl");

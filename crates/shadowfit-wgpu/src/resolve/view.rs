@@ -27,6 +27,8 @@ pub struct ResolveView<'a> {
     /// traced follows from pixel and frame number ([`SunFrame::number`](crate::SunFrame::number)); the others keep the
     /// filter's factor.
     pub budget: Option<u32>,
+    /// The bind group of the pass's [`AnyHit`](super::AnyHit), if that has a layout.
+    pub any_hit: Option<&'a wgpu::BindGroup>,
     /// Rays start at least this far above the surface, in metres, and farther where depths are coarser. Default: 0.001.
     pub ray_offset: f32,
 }
@@ -68,6 +70,7 @@ impl<'a> ResolveView<'a> {
             rectangle: None,
             lacking: None,
             budget: None,
+            any_hit: None,
             ray_offset: 1e-3,
         }
     }
