@@ -6,7 +6,7 @@ use super::any_hit::AnyHit;
 use super::error::ResolveError;
 use super::group::{COUNTS, FLOATS, Layouts, Target, factors};
 use super::pipeline::{module, pipeline};
-use super::pyramid::Pyramids;
+use super::pyramid::{BOUNDS, Pyramids};
 use super::result::{EdgeResult, ResolveCounts, WhyFiltered};
 use super::shader::{self, Shape};
 use super::source::{Source, is_fine};
@@ -408,13 +408,6 @@ fn lacks(device: &wgpu::Device) -> Option<Unsupported> {
     let computes = supported(&limits, device.adapter_info().backend);
     computes.err().or((!has_buffers).then_some(Unsupported::StorageBuffers))
 }
-
-/// The bounds of maps.
-const BOUNDS: wgpu::BindingType = wgpu::BindingType::Texture {
-    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-    view_dimension: wgpu::TextureViewDimension::D2Array,
-    multisampled: false,
-};
 
 /// A texture of one layer in the place of bounds that are not read.
 fn no_bounds(any: &wgpu::TextureView) -> wgpu::TextureView {

@@ -2,6 +2,7 @@
 //! drawn.
 
 use super::error::ResolveError;
+use super::group::FLOATS;
 use super::pipeline::pipeline;
 use super::shader::{BLOCK, pyramid};
 use crate::bindings;
@@ -12,6 +13,12 @@ use crate::{MAX_MAPS, ShadowMapDescriptor, SunShadows};
 const SQUARE: u32 = 8;
 /// Format of the bounds: nearest and farthest depth.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+/// The bounds of maps.
+pub(super) const BOUNDS: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    view_dimension: wgpu::TextureViewDimension::D2Array,
+    multisampled: false,
+};
 /// Blocks along the longer side of the coarsest level: a region of more is looked at in these.
 const COARSEST: u32 = 4;
 
@@ -57,7 +64,7 @@ impl Pyramids {
         };
         let label = "shadowfit pyramid";
         let of_blocks = bindings::layout(device, label, stages, (0, &[bindings::UNIFORM, written]));
-        let of_levels = bindings::layout(device, label, stages, (0, &[super::group::FLOATS, written]));
+        let of_levels = bindings::layout(device, label, stages, (0, &[FLOATS, written]));
         let [blocks, levels] = pyramid(&descriptor);
         let texture = texture(device, &descriptor);
         let layers =
@@ -113,12 +120,14 @@ fn wgsl_key(descriptor: &ShadowMapDescriptor) -> ShadowMapDescriptor {
 }
 
 fn texture(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Texture {
-    let [width, height] = descriptor.resolution.map(|side| side.div_ceil(BLOCK));
-    let levels = width.max(height).div_ceil(COARSEST).next_power_of_two().ilog2() + 1;
+    let blocks = descriptor.resolution.map(|side| side.div_ceil(BLOCK));
+    let coarser = blocks[0].max(blocks[1]).div_ceil(COARSEST).next_power_of_two().ilog2();
+    // Mip levels round down: the last blocks of a level would not be part of the next one.
+    let [width, height] = blocks.map(|side| side.next_multiple_of(1 << coarser));
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadowfit pyramid"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: descriptor.layers() },
-        mip_level_count: levels.min(width.max(height).ilog2() + 1),
+        mip_level_count: coarser + 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: FORMAT,
@@ -161,7 +170,7 @@ impl Layer {
             let resources = pair.each_ref().map(wgpu::BindingResource::TextureView);
             bindings::group(device, "shadowfit pyramid", of_levels, (0, &resources))
         };
-        let size = |level: u32| [texture.width(), texture.height()].map(|side| (side >> level).max(1));
+        let size = |level: u32| [texture.width(), texture.height()].map(|side| side >> level);
         Self {
             blocks: bindings::group(device, "shadowfit pyramid", of_blocks, (0, &blocks)),
             levels: views.array_windows().map(join).collect(),
@@ -169,3 +178,7 @@ impl Layer {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "pyramid_gpu.rs"]
+mod gpu;
