@@ -7,6 +7,8 @@ mod any_hit_gpu;
 mod errors_gpu;
 #[path = "resolve/pass_gpu.rs"]
 mod pass_gpu;
+#[path = "resolve/soft_gpu.rs"]
+mod soft_gpu;
 #[path = "resolve/stage.rs"]
 mod stage;
 #[path = "resolve/twin.rs"]

@@ -1,6 +1,11 @@
 //! What the first resolve pass finds about each pixel, in plain Rust: the arithmetic of `resolve.wgsl`,
 //! `resolve_classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
-//! back.
+//! back. Suns with a radius are in `twin/soft.rs`, and what the third pass does, rays, in `twin/rays.rs`.
+
+#[path = "twin/rays.rs"]
+mod rays;
+#[path = "twin/soft.rs"]
+mod soft;
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec2, Vec3, Vec4};
 use shadowfit::settings::MapSelection;
@@ -60,12 +65,19 @@ pub(super) struct Twin {
     receiver: ReceiverUniform,
     /// Layer by layer.
     stored: Vec<f32>,
+    /// For filters that are soft.
+    pyramid: Option<soft::Pyramid>,
+    /// Relative to the origin of the rays.
+    eye: Vec3,
     slack: Slack,
+    /// Of how far casters may stand from a point, in texels.
+    radius_slack: Slack,
 }
 
 struct Surface {
     position: Vec3,
     w: f32,
+    depth: f32,
     steps: Vec2,
     normal: Vec3,
     is_known: bool,
@@ -96,9 +108,8 @@ struct Choice {
 }
 
 impl Twin {
-    /// Of the picture that a stage has drawn and resolved. `point_reach`: the greatest distance of a ray's start from the
-    /// first sample, across or down, in pixels.
-    pub(super) fn new(stage: &Stage, look: &Look, drawn: &Drawn, point_reach: f32) -> Self {
+    /// Of the picture that a stage has drawn and resolved.
+    pub(super) fn new(stage: &Stage, look: &Look, drawn: &Drawn) -> Self {
         let map = stage.sun.map();
         let from_eye = MapView { origin: look.camera.eye, ..*stage.sun.map_view().expect("a frame") };
         let normals = drawn
@@ -107,6 +118,9 @@ impl Twin {
             .zip(look.normals)
             .map(|(normals, encoding)| (texels(&stage.gpu.device, &stage.gpu.queue, normals.texture()), encoding));
         let to_world = world_from_pixel(look);
+        let stored = stage.stored();
+        let first = if look.samples > 1 { FOUR[0] } else { Vec2::ZERO };
+        let places = rays::places(map.descriptor().edges.samples(), false);
         Self {
             size: look.size.map(u32::cast_signed),
             convention: look.convention,
@@ -115,11 +129,14 @@ impl Twin {
             depths: stage.depths(&drawn.depth),
             samples: look.samples as usize,
             normals,
-            point_reach,
+            point_reach: places.iter().map(|[place, _]| (*place - first).abs().max_element()).fold(0.0, f32::max),
             descriptor: *map.descriptor(),
             receiver: on_planes(stage.sun.maps(), &from_eye, map.descriptor()),
-            stored: stage.stored(),
+            pyramid: map.descriptor().filter.is_soft().then(|| soft::Pyramid::new(map.descriptor(), &stored)),
+            stored,
+            eye: (look.camera.eye - stage.rays.origin()).as_vec3(),
             slack: 0.0,
+            radius_slack: 0.0,
         }
     }
 
@@ -133,11 +150,11 @@ impl Twin {
     pub(super) fn nearby(&mut self, index: usize, slack: Slack) -> Vec<Verdict> {
         let index = (index as u32).cast_signed();
         let at = [index % self.size[0], index / self.size[0]];
-        let found = [-slack, slack].map(|slack| {
-            self.slack = slack;
+        let found = [[-slack, 0.0], [slack, 0.0], [0.0, -slack], [0.0, slack]].map(|slacks| {
+            [self.slack, self.radius_slack] = slacks;
             self.verdict(at)
         });
-        self.slack = 0.0;
+        [self.slack, self.radius_slack] = [0.0; 2];
         found.to_vec()
     }
 
@@ -247,7 +264,7 @@ impl Twin {
             (normal, -Vec2::new(across, down) / dot(stored, ray), true)
         };
         let is_single = self.is_single(pixel, depth, steps);
-        Surface { position, w, steps, normal, is_known, is_single }
+        Surface { position, w, depth, steps, normal, is_known, is_single }
     }
 
     fn view_depth(&self, position: Vec3) -> f32 {
@@ -330,17 +347,29 @@ impl Twin {
         if choice.first < 0 || choice.first == choice.clamped {
             return None;
         }
+        let mut near = None;
         for entry in choice.first as u32..self.receiver.map_count {
             let map = &self.receiver.maps[entry as usize];
-            if entry.cast_signed() > choice.first && self.free(entry, map, surface.position) < 0.0 {
+            let is_first = entry.cast_signed() == choice.first;
+            if !is_first && self.free(entry, map, surface.position) < 0.0 {
                 continue;
             }
             let projected = self.project(map, surface.position, surface.normal);
-            let found = self.footprint(map, &projected, self.spread_in(map, surface));
-            match found {
-                Footprint::TooWide if self.descriptor.selection.is_by_coverage() => {}
+            let spread = self.spread_in(map, surface);
+            let is_soft = self.descriptor.filter.is_soft();
+            let close = || self.footprint(map, &projected, spread);
+            match if is_soft { self.soft_footprint(map, &projected, spread) } else { close() } {
+                Footprint::TooWide if self.descriptor.selection.is_by_coverage() => {
+                    near = if is_first && is_soft { Some(close()) } else { near };
+                }
                 Footprint::TooWide | Footprint::Unsure => return None,
-                Footprint::Sure(factor) => return Some(factor),
+                Footprint::Sure(factor) => {
+                    return match near {
+                        Some(Footprint::Sure(near)) if near != factor => None,
+                        Some(Footprint::Unsure) => None,
+                        _ => Some(factor),
+                    };
+                }
             }
         }
         None
@@ -393,7 +422,7 @@ impl Twin {
                     .map(|(place, gradient)| if place % 2 == 0 { -gradient * 0.5 } else { gradient * 0.5 });
                 let plane = (projected.surface + rounding + change + (y + x)).clamp(0.0, 1.0);
                 let stored = self.stored_at(map, texel);
-                let moved = self.slack * (steepness + DEPTH_ROUNDING / NEXT_TO);
+                let moved = self.depth_slack(steepness);
                 is_lit &= is_closer(plane + moved, stored);
                 is_shadowed &= !is_closer(biased + moved, stored);
             }
@@ -403,6 +432,11 @@ impl Twin {
             (false, true) => Footprint::Sure(1.0),
             _ => Footprint::Unsure,
         }
+    }
+
+    /// By how much depths are moved on a plane that changes by so much over a texel.
+    fn depth_slack(&self, steepness: f32) -> f32 {
+        self.slack * (steepness + DEPTH_ROUNDING / NEXT_TO)
     }
 
     fn stored_at(&self, map: &MapUniform, texel: Vec2) -> f32 {

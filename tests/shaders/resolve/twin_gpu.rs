@@ -18,7 +18,7 @@ const TOGETHER: usize = 1000;
 const OTHERS: usize = 3;
 
 /// A built-in scene without the holes of its leaves.
-fn things(scene: BuiltinScene) -> Vec<Thing> {
+pub(super) fn things(scene: BuiltinScene) -> Vec<Thing> {
     let scene = scene.build();
     let corners: Vec<Vec3> =
         scene.pose(None, 0.0).triangles(&scene).iter().flat_map(|triangle| triangle.vertices).collect();
@@ -27,7 +27,7 @@ fn things(scene: BuiltinScene) -> Vec<Thing> {
 }
 
 /// A view of the courtyard.
-fn look(samples: u32, convention: DepthConvention, normals: Option<NormalEncoding>) -> Look {
+pub(super) fn look(samples: u32, convention: DepthConvention, normals: Option<NormalEncoding>) -> Look {
     let (eye, target) = (Vec3::new(4.0, 2.5, 7.0), Vec3::new(0.0, 1.0, 0.0));
     let camera = PerspectiveCamera {
         eye: eye.as_dvec3(),
@@ -43,24 +43,18 @@ fn look(samples: u32, convention: DepthConvention, normals: Option<NormalEncodin
 }
 
 /// A scene's own view.
-fn start(scene: BuiltinScene, normals: Option<NormalEncoding>) -> Look {
+pub(super) fn start(scene: BuiltinScene, normals: Option<NormalEncoding>) -> Look {
     let plain = look(1, DepthConvention::Reversed, normals);
     let view = start_view(&scene.build(), SIZE);
     Look { camera: view.camera, direction: view.direction, ..plain }
 }
 
 /// Compares the picture that a stage draws with its twin's, and returns how many pixels are sure, and unsure.
-fn compare(what: &str, stage: &mut Stage, look: &Look) -> [usize; 2] {
+pub(super) fn compare(what: &str, stage: &mut Stage, look: &Look) -> [usize; 2] {
     let drawn = stage.draw(look);
     let (sure, none) = stage.traced(look, &drawn, |view| view.budget = Some(0));
     let (all, counts) = stage.traced(look, &drawn, |_| ());
-    // Four points of a pixel lie 0.375 from its centre, and its first sample as far on the other side.
-    let reach = match (stage.sun.map().descriptor().edges.samples(), look.samples) {
-        (1, 1) => 0.0,
-        (1, _) | (_, 1) => 0.375,
-        _ => 0.75,
-    };
-    let mut twin = Twin::new(stage, look, &drawn, reach);
+    let mut twin = Twin::new(stage, look, &drawn);
     let verdicts = twin.verdicts();
     let agrees = |index: usize, verdict: Verdict| match verdict {
         Verdict::NoSurface | Verdict::Filtered => sure[index] == -1.0 && all[index] == -1.0,

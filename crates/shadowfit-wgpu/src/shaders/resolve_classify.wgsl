@@ -94,37 +94,46 @@ fn unsure_maps(position: vec3<f32>) -> u32 {
     return maps;
 }
 
-// What a map says about a pixel: 1, 0, UNSURE or TOO_WIDE.
-fn verdict_of_map(map: shadowfit_Map, surface: Surface, unsure: u32) -> f32 {
+// x: what a map says about a pixel: 1, 0, UNSURE or TOO_WIDE. y: the same, but where the cone of a sun with a radius is too
+// wide what the texels say that are right around the pixel.
+fn verdict_of_map(map: shadowfit_Map, surface: Surface, unsure: u32) -> vec2<f32> {
     if (unsure & (1u << map.layer)) != 0u {
-        return UNSURE;
+        return vec2<f32>(UNSURE);
     }
     let projected = shadowfit_project(map, surface.position, surface.normal);
     let spread = spread_in(map, surface);
+    var verdict = TOO_WIDE;
     if IS_SOFT {
-        return soft_footprint(map, projected, spread);
+        verdict = soft_footprint(map, projected, spread);
+        if verdict != TOO_WIDE {
+            return vec2<f32>(verdict);
+        }
     }
-    return footprint(map, projected, spread);
+    let near = footprint(map, projected, spread);
+    return vec2<f32>(select(near, verdict, IS_SOFT), near);
 }
 
 // What the maps say about a pixel: 1, 0 or UNSURE. The finest one decides in which its footprint is whole and not too
-// wide; by view depth others may lack what shadows it.
+// wide; by view depth others may lack what shadows it. Where the cone of a sun with a radius is too wide for finer maps,
+// the first of them must not contradict: close to the pixel it has casters and gaps that are narrower than a coarse texel.
 fn verdict_of_maps(surface: Surface, unsure: u32) -> f32 {
     let choice = shadowfit_choose(surface.position);
     if choice.first < 0 || choice.first == choice.clamped {
         return UNSURE;
     }
-    var verdict = verdict_of_map(shadowfit_entry(choice.first), surface, unsure);
+    let finest = verdict_of_map(shadowfit_entry(choice.first), surface, unsure);
+    var verdict = finest.x;
     for (var entry = choice.first + 1; IS_BY_COVERAGE && verdict == TOO_WIDE; entry += 1) {
         if entry >= i32(shadowfit_receiver.map_count) {
             break;
         }
         let map = shadowfit_entry(entry);
         if shadowfit_free(u32(entry), map, surface.position) >= 0.0 {
-            verdict = verdict_of_map(map, surface, unsure);
+            verdict = verdict_of_map(map, surface, unsure).x;
         }
     }
-    return select(verdict, UNSURE, verdict == TOO_WIDE);
+    let is_contrary = IS_SOFT && finest.y != TOO_WIDE && finest.y != verdict;
+    return select(verdict, UNSURE, verdict == TOO_WIDE || is_contrary);
 }
 
 // The factor of a pixel, or what is found beside factors.

@@ -84,12 +84,18 @@ fn cone(p: shadowfit_Projected, depth: f32) -> vec2<f32> {
     return max((p.surface - depth) * p.penumbra, vec2<f32>(0.0));
 }
 
-// What the blocks of a region say: 1 where nothing stands in the way of any ray, 0 where all of them cover the point.
+// By how much the point's plane is nearer to the light within a block than in its middle.
+fn rise_in(p: shadowfit_Projected, blocks: Blocks, rounding: f32) -> f32 {
+    return TOWARD_LIGHT * dot(abs(p.gradient), vec2<f32>(blocks.side - 1.0) * 0.5) + rounding;
+}
+
+// What the blocks of a region say: 1 where nothing that is higher than the plane within its block stands in the way of any
+// ray, 0 where all of them cover the point.
 fn verdict_of_blocks(p: shadowfit_Projected, blocks: Blocks, around: vec2<f32>, rounding: f32) -> f32 {
     let counts = block_counts(p, blocks);
     // From a block's middle to its outer texels.
     let half = vec2<f32>(blocks.side - 1.0) * 0.5;
-    let rise = TOWARD_LIGHT * dot(abs(p.gradient), half) + rounding;
+    let rise = rise_in(p, blocks, rounding);
     var is_lit = true;
     var is_covered = true;
     for (var y = 0.0; y < counts.y; y += 1.0) {
@@ -133,6 +139,13 @@ fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>)
         let rounding = map.constant_depth + TOWARD_LIGHT * ROUNDED_TEXEL * steepness;
         let blocks = blocks_around(p, radius + around, MANY_BLOCKS);
         verdict = verdict_of_blocks(p, blocks, around, rounding);
+        if verdict == 1.0 {
+            // Casters that are lower than the plane rises within its block, such as ledges of a wall that the light grazes,
+            // stand in the way close to the point only, where texels are looked at one by one.
+            let low = 2.0 * abs(rise_in(p, blocks, rounding) * p.penumbra);
+            let near = footprint(map, p, spread + low);
+            verdict = select(near, UNSURE, near == 0.0);
+        }
     }
     return select(verdict, UNSURE, verdict == 0.0 && !is_lid);
 }
