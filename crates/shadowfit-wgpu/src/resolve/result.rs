@@ -26,7 +26,7 @@ pub enum WhyFiltered {
     Picture,
     /// The sun gives nothing, or had no frame yet.
     NoMaps,
-    /// Two sets of maps are mixed while the sun [steps](SunShadows::set_light_steps).
+    /// Two sets of maps are mixed while the sun [steps](crate::SunShadows::set_light_steps).
     Fading,
 }
 

@@ -7,7 +7,7 @@ use super::{Surface, Twin, dot, transformed};
 
 /// Least height of a ray's start, in metres: [`ResolveView::new`](shadowfit_wgpu::resolve::ResolveView::new)'s.
 const RAY_OFFSET: f32 = 1e-3;
-const POSITION_ROUNDING: f32 = 4.768_371_58e-7;
+const POSITION_ROUNDING: f32 = 4.768_371_6e-7;
 
 /// The points of a pixel that rays start from, from its centre, in pixels, and of the sun that they go to, in its radii.
 pub(super) fn places(count: u32, is_soft: bool) -> Vec<[Vec2; 2]> {
@@ -129,7 +129,7 @@ impl Twin {
     fn turn(&self, [x, y]: [i32; 2]) -> f32 {
         let at = Vec2::new(x as f32, y as f32) + self.receiver.frame_shift;
         let inner = at.x * 0.067_110_56 + at.y * 0.005_837_15;
-        let noise = (52.982_918_9 * (inner - inner.floor())).fract();
+        let noise = (52.982_918 * (inner - inner.floor())).fract();
         noise * core::f32::consts::TAU
     }
 }

@@ -151,7 +151,7 @@ impl Twin {
             let plane = (p.surface + change + rise).clamp(0.0, 1.0) + moved;
             let distance = (aside.abs() - half).max(Vec2::ZERO);
             let is_within = distance.cmple(self.cone(map, p, nearest) + around).all();
-            is_lit &= !(is_within && !self.is_nearer(plane, nearest));
+            is_lit &= !is_within || self.is_nearer(plane, nearest);
             is_covered &= !self.is_nearer(plane, farthest);
         }
         let low = 2.0 * (rise * Vec2::from(map.penumbra)).abs() + self.radius_slack;
