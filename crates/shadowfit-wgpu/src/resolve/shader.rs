@@ -1,6 +1,7 @@
 //! The WGSL of the resolve passes, and of what reads their result.
 
 use shadowfit::DepthConvention;
+use shadowfit::settings::FilterKind;
 use shadowfit_rays::{RayWgslOptions, rays_wgsl};
 
 use super::noise;
@@ -105,8 +106,17 @@ pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Opti
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
     let threads = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
     let list = LIST.replace("LIST_COUNT", "u32");
+    let is_soft = descriptor.filter.is_soft();
+    // Whatever the filter, rays to a sun with a radius are compared with casters at their distance.
+    let filter = if is_soft { FilterKind::Pcss } else { descriptor.filter };
+    let look_up = look_up(&ShadowMapDescriptor { filter, ..*descriptor });
+    let estimate = if is_soft {
+        include_str!("../shaders/resolve_estimate_sun.wgsl")
+    } else {
+        include_str!("../shaders/resolve_estimate_area.wgsl")
+    };
     let pass = include_str!("../shaders/resolve_trace.wgsl");
-    [&look_up(descriptor), &rays, &shared(shape), &list, &threads, pass].concat()
+    [&look_up, &rays, &shared(shape), &list, &threads, estimate, pass].concat()
 }
 
 /// The look-up into the maps, for positions relative to the eye. Nothing is resolved while two sets of maps are mixed:

@@ -50,14 +50,15 @@ pub struct UnknownUniform {
     pub is_filtered: u32,
 }
 
-/// Points of a pixel, from its first sample, in pixels, and the greatest distance of one across or down. `samples`: those
-/// of the depth buffer per pixel.
+/// Points of a pixel, from its first sample, in pixels, and the greatest distance of one across or down; all rays to a
+/// soft sun start from that sample. `samples`: those of the depth buffer per pixel.
 pub(super) fn points(count: u32, samples: u32, is_soft: bool) -> ([[f32; 4]; MAX_POINTS], f32) {
     let mut points = [[0.0; 4]; MAX_POINTS];
     let first = if samples > 1 { FIRST_OF_FOUR } else { [0.0; 2] };
     let mut reach = 0.0_f32;
     for (index, point) in (0..count).zip(&mut points) {
-        let [x, y] = from_centre(index, count);
+        // Penumbrae are smooth by themselves.
+        let [x, y] = if is_soft { first } else { from_centre(index, count) };
         let [across, down] = if is_soft { in_disc(index, count) } else { [0.0; 2] };
         *point = [x - first[0], y - first[1], across, down];
         reach = reach.max(point[0].abs()).max(point[1].abs());

@@ -188,3 +188,20 @@ fn surface_of(pixel: vec2<i32>, depth: f32) -> Surface {
     surface.is_single = is_single(pixel, depth, surface.steps);
     return surface;
 }
+
+// Where the rays from a pixel's surface start above it, in metres: farther than its depth, or what follows from it, may
+// be rounded by.
+fn height_of(surface: Surface) -> f32 {
+    let step = length(moved(resolve.world_from_pixel[2], surface)) * rounding(surface.depth);
+    let distance = length(surface.position) + length(resolve.eye);
+    return max(resolve.ray_offset, max(step, POSITION_ROUNDING * distance));
+}
+
+// Texels of a map from a pixel to the next on its plane, across and down.
+fn texels_per_pixel(map: shadowfit_Map, surface: Surface) -> array<vec2<f32>, 2> {
+    let m = resolve.world_from_pixel;
+    let right = moved(m[0] + m[2] * surface.steps.x, surface);
+    let down = moved(m[1] + m[2] * surface.steps.y, surface);
+    return array<vec2<f32>, 2>(
+        (map.uv_from_world * vec4<f32>(right, 0.0)).xy * map.size, (map.uv_from_world * vec4<f32>(down, 0.0)).xy * map.size);
+}

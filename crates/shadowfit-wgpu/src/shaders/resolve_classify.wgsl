@@ -61,14 +61,12 @@ fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f3
     return select(select(UNSURE, 1.0, counts.x == read), 0.0, counts.y == read);
 }
 
-// By how much the points of a pixel differ from its first sample in a map, in texels.
+// By how much the starts of a pixel's rays differ from its first sample in a map, in texels: they are points of it, and lie
+// above the surface.
 fn spread_in(map: shadowfit_Map, surface: Surface) -> vec2<f32> {
-    let m = resolve.world_from_pixel;
-    let right = moved(m[0] + m[2] * surface.steps.x, surface);
-    let down = moved(m[1] + m[2] * surface.steps.y, surface);
-    let a = (map.uv_from_world * vec4<f32>(right, 0.0)).xy;
-    let b = (map.uv_from_world * vec4<f32>(down, 0.0)).xy;
-    return resolve.point_reach * (abs(a) + abs(b)) * map.size;
+    let texels = texels_per_pixel(map, surface);
+    let above = (map.uv_from_world * vec4<f32>(surface.normal * height_of(surface), 0.0)).xy * map.size;
+    return resolve.point_reach * (abs(texels[0]) + abs(texels[1])) + abs(above);
 }
 
 // Whether a ray toward the light meets a box.

@@ -2,35 +2,22 @@
 
 @group(1) @binding(4) var<storage, read> list: List;
 
-// Where the rays from a pixel's surface start above it, in metres: farther than its depth, or what follows from it, may
-// be rounded by.
-fn height_of(surface: Surface) -> f32 {
-    let step = length(moved(resolve.world_from_pixel[2], surface)) * rounding(surface.depth);
-    let distance = length(surface.position) + length(resolve.eye);
-    return max(resolve.ray_offset, max(step, POSITION_ROUNDING * distance));
-}
-
-// How high a neighbour stands above a pixel's plane, in metres; 0 where it is another surface: farther from the plane
-// than the plane itself changes.
-fn height_beside(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface, up: f32) -> f32 {
+// Whether a surface goes on to a neighbour of its pixel as the pixel's plane does: so that rays that start on the plane on
+// that side start above the surface.
+fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
     let found = depth_at(pixel + axis);
-    let step = dot(surface.steps, vec2<f32>(axis));
-    let off = found - surface.depth - step;
-    let ray = moved(resolve.world_from_pixel[2], surface);
-    let across = moved(resolve.world_from_pixel[0], surface);
-    let is_same = found != 0.0 && abs(off) * length(ray) <= abs(step) * length(ray) + length(across);
-    return select(0.0, off * up, is_same);
+    let off = found - surface.depth - dot(surface.steps, vec2<f32>(axis));
+    let beneath = abs(off * dot(moved(resolve.world_from_pixel[2], surface), surface.normal)) * resolve.point_reach;
+    return found != 0.0 && beneath <= height_of(surface);
 }
 
-// How high the neighbours to the right, to the left, below and above stand over a pixel's plane, in metres.
-fn heights_beside(pixel: vec2<i32>, surface: Surface) -> vec4<f32> {
-    if resolve.point_reach == 0.0 {
-        return vec4<f32>(0.0);
-    }
-    let up = dot(moved(resolve.world_from_pixel[2], surface), surface.normal);
-    return vec4<f32>(
-        height_beside(pixel, vec2<i32>(1, 0), surface, up), height_beside(pixel, vec2<i32>(-1, 0), surface, up),
-        height_beside(pixel, vec2<i32>(0, 1), surface, up), height_beside(pixel, vec2<i32>(0, -1), surface, up));
+// How far points may lie from a pixel's first sample, in pixels: up to the right and down, up to the left and above.
+fn sides_of(pixel: vec2<i32>, surface: Surface) -> array<vec2<f32>, 2> {
+    let far = vec4<bool>(
+        goes_on(pixel, vec2<i32>(1, 0), surface), goes_on(pixel, vec2<i32>(0, 1), surface),
+        goes_on(pixel, vec2<i32>(-1, 0), surface), goes_on(pixel, vec2<i32>(0, -1), surface));
+    let most = select(vec4<f32>(0.0), vec4<f32>(resolve.point_reach), far);
+    return array<vec2<f32>, 2>(most.xy, -most.zw);
 }
 
 // A point of a pixel's surface, from its first sample, in pixels: relative to the eye, in metres.
@@ -82,24 +69,24 @@ fn trace(
     let packed = list.pixels[index];
     let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
     let surface = surface_of(pixel, depth_at(pixel));
-    let height = height_of(surface);
-    let beside = heights_beside(pixel, surface);
-    // A surface that leaves the plane on one side may do so before it: a plane through the pixel and a neighbour cuts off
-    // what stands out between them, by as much for a pixel as it leaves the surface on the other side.
-    let off = abs(beside);
-    let rough = vec2<f32>(max(off.x, off.y), max(off.z, off.w));
+    let above = surface.normal * height_of(surface);
+    let sides = sides_of(pixel, surface);
     let across = across_light(pixel);
+    let map = estimate_of(pixel, surface, across);
     var lit = 0.0;
+    var expected = 0.0;
     for (var at = 0u; at < resolve.point_count; at += 1u) {
-        // On a bent surface a point of the plane may lie below: it is lifted toward where neighbours are.
-        let place = resolve.points[at].xy;
-        let bent = dot(rough, abs(place));
-        let above = surface.normal * (height + bent);
+        let place = clamp(resolve.points[at].xy, sides[1], sides[0]);
+        let in_sun = resolve.points[at].zw;
         let start = point_of(pixel, surface, place) + above + resolve.eye;
-        let aside = resolve.points[at].zw * resolve.sun_tangent;
+        let aside = in_sun * resolve.sun_tangent;
         let direction = normalize(shadowfit_receiver.to_light + across.x * aside.x + across.y * aside.y);
         lit += select(1.0, 0.0, shadowfit_rays_blocked(start, direction));
+        expected += estimate_at(map, place, in_sun);
     }
-    let factor = mix(lit / f32(resolve.point_count), 1.0, shadowfit_faded(surface.position));
+    // Rays say what the map is wrong by where they are: by as much it is taken to be wrong as a whole.
+    let share = lit / f32(resolve.point_count);
+    let corrected = saturate(estimate_whole(map, sides) + (lit - expected) / f32(resolve.point_count));
+    let factor = mix(select(share, corrected, map.is_known), 1.0, shadowfit_faded(surface.position));
     textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(traced(factor), 0.0, 0.0, 0.0));
 }
