@@ -22,6 +22,9 @@ const RAYS_GROUP: u32 = 2;
 /// nor a gap, is missed: with 1 there are 0.013% wrong pixels on the shared scenes and 1.7% take rays, with 2 0.0024% and
 /// 4.9%, with 3 0.0024% and 7.9%.
 const FOOTPRINT: f32 = 2.0;
+/// The same in the coarsest map, where most casters that are thinner than a texel are read: in four generated towns there
+/// are 0.0077% wrong pixels with 2, and 0.0038% with 3, and 11.0% and 12.8% take rays.
+const COARSEST_FOOTPRINT: f32 = 3.0;
 
 /// Texels along a side of a block of the finest level of a pyramid.
 pub(super) const BLOCK: u32 = 4;
@@ -67,7 +70,7 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
     let nearest = if is_reversed { 1.0 } else { 0.0 };
     let (is_soft, by_coverage) = (descriptor.filter.is_soft(), descriptor.selection.is_by_coverage());
     let constants = format!(
-        "const FOOTPRINT: f32 = {FOOTPRINT:?};\nconst TOWARD_LIGHT: f32 = {toward_light:?};\nconst NEAREST: f32 = \
+        "const FOOTPRINT: f32 = {FOOTPRINT:?};\nconst COARSEST_FOOTPRINT: f32 = {COARSEST_FOOTPRINT:?};\nconst TOWARD_LIGHT: f32 = {toward_light:?};\nconst NEAREST: f32 = \
          {nearest:?};\nconst IS_SOFT: bool = {is_soft};\nconst IS_BY_COVERAGE: bool = {by_coverage};\nconst BLOCK: i32 = \
          {BLOCK};\n"
     );

@@ -1,5 +1,5 @@
-// First resolve pass: which pixels the maps are sure of, and which need rays. FOOTPRINT is the reach of the filter's
-// look-up, in texels.
+// First resolve pass: which pixels the maps are sure of, and which need rays. FOOTPRINT is how many texels on each side of a
+// point have to agree, and COARSEST_FOOTPRINT the same in the last map.
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 @group(1) @binding(5) var texels: sampler;
@@ -62,11 +62,14 @@ fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f3
 }
 
 // By how much the starts of a pixel's rays differ from its first sample in a map, in texels: they are points of it, and lie
-// above the surface.
-fn spread_in(map: shadowfit_Map, surface: Surface) -> vec2<f32> {
+// above the surface. In the coarsest map they are taken to differ by more, since most casters that are thinner than a texel
+// are read there.
+fn spread_in(entry: i32, map: shadowfit_Map, surface: Surface) -> vec2<f32> {
     let texels = texels_per_pixel(map, surface);
     let above = (map.uv_from_world * vec4<f32>(surface.normal * height_of(surface), 0.0)).xy * map.size;
-    return resolve.point_reach * (abs(texels[0]) + abs(texels[1])) + abs(above);
+    let is_coarsest = entry + 1 == i32(shadowfit_receiver.map_count);
+    let beside = select(0.0, COARSEST_FOOTPRINT - FOOTPRINT, is_coarsest);
+    return resolve.point_reach * (abs(texels[0]) + abs(texels[1])) + abs(above) + beside;
 }
 
 // Whether a ray toward the light meets a box.
@@ -92,14 +95,15 @@ fn unsure_maps(position: vec3<f32>) -> u32 {
     return maps;
 }
 
-// x: what a map says about a pixel: 1, 0, UNSURE or TOO_WIDE. y: the same, but where the cone of a sun with a radius is too
+// x: what a map, by its place in the order, says about a pixel: 1, 0, UNSURE or TOO_WIDE. y: the same, but where the cone of a sun with a radius is too
 // wide what the texels say that are right around the pixel.
-fn verdict_of_map(map: shadowfit_Map, surface: Surface, unsure: u32) -> vec2<f32> {
+fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<f32> {
+    let map = shadowfit_entry(entry);
     if (unsure & (1u << map.layer)) != 0u {
         return vec2<f32>(UNSURE);
     }
     let projected = shadowfit_project(map, surface.position, surface.normal);
-    let spread = spread_in(map, surface);
+    let spread = spread_in(entry, map, surface);
     var verdict = TOO_WIDE;
     if IS_SOFT {
         verdict = soft_footprint(map, projected, spread);
@@ -119,15 +123,14 @@ fn verdict_of_maps(surface: Surface, unsure: u32) -> f32 {
     if choice.first < 0 || choice.first == choice.clamped {
         return UNSURE;
     }
-    let finest = verdict_of_map(shadowfit_entry(choice.first), surface, unsure);
+    let finest = verdict_of_map(choice.first, surface, unsure);
     var verdict = finest.x;
     for (var entry = choice.first + 1; IS_BY_COVERAGE && verdict == TOO_WIDE; entry += 1) {
         if entry >= i32(shadowfit_receiver.map_count) {
             break;
         }
-        let map = shadowfit_entry(entry);
-        if shadowfit_free(u32(entry), map, surface.position) >= 0.0 {
-            verdict = verdict_of_map(map, surface, unsure).x;
+        if shadowfit_free(u32(entry), shadowfit_entry(entry), surface.position) >= 0.0 {
+            verdict = verdict_of_map(entry, surface, unsure).x;
         }
     }
     let is_contrary = IS_SOFT && finest.y != TOO_WIDE && finest.y != verdict;
