@@ -78,18 +78,22 @@ fn step_along(pixel: vec2<i32>, axis: vec2<i32>, depth: f32, p: vec3<f32>) -> ve
 }
 ";
 
-/// The look-up, and the rays of a pixel that edges trace: four points of its surface.
+/// Rays for each pixel that the maps are not sure of.
+const RAYS_PER_PIXEL: [u32; 2] = [1, Edges::USUAL_SAMPLES];
+
+/// The look-up, and the rays of a pixel that edges trace, RAY_COUNT points of its surface: the centre alone, or four.
 const LOOK_UP: &str = "shadowfit_factor_at(p, normal, vec2<f32>(id.xy))";
 const RAYS: &str = "
 fn lit(p: vec3<f32>, right: vec3<f32>, down: vec3<f32>, normal: vec3<f32>) -> f32 {
     var count = 0.0;
-    for (var at = 0u; at < 4u; at += 1u) {
+    for (var at = 0u; at < RAY_COUNT; at += 1u) {
         let place = array<vec2<f32>, 4>(
             vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125), vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
-        let start = p + right * place[at].x + down * place[at].y + normal * 0.001;
+        let beside = select(place[at], vec2<f32>(0.0), RAY_COUNT == 1u);
+        let start = p + right * beside.x + down * beside.y + normal * 0.001;
         count += select(1.0, 0.0, shadowfit_rays_blocked(start, picture.to_light.xyz));
     }
-    return count * 0.25;
+    return count / f32(RAY_COUNT);
 }
 ";
 
@@ -104,7 +108,7 @@ struct Pictures {
 }
 
 impl Pictures {
-    fn new(bench: &Bench, size: [u32; 2], map: &ShadowMap, rays: &RayScene) -> Self {
+    fn new(bench: &Bench, size: [u32; 2], (map, rays): (&ShadowMap, &RayScene), samples: u32) -> Self {
         let device = &bench.gpu.device;
         let depth = engine::target(device, size, shadowfit_render::passes::DEPTH_FORMAT);
         let factors = wgpu::BindingType::StorageTexture {
@@ -122,7 +126,8 @@ impl Pictures {
         let group = bindings::group(device, "picture", &layout, &[uniform.as_entire_binding(), depths, factors]);
         let look_up = receiver_wgsl(map.descriptor(), &WgslOptions::group(1)) + &SHADER.replace("FACTOR", LOOK_UP);
         let all = SHADER.replace("FACTOR", "lit(p, right, down, normal)");
-        let all = [rays_wgsl(&RayWgslOptions::group(1)).as_str(), RAYS, &all].concat();
+        let count = format!("const RAY_COUNT: u32 = {samples}u;\n");
+        let all = [rays_wgsl(&RayWgslOptions::group(1)).as_str(), &count, RAYS, &all].concat();
         Self {
             look_up: pipeline(device, [&layout, map.receiver_layout()], look_up),
             rays: pipeline(device, [&layout, rays.layout()], all),
@@ -227,24 +232,26 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     let mut rows = Vec::new();
     for height in bench.height.map_or(HEIGHTS.to_vec(), |height| vec![height]) {
         let size = [height * 16 / 9, height];
-        rows.push(row(size, walk(bench, scene, size)?));
+        for samples in RAYS_PER_PIXEL {
+            rows.push(row(size, samples, walk(bench, scene, size, samples)?));
+        }
     }
     Ok(Table {
         title: "Exact edges",
         note: format!(
             "Compute passes over the depth buffer of the {}, medians along the walk: PCF 5×5 for every pixel; finding the \
-             pixels that the maps are not sure of, with a budget of none; four rays for each of these; and four rays for \
+             pixels that the maps are not sure of, with a budget of none; rays for each of these; and as many rays for \
              every pixel that faces the light. Shares are of the pixels, the ratio is that of resolving to rays for all.",
             scene.name
         ),
-        columns: ["picture", "5×5", "classes", "their rays", "both", "all rays", "of all", "facing", "traced"]
+        columns: ["picture", "rays", "5×5", "classes", "their rays", "both", "all rays", "of all", "facing", "traced"]
             .map(str::to_owned)
             .to_vec(),
         rows,
     })
 }
 
-fn row([width, height]: [u32; 2], times: Times) -> Vec<String> {
+fn row([width, height]: [u32; 2], samples: u32, times: Times) -> Vec<String> {
     let pixels = f64::from(width) * f64::from(height);
     let part = |count: fn(&ResolveCounts) -> u32| {
         let parts = times.counts.iter().map(|counts| f64::from(count(counts)) / pixels);
@@ -253,19 +260,19 @@ fn row([width, height]: [u32; 2], times: Times) -> Vec<String> {
     let (facing, traced) = (part(|counts| counts.facing), part(|counts| counts.unsure));
     let difference = times.resolve.iter().zip(&times.classes).map(|(both, classes)| both - classes).collect();
     let [look_up, classes, both, all] = [times.look_up, times.classes, times.resolve, times.rays].map(median);
-    let mut row = vec![format!("{width} × {height}")];
+    let mut row = vec![format!("{width} × {height}"), samples.to_string()];
     row.extend([look_up, classes, median(difference), both, all].map(ms));
     row.extend([share(both, all), facing, traced]);
     row
 }
 
-fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2]) -> Result<Times> {
+fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], samples: u32) -> Result<Times> {
     let gpu = &bench.gpu;
-    let edges = Edges::Traced { samples: Edges::USUAL_SAMPLES };
+    let edges = Edges::Traced { samples };
     let technique = Technique::default().with_resolution(bench.map, bench.map).with_edges(edges);
     let mut engine = Engine::new(gpu, scene, &technique)?;
     let mut meshes = Meshes::new(bench, scene)?;
-    let pictures = Pictures::new(bench, size, engine.sun.map(), &meshes.rays);
+    let pictures = Pictures::new(bench, size, (engine.sun.map(), &meshes.rays), samples);
     engine.depth = pictures.depth.clone();
     let mut resolve = ResolvePass::new(&gpu.device, &gpu.queue)?;
     let (mut timer, mut times) = (Timer::new(gpu), Times::default());

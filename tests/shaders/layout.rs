@@ -251,11 +251,11 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
             size,
             depth_rounding,
             point_reach,
-            point_count,
             unsure_maps,
             unknown_count,
             sun_tangent,
-            padding,
+            padding_0,
+            padding_1,
             points,
             unknown,
         }

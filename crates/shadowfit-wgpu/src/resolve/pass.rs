@@ -358,12 +358,8 @@ impl ResolvePass {
     fn make_pipelines(&mut self, sun: &SunShadows, rays: &RayScene, shape: Shape) -> Result<(), ResolveError> {
         // What the WGSL does not depend on is the same for all.
         let of_all = ShadowMapDescriptor::default();
-        let descriptor = ShadowMapDescriptor {
-            resolution: of_all.resolution,
-            fade: of_all.fade,
-            edges: of_all.edges,
-            ..*sun.map().descriptor()
-        };
+        let descriptor =
+            ShadowMapDescriptor { resolution: of_all.resolution, fade: of_all.fade, ..*sun.map().descriptor() };
         if self.pipelines.as_ref().is_some_and(|pipelines| pipelines.key == (descriptor, shape)) {
             return Ok(());
         }
@@ -391,7 +387,7 @@ impl Pipelines {
         let traced: Vec<_> = [receiver, &trace_layout, rays].into_iter().chain(own).map(Some).collect();
         Self {
             classify: pipeline(device, &[Some(receiver), Some(&layout)], classify),
-            arguments: pipeline(device, &[Some(arguments)], (shader::arguments(), "count_groups")),
+            arguments: pipeline(device, &[Some(arguments)], (shader::arguments(descriptor), "count_groups")),
             select: pipeline(device, &[Some(select)], (shader::select(), "select_pixels")),
             trace: pipeline(device, &traced, trace),
             key: (*descriptor, shape),

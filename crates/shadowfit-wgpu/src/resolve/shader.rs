@@ -10,7 +10,7 @@ use super::view::NormalEncoding;
 use crate::shader::loads_wgsl;
 use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
 
-/// Threads of a workgroup that traces.
+/// Threads of a workgroup that traces, as many as a pixel may have rays.
 pub(super) const TRACE_THREADS: u32 = 64;
 /// Workgroups that WebGPU has along an axis.
 const MAX_GROUPS: u32 = 65_535;
@@ -46,7 +46,7 @@ pub(super) struct Shape {
 pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 6] {
     let shape = Shape { samples, normals };
     let [blocks, levels] = pyramid(descriptor);
-    [classify(descriptor, shape), arguments(), select(), trace(descriptor, shape, None), blocks, levels]
+    [classify(descriptor, shape), arguments(descriptor), select(), trace(descriptor, shape, None), blocks, levels]
 }
 
 /// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
@@ -91,8 +91,9 @@ pub(super) fn pyramid(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     [[loads, constants, blocks].concat(), levels]
 }
 
-pub(super) fn arguments() -> String {
-    let constants = format!("const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
+pub(super) fn arguments(descriptor: &ShadowMapDescriptor) -> String {
+    let pixels = TRACE_THREADS / descriptor.edges.samples().max(1);
+    let constants = format!("const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst PIXELS: u32 = {pixels}u;\n");
     let list = LIST.replace("LIST_COUNT", "u32");
     [&constants, &list, include_str!("../shaders/resolve_arguments.wgsl")].concat()
 }
@@ -107,7 +108,11 @@ pub(super) fn select() -> String {
 /// `counts`: an engine's own test of hits.
 pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
-    let threads = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
+    let points = descriptor.edges.samples().max(1);
+    let threads = format!(
+        "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\n",
+        TRACE_THREADS / points
+    );
     let list = LIST.replace("LIST_COUNT", "u32");
     let is_soft = descriptor.filter.is_soft();
     // Whatever the filter, rays to a sun with a radius are compared with casters at their distance.

@@ -47,11 +47,11 @@ impl Source {
             size: [width, height],
             depth_rounding: rounding(texture.format()),
             point_reach,
-            point_count: descriptor.edges.samples(),
             unsure_maps: unknown.maps,
             unknown_count: unknown.count as u32,
             sun_tangent: if descriptor.filter.is_soft() { descriptor.softness.tangent() } else { 0.0 },
-            padding: 0,
+            padding_0: 0,
+            padding_1: 0,
             points,
             unknown: unknown.boxes,
         };

@@ -56,37 +56,75 @@ fn traced(factor: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(clamp(factor, least, greatest)) | TRACED_BIT);
 }
 
+// A pixel of the list.
+struct Unsure {
+    pixel: vec2<i32>,
+    surface: Surface,
+    // How far points may lie.
+    sides: array<vec2<f32>, 2>,
+    across: Across,
+}
+
+fn unsure_at(index: u32) -> Unsure {
+    let packed = list.pixels[index];
+    let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
+    let surface = surface_of(pixel, depth_at(pixel));
+    return Unsure(pixel, surface, sides_of(pixel, surface), across_light(pixel));
+}
+
+// Whether the light reaches a point of a pixel: 1 or 0.
+fn lit_at(unsure: Unsure, place: vec2<f32>, in_sun: vec2<f32>) -> f32 {
+    let above = unsure.surface.normal * height_of(unsure.surface);
+    let start = point_of(unsure.pixel, unsure.surface, place) + above + resolve.eye;
+    let aside = in_sun * resolve.sun_tangent;
+    let beside = unsure.across.x * aside.x + unsure.across.y * aside.y;
+    return select(1.0, 0.0, shadowfit_rays_blocked(start, normalize(shadowfit_receiver.to_light + beside)));
+}
+
+// What the threads of a workgroup find: of each pixel what the map has in the way, then for each ray how much more light it
+// lets through than the map says, and its part of what the map says of the whole pixel.
+var<workgroup> casters: array<vec2<f32>, TRACE_THREADS>;
+var<workgroup> found: array<vec2<f32>, TRACE_THREADS>;
+
+// A thread for each ray: those of a pixel are neighbours.
 @compute @workgroup_size(TRACE_THREADS)
 fn trace(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    let index = (group.y * groups.x + group.x) * TRACE_THREADS + thread;
-    if index >= list.count {
-        return;
+    let of_group = thread / POINTS;
+    let at = thread % POINTS;
+    let index = (group.y * groups.x + group.x) * PIXELS + of_group;
+    let is_ray = of_group < PIXELS && index < list.count;
+    var unsure: Unsure;
+    if is_ray {
+        unsure = unsure_at(index);
+        if at == 0u {
+            casters[of_group] = casters_of(unsure);
+        }
     }
-    let packed = list.pixels[index];
-    let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
-    let surface = surface_of(pixel, depth_at(pixel));
-    let above = surface.normal * height_of(surface);
-    let sides = sides_of(pixel, surface);
-    let across = across_light(pixel);
-    let map = estimate_of(pixel, surface, across);
-    var lit = 0.0;
-    var expected = 0.0;
-    for (var at = 0u; at < resolve.point_count; at += 1u) {
-        let place = clamp(resolve.points[at].xy, sides[1], sides[0]);
+    workgroupBarrier();
+    if is_ray {
+        let place = clamp(resolve.points[at].xy, unsure.sides[1], unsure.sides[0]);
         let in_sun = resolve.points[at].zw;
-        let start = point_of(pixel, surface, place) + above + resolve.eye;
-        let aside = in_sun * resolve.sun_tangent;
-        let direction = normalize(shadowfit_receiver.to_light + across.x * aside.x + across.y * aside.y);
-        lit += select(1.0, 0.0, shadowfit_rays_blocked(start, direction));
-        expected += estimate_at(map, place, in_sun);
+        let map = estimate_of(unsure, casters[of_group]);
+        let more = lit_at(unsure, place, in_sun) - estimate_at(map, place, in_sun);
+        var part = 0.0;
+        for (var look_up = at; map.is_known && look_up < LOOK_UPS; look_up += POINTS) {
+            part += estimate_part(map, unsure.sides, look_up);
+        }
+        found[thread] = vec2<f32>(more, part);
     }
-    // Rays say what the map is wrong by where they are: by as much it is taken to be wrong as a whole.
-    let share = lit / f32(resolve.point_count);
-    let corrected = saturate(estimate_whole(map, sides) + (lit - expected) / f32(resolve.point_count));
-    let factor = mix(select(share, corrected, map.is_known), 1.0, shadowfit_faded(surface.position));
-    textureStore(factors, resolve.corner + vec2<u32>(pixel), vec4<f32>(traced(factor), 0.0, 0.0, 0.0));
+    workgroupBarrier();
+    if is_ray && at == 0u {
+        var sum = vec2<f32>(0.0);
+        for (var ray = 0u; ray < POINTS; ray += 1u) {
+            sum += found[thread + ray];
+        }
+        // Rays say what the map is wrong by where they are: by as much it is taken to be wrong as a whole.
+        let share = saturate(sum.y / f32(LOOK_UPS) + sum.x / f32(POINTS));
+        let factor = traced(mix(share, 1.0, shadowfit_faded(unsure.surface.position)));
+        textureStore(factors, resolve.corner + vec2<u32>(unsure.pixel), vec4<f32>(factor, 0.0, 0.0, 0.0));
+    }
 }
