@@ -90,9 +90,8 @@ fn resolve_modules() -> Vec<(String, String)> {
         let kind = format!("{map:?}, {samples} samples, normals {normals:?}, compute");
         let [classify, _, _, trace, blocks, levels] = resolve_wgsl(&map, samples, normals);
         modules.push((format!("resolve classify, {kind}"), classify));
-        // Rays read nothing that depends on the filter.
+        modules.push((format!("resolve trace, {kind}"), trace));
         if map.filter == FilterKind::default() {
-            modules.push((format!("resolve trace, {kind}"), trace));
             modules.push((format!("resolve blocks, {kind}"), blocks));
             modules.push((format!("resolve levels, {kind}"), levels));
         }

@@ -5,6 +5,8 @@
 mod any_hit_gpu;
 #[path = "resolve/errors_gpu.rs"]
 mod errors_gpu;
+#[path = "resolve/factors_gpu.rs"]
+mod factors_gpu;
 #[path = "resolve/pass_gpu.rs"]
 mod pass_gpu;
 #[path = "resolve/soft_gpu.rs"]

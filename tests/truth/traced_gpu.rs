@@ -2,7 +2,7 @@
 //! within rounding, or a caster or gap that is narrower than a texel.
 
 use shadowfit::glam::{Quat, Vec3};
-use shadowfit::settings::Edges;
+use shadowfit::settings::{Edges, FilterKind, SoftRadius, Softness};
 use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_scene::builtin::{BuiltinScene, default_scene};
 use shadowfit_scene::{AlphaMode, Scene};
@@ -169,6 +169,30 @@ fn triangles_without_an_area_change_nothing() {
     assert_exact("flat", &tally);
     assert_eq!((tally.all.facing, tally.transitions), (plain.all.facing, plain.transitions));
     assert_eq!(tally.all, plain.all);
+}
+
+/// Mean errors against the area of each pixel with one surface, in per cent: of the filter, and of as many rays a pixel.
+fn area_errors(technique: Technique, sun_radius: f64, samples: u32) -> [f64; 2] {
+    let judging = Judging { size: SIZE, crawl: false, area: 8, sun_radius, ..Judging::default() };
+    let mut comparison = Comparison::new(software_gpu(), boxes(), judging).expect("a scene");
+    for edges in [Edges::Filtered, Edges::Traced { samples }] {
+        comparison.add(technique.with_edges(edges)).expect("a technique");
+    }
+    let view = seen_from(Vec3::new(2.0, 2.5, 3.0));
+    let outcomes = comparison.frame(&view, &mut SharedTruth::default()).expect("a frame");
+    core::array::from_fn(|index| outcomes[index].judged.tally.area.errors()[0].expect("pixels with one surface"))
+}
+
+#[test]
+fn four_rays_a_pixel_err_by_less_than_half_of_what_the_filter_errs_by_against_the_pixel_s_area() {
+    let radius = 0.017_453_f32;
+    let softness = Softness::default().with_radius(SoftRadius::SunAngle(radius));
+    let soft = coarse().with_filter(FilterKind::Pcss).with_softness(softness);
+    for (what, technique, radius) in [("hard", coarse(), 0.0), ("soft", soft, radius)] {
+        let [filtered, traced] = area_errors(technique, f64::from(radius), 4);
+        println!("{what}: {filtered}% by the filter, {traced}% by rays");
+        assert!(filtered > 0.1 && traced < 0.5 * filtered, "{what}: {filtered}% and {traced}%");
+    }
 }
 
 #[test]

@@ -1,18 +1,25 @@
 //! What the first resolve pass finds about each pixel, in plain Rust: the arithmetic of `resolve.wgsl`,
 //! `resolve_classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
-//! back. Suns with a radius are in `twin/soft.rs`, and what the third pass does, rays, in `twin/rays.rs`.
+//! back. Suns with a radius are in `twin/soft.rs`, and what the third pass does, rays and what maps say beside them, in
+//! `twin/rays.rs` and `twin/estimate.rs`.
 
+#[path = "twin/choice.rs"]
+mod choice;
+#[path = "twin/estimate.rs"]
+mod estimate;
 #[path = "twin/rays.rs"]
 mod rays;
 #[path = "twin/soft.rs"]
 mod soft;
+#[path = "twin/surface.rs"]
+mod surface;
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec2, Vec3, Vec4};
-use shadowfit::settings::MapSelection;
 use shadowfit::{Bias, DepthConvention, FittedMap};
 use shadowfit_wgpu::resolve::NormalEncoding;
 use shadowfit_wgpu::{MapUniform, MapView, ReceiverUniform, ShadowMapDescriptor};
 
+use self::surface::Surface;
 use super::stage::{Drawn, Look, Stage};
 use crate::shaders::read_back::texels;
 
@@ -39,11 +46,15 @@ pub(super) const NEXT_TO: Slack = 1e-3;
 
 // The constants of the WGSL.
 const FOOTPRINT: f32 = 2.0;
+const COARSEST_FOOTPRINT: f32 = 3.0;
 const MOST_BLOCKS: f32 = 6.0;
 const ROUNDED_TEXEL: f32 = 0.02;
 const BENT: f32 = 0.015_625;
 const ROUNDINGS: f32 = 4.0;
 const MIN_COSINE: f32 = 0.01;
+const POSITION_ROUNDING: f32 = 4.768_371_6e-7;
+/// Least height of a ray's start, in metres: [`ResolveView::new`](shadowfit_wgpu::resolve::ResolveView::new)'s.
+const RAY_OFFSET: f32 = 1e-3;
 /// By how much a depth on a plane may be rounded otherwise: by 2⁻²⁴ in each of some sums.
 const DEPTH_ROUNDING: f32 = 5e-7;
 /// WebGPU's places of four samples.
@@ -60,6 +71,8 @@ pub(super) struct Twin {
     depths: Vec<f32>,
     samples: usize,
     normals: Option<(Vec<[f32; 4]>, NormalEncoding)>,
+    /// Of each ray: its start, in pixels from the first sample, and its place in the sun's disc.
+    points: Vec<[Vec2; 2]>,
     point_reach: f32,
     descriptor: ShadowMapDescriptor,
     receiver: ReceiverUniform,
@@ -72,16 +85,6 @@ pub(super) struct Twin {
     slack: Slack,
     /// Of how far casters may stand from a point, in texels.
     radius_slack: Slack,
-}
-
-struct Surface {
-    position: Vec3,
-    w: f32,
-    depth: f32,
-    steps: Vec2,
-    normal: Vec3,
-    is_known: bool,
-    is_single: bool,
 }
 
 struct Projected {
@@ -99,14 +102,6 @@ enum Footprint {
     Sure(f32),
 }
 
-struct Choice {
-    first: i32,
-    second: i32,
-    weight: f32,
-    clamped: i32,
-    far: f32,
-}
-
 impl Twin {
     /// Of the picture that a stage has drawn and resolved.
     pub(super) fn new(stage: &Stage, look: &Look, drawn: &Drawn) -> Self {
@@ -120,7 +115,8 @@ impl Twin {
         let to_world = world_from_pixel(look);
         let stored = stage.stored();
         let first = if look.samples > 1 { FOUR[0] } else { Vec2::ZERO };
-        let places = rays::places(map.descriptor().edges.samples(), false);
+        let (count, is_soft) = (map.descriptor().edges.samples(), map.descriptor().filter.is_soft());
+        let points = rays::points(count, is_soft, first);
         Self {
             size: look.size.map(u32::cast_signed),
             convention: look.convention,
@@ -129,10 +125,11 @@ impl Twin {
             depths: stage.depths(&drawn.depth),
             samples: look.samples as usize,
             normals,
-            point_reach: places.iter().map(|[place, _]| (*place - first).abs().max_element()).fold(0.0, f32::max),
+            point_reach: points.iter().map(|[place, _]| place.abs().max_element()).fold(0.0, f32::max),
+            points,
             descriptor: *map.descriptor(),
             receiver: on_planes(stage.sun.maps(), &from_eye, map.descriptor()),
-            pyramid: map.descriptor().filter.is_soft().then(|| soft::Pyramid::new(map.descriptor(), &stored)),
+            pyramid: is_soft.then(|| soft::Pyramid::new(map.descriptor(), &stored)),
             stored,
             eye: (look.camera.eye - stage.rays.origin()).as_vec3(),
             slack: 0.0,
@@ -184,89 +181,6 @@ impl Twin {
         }
     }
 
-    fn far_depth(&self) -> f32 {
-        self.convention.far()
-    }
-
-    fn sample(&self, [x, y]: [i32; 2], sample: usize) -> f32 {
-        let count = (self.size[0] * self.size[1]) as usize;
-        self.depths[sample * count + (y * self.size[0] + x) as usize] - self.far_depth()
-    }
-
-    fn depth_at(&self, [x, y]: [i32; 2]) -> f32 {
-        if x < 0 || y < 0 || x >= self.size[0] || y >= self.size[1] { 0.0 } else { self.sample([x, y], 0) }
-    }
-
-    fn rounding(&self, depth: f32) -> f32 {
-        (depth + self.far_depth()).abs() * (1.0 / 8_388_608.0) + 1.0 / 1_073_741_824.0
-    }
-
-    fn place(&self, sample: usize) -> Vec2 {
-        if self.samples == 1 { Vec2::ZERO } else { FOUR[sample] }
-    }
-
-    fn change(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], depth: f32) -> (f32, bool) {
-        let next = self.depth_at([x + right, y + down]);
-        let previous = self.depth_at([x - right, y - down]);
-        let (after, before) = (next - depth, depth - previous);
-        let most = (BENT * (after + before).abs() + ROUNDINGS * self.rounding(depth)) * (1.0 + self.slack);
-        let is_plane = next != 0.0 && previous != 0.0 && (after - before).abs() <= most;
-        let takes_after = previous == 0.0 || (next != 0.0 && after.abs() <= before.abs());
-        if is_plane {
-            (0.5 * (after + before), true)
-        } else if next == 0.0 && previous == 0.0 {
-            (0.0, false)
-        } else {
-            (if takes_after { after } else { before }, false)
-        }
-    }
-
-    fn is_single(&self, pixel: [i32; 2], depth: f32, steps: Vec2) -> bool {
-        (1..self.samples).all(|sample| {
-            let offset = self.place(sample) - self.place(0);
-            let expected = depth + (steps.x * offset.x + steps.y * offset.y);
-            let most = BENT * (steps.x.abs() + steps.y.abs()) + ROUNDINGS * self.rounding(depth);
-            (self.sample(pixel, sample) - expected).abs() <= most * (1.0 + self.slack)
-        })
-    }
-
-    fn stored_normal(&self, [x, y]: [i32; 2]) -> Vec3 {
-        let Some((normals, encoding)) = &self.normals else { return Vec3::ZERO };
-        let [a, b, c, _] = normals[(y * self.size[0] + x) as usize];
-        let stored = Vec3::new(a, b, c);
-        match encoding {
-            _ if stored == Vec3::ZERO => Vec3::ZERO,
-            NormalEncoding::Signed => unit(stored),
-            NormalEncoding::Unsigned => unit(stored * 2.0 - 1.0),
-        }
-    }
-
-    fn surface_of(&self, pixel: [i32; 2], depth: f32) -> Surface {
-        let m = self.world_from_pixel;
-        let place = Vec2::new(pixel[0] as f32, pixel[1] as f32) + self.place(0);
-        let homogeneous = transformed(&m, Vec4::new(place.x, place.y, depth, 1.0));
-        let w = homogeneous.w;
-        let position = homogeneous.truncate() / w;
-        let moved = |change: Vec4| (change.truncate() - position * change.w) / w;
-        let ray = moved(m[2]);
-        let away = if dot(ray, self.forward) > 0.0 { ray } else { -ray };
-        let toward_eye = |normal: Vec3| if dot(normal, away) > 0.0 { -normal } else { normal };
-        let stored = self.stored_normal(pixel);
-        let (normal, steps, is_known) = if stored == Vec3::ZERO {
-            let (across, is_flat_across) = self.change(pixel, [1, 0], depth);
-            let (down, is_flat_down) = self.change(pixel, [0, 1], depth);
-            let normal = unit(moved(m[0] + m[2] * across).cross(moved(m[1] + m[2] * down)));
-            let is_known = is_flat_across && is_flat_down && normal != Vec3::ZERO;
-            (toward_eye(normal), Vec2::new(across, down), is_known)
-        } else {
-            let normal = toward_eye(stored);
-            let [across, down] = [m[0], m[1]].map(|change| dot(stored, moved(change)));
-            (normal, -Vec2::new(across, down) / dot(stored, ray), true)
-        };
-        let is_single = self.is_single(pixel, depth, steps);
-        Surface { position, w, depth, steps, normal, is_known, is_single }
-    }
-
     fn view_depth(&self, position: Vec3) -> f32 {
         let [x, y, z, w] = self.receiver.view;
         dot(Vec3::new(x, y, z), position) + w
@@ -279,65 +193,6 @@ impl Twin {
         }
         let share = (beyond / self.receiver.fade_width.max(1e-30)).clamp(0.0, 1.0);
         share * share * (3.0 - 2.0 * share)
-    }
-
-    fn free(&self, entry: u32, map: &MapUniform, position: Vec3) -> f32 {
-        let uv = texture_place(map, position.extend(1.0));
-        let size = Vec2::from(map.size);
-        let free = uv.truncate().min(Vec2::ONE - uv.truncate()) * size;
-        let is_held = uv.cmpge(Vec3::ZERO).all() && uv.cmple(Vec3::ONE).all();
-        if entry < self.receiver.map_count && is_held { free.min_element() } else { -1.0 }
-    }
-
-    fn is_open(&self, choice: &Choice, entry: i32, view_depth: f32, map: &MapUniform) -> bool {
-        match self.descriptor.selection {
-            MapSelection::Coverage { .. } => choice.first < 0 || (choice.second < 0 && choice.weight < 1.0),
-            MapSelection::ViewDepth { .. } if choice.first < 0 => view_depth < map.far,
-            MapSelection::ViewDepth { .. } => {
-                choice.first + 1 == entry && view_depth > map.blend_near && map.blend_near < choice.far
-            }
-        }
-    }
-
-    fn choose(&self, position: Vec3) -> Choice {
-        let view_depth = self.view_depth(position) + self.slack * 0.01;
-        let reach = self.descriptor.softness.reach(self.descriptor.filter);
-        let blend = self.descriptor.selection.blend();
-        let mut choice = Choice { first: -1, second: -1, weight: 1.0, clamped: -1, far: 0.0 };
-        for entry in 0..self.descriptor.maps {
-            let map = &self.receiver.maps[entry as usize];
-            let number = entry.cast_signed();
-            if !self.is_open(&choice, number, view_depth, map) {
-                continue;
-            }
-            let free = self.free(entry, map, position) + self.slack;
-            if self.descriptor.selection.is_by_coverage() {
-                if free >= reach {
-                    if choice.first < 0 {
-                        let beyond = free - reach;
-                        choice = Choice {
-                            first: number,
-                            weight: if beyond < blend { beyond / blend } else { 1.0 },
-                            ..choice
-                        };
-                    } else {
-                        choice.second = number;
-                    }
-                } else if free >= 0.0 && choice.clamped < 0 {
-                    choice.clamped = number;
-                }
-            } else if free >= 0.0 {
-                if choice.first < 0 {
-                    choice = Choice { first: number, far: map.far, ..choice };
-                } else {
-                    choice.second = number;
-                }
-            }
-        }
-        if choice.first < 0 {
-            choice.first = choice.clamped;
-        }
-        choice
     }
 
     /// The factor by the finest map in which a pixel's footprint is whole and not too wide, or by the one that it reads by
@@ -355,7 +210,7 @@ impl Twin {
                 continue;
             }
             let projected = self.project(map, surface.position, surface.normal);
-            let spread = self.spread_in(map, surface);
+            let spread = self.spread_in(entry, map, surface);
             let is_soft = self.descriptor.filter.is_soft();
             let close = || self.footprint(map, &projected, spread);
             match if is_soft { self.soft_footprint(map, &projected, spread) } else { close() } {
@@ -388,12 +243,14 @@ impl Twin {
         Projected { texel, surface: uv.z, depth, gradient }
     }
 
-    fn spread_in(&self, map: &MapUniform, surface: &Surface) -> Vec2 {
-        let m = self.world_from_pixel;
-        let moved = |change: Vec4| (change.truncate() - surface.position * change.w) / surface.w;
-        let [a, b] = [m[0] + m[2] * surface.steps.x, m[1] + m[2] * surface.steps.y]
-            .map(|change| texture_place(map, moved(change).extend(0.0)).truncate());
-        self.point_reach * (a.abs() + b.abs()) * Vec2::from(map.size)
+    /// By how much the starts of a pixel's rays differ from its first sample in a map, in texels; more in the last one.
+    fn spread_in(&self, entry: u32, map: &MapUniform, surface: &Surface) -> Vec2 {
+        let [right, down] = self.texels_per_pixel(map, surface);
+        let above = (surface.normal * self.height_of(surface)).extend(0.0);
+        let above = texture_place(map, above).truncate() * Vec2::from(map.size);
+        let is_coarsest = entry + 1 == self.receiver.map_count;
+        let beside = if is_coarsest { COARSEST_FOOTPRINT - FOOTPRINT } else { 0.0 };
+        self.point_reach * (right.abs() + down.abs()) + above.abs() + beside
     }
 
     fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2) -> Footprint {
@@ -408,7 +265,6 @@ impl Twin {
         let toward_light = if is_reversed { 1.0 } else { -1.0 };
         let steepness = projected.gradient.x.abs() + projected.gradient.y.abs();
         let rounding = map.constant_depth + toward_light * ROUNDED_TEXEL * steepness;
-        let is_closer = |a: f32, b: f32| if is_reversed { a >= b } else { a <= b };
         let [mut is_lit, mut is_shadowed] = [true; 2];
         for row in 0..(2.0 * blocks.y) as u32 {
             for column in 0..(2.0 * blocks.x) as u32 {
@@ -423,8 +279,8 @@ impl Twin {
                 let plane = (projected.surface + rounding + change + (y + x)).clamp(0.0, 1.0);
                 let stored = self.stored_at(map, texel);
                 let moved = self.depth_slack(steepness);
-                is_lit &= is_closer(plane + moved, stored);
-                is_shadowed &= !is_closer(biased + moved, stored);
+                is_lit &= self.is_nearer(plane + moved, stored);
+                is_shadowed &= !self.is_nearer(biased + moved, stored);
             }
         }
         match (is_shadowed, is_lit) {
@@ -437,6 +293,11 @@ impl Twin {
     /// By how much depths are moved on a plane that changes by so much over a texel.
     fn depth_slack(&self, steepness: f32) -> f32 {
         self.slack * (steepness + DEPTH_ROUNDING / NEXT_TO)
+    }
+
+    /// Whether a depth is as near to the light as another one, or nearer.
+    fn is_nearer(&self, a: f32, b: f32) -> bool {
+        if self.descriptor.depth == DepthConvention::Reversed { a >= b } else { a <= b }
     }
 
     fn stored_at(&self, map: &MapUniform, texel: Vec2) -> f32 {
@@ -460,11 +321,6 @@ fn texture_place(map: &MapUniform, position: Vec4) -> Vec3 {
 
 fn dot(a: Vec3, b: Vec3) -> f32 {
     (a.x * b.x + a.y * b.y) + a.z * b.z
-}
-
-fn unit(v: Vec3) -> Vec3 {
-    let squared = dot(v, v);
-    if squared > 0.0 && squared < 3e38 { v * (1.0 / squared.sqrt()) } else { Vec3::ZERO }
 }
 
 /// From a pixel's column and row, and its depth minus the far plane's.

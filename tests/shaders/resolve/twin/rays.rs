@@ -5,12 +5,18 @@ use shadowfit_truth::Tracer;
 
 use super::{Surface, Twin, dot, transformed};
 
-/// Least height of a ray's start, in metres: [`ResolveView::new`](shadowfit_wgpu::resolve::ResolveView::new)'s.
-const RAY_OFFSET: f32 = 1e-3;
-const POSITION_ROUNDING: f32 = 4.768_371_6e-7;
+/// What the rays of a pixel find.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Traced {
+    /// The share of the light, with what the map says of the whole pixel, or of the whole sun.
+    pub(in super::super) factor: f32,
+    /// The share of the rays that are not blocked.
+    pub(in super::super) share: f32,
+}
 
-/// The points of a pixel that rays start from, from its centre, in pixels, and of the sun that they go to, in its radii.
-pub(super) fn places(count: u32, is_soft: bool) -> Vec<[Vec2; 2]> {
+/// The points of a pixel that rays start from, in pixels from its first sample, and of the sun that they go to, in its
+/// radii. `first`: where that sample lies, from the pixel's centre.
+pub(super) fn points(count: u32, is_soft: bool, first: Vec2) -> Vec<[Vec2; 2]> {
     let four = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]];
     let place = |index: u32| match count {
         1 => Vec2::ZERO,
@@ -20,8 +26,10 @@ pub(super) fn places(count: u32, is_soft: bool) -> Vec<[Vec2; 2]> {
             Vec2::new(column as f32 - 0.5, (index as f32 + 0.5) / count as f32 - 0.5)
         }
     };
-    let in_sun = |index| if is_soft { in_disc(index, count) } else { Vec2::ZERO };
-    (0..count).map(|index| [place(index), in_sun(index)]).collect()
+    let point = |index: u32| {
+        if is_soft { [Vec2::ZERO, in_disc(index, count)] } else { [place(index) - first, Vec2::ZERO] }
+    };
+    (0..count).map(point).collect()
 }
 
 /// One of several places in the unit disc (H. Vogel, "A better way to construct the sunflower head", 1979).
@@ -32,27 +40,30 @@ pub(super) fn in_disc(index: u32, count: u32) -> Vec2 {
 }
 
 impl Twin {
-    /// The share of the light that the rays of a pixel let through, and what they would without the fade.
-    pub(in super::super) fn traced(&self, index: usize, tracer: &Tracer) -> f32 {
+    pub(in super::super) fn traced(&self, index: usize, tracer: &Tracer) -> Traced {
         let (pixel, surface) = self.surface_at(index);
-        let height = self.height_of(&surface);
-        let rough = self.rough(pixel, &surface);
+        let above = surface.normal * self.height_of(&surface);
+        let sides = self.sides_of(pixel, &surface);
         let [x, y] = self.across_light();
-        let (sine, cosine) = self.turn(pixel).sin_cos();
-        let [x, y] = [x * cosine + y * sine, y * cosine - x * sine];
-        let is_soft = self.descriptor.filter.is_soft();
-        let count = self.descriptor.edges.samples();
-        let is_lit = |[place, in_sun]: &[Vec2; 2]| {
-            let place = *place - self.place(0);
-            let bent = rough.x * place.x.abs() + rough.y * place.y.abs();
-            let start = self.point_of(pixel, &surface, place) + surface.normal * (height + bent) + self.eye;
+        let turn = self.turn(pixel);
+        let (sine, cosine) = turn.sin_cos();
+        let across = [x * cosine + y * sine, y * cosine - x * sine];
+        let estimate = self.estimate_of(&surface, across, turn);
+        let (mut lit, mut expected) = (0.0, 0.0);
+        for [place, in_sun] in &self.points {
+            let place = place.clamp(sides[0], sides[1]);
+            let start = self.point_of(pixel, &surface, place) + above + self.eye;
             let aside = *in_sun * self.sun_tangent();
-            let direction = (Vec3::from(self.receiver.to_light) + x * aside.x + y * aside.y).normalize();
-            !tracer.is_occluded(start, direction)
-        };
-        let lit = places(count, is_soft).iter().filter(|place| is_lit(place)).count() as f32 / count as f32;
+            let direction = Vec3::from(self.receiver.to_light) + across[0] * aside.x + across[1] * aside.y;
+            lit += f32::from(u8::from(!tracer.is_occluded(start, direction.normalize())));
+            expected += estimate.as_ref().map_or(0.0, |map| self.estimate_at(map, [place, *in_sun]));
+        }
+        let count = self.points.len() as f32;
+        let share = lit / count;
+        let corrected = |map| (self.estimate_whole(map, sides) + (lit - expected) / count).clamp(0.0, 1.0);
         let faded = self.faded(surface.position);
-        lit * (1.0 - faded) + faded
+        let factor = estimate.as_ref().map_or(share, corrected) * (1.0 - faded) + faded;
+        Traced { factor, share: share * (1.0 - faded) + faded }
     }
 
     /// How many of as many rays over the sun's disc, from a pixel's centre, are not blocked.
@@ -74,37 +85,22 @@ impl Twin {
         (pixel, self.surface_of(pixel, self.depth_at(pixel)))
     }
 
-    fn sun_tangent(&self) -> f32 {
+    pub(super) fn sun_tangent(&self) -> f32 {
         if self.descriptor.filter.is_soft() { self.descriptor.softness.tangent() } else { 0.0 }
     }
 
-    /// Change of a position per pixel or per depth.
-    fn moved(&self, column: usize, surface: &Surface) -> Vec3 {
-        let change = self.world_from_pixel[column];
-        (change.truncate() - surface.position * change.w) / surface.w
+    /// Whether the neighbour of a pixel leaves its plane by so little that rays from there start above the surface.
+    fn goes_on(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], surface: &Surface) -> bool {
+        let found = self.depth_at([x + right, y + down]);
+        let off = found - surface.depth - (surface.steps.x * right as f32 + surface.steps.y * down as f32);
+        let up = dot(Self::moved(self.world_from_pixel[2], surface), surface.normal);
+        found != 0.0 && (off * up).abs() * self.point_reach <= self.height_of(surface)
     }
 
-    fn height_of(&self, surface: &Surface) -> f32 {
-        let step = self.moved(2, surface).length() * self.rounding(surface.depth);
-        let distance = surface.position.length() + self.eye.length();
-        RAY_OFFSET.max(step).max(POSITION_ROUNDING * distance)
-    }
-
-    /// How far neighbours across and down leave the plane of a pixel, in metres.
-    fn rough(&self, [x, y]: [i32; 2], surface: &Surface) -> Vec2 {
-        if self.point_reach == 0.0 {
-            return Vec2::ZERO;
-        }
-        let (ray, across) = (self.moved(2, surface), self.moved(0, surface));
-        let up = dot(ray, surface.normal);
-        let height = |[right, down]: [i32; 2]| {
-            let found = self.depth_at([x + right, y + down]);
-            let step = surface.steps.x * right as f32 + surface.steps.y * down as f32;
-            let off = found - surface.depth - step;
-            let is_same = found != 0.0 && off.abs() * ray.length() <= step.abs() * ray.length() + across.length();
-            if is_same { (off * up).abs() } else { 0.0 }
-        };
-        Vec2::new(height([1, 0]).max(height([-1, 0])), height([0, 1]).max(height([0, -1])))
+    /// Least and greatest place of a pixel's points, in pixels from its first sample.
+    fn sides_of(&self, pixel: [i32; 2], surface: &Surface) -> [Vec2; 2] {
+        let far = |axis: [i32; 2]| if self.goes_on(pixel, axis, surface) { self.point_reach } else { 0.0 };
+        [-Vec2::new(far([-1, 0]), far([0, -1])), Vec2::new(far([1, 0]), far([0, 1]))]
     }
 
     fn point_of(&self, [x, y]: [i32; 2], surface: &Surface, place: Vec2) -> Vec3 {

@@ -123,10 +123,6 @@ impl Twin {
         })
     }
 
-    fn is_nearer(&self, a: f32, b: f32) -> bool {
-        if self.descriptor.depth == DepthConvention::Reversed { a >= b } else { a <= b }
-    }
-
     fn bounds_of(&self, map: &MapUniform, blocks: &Blocks) -> [f32; 2] {
         let all = self.each(map, blocks).map(|(_, bounds)| bounds);
         let nearer = |a: f32, b: f32| if self.is_nearer(a, b) { a } else { b };
