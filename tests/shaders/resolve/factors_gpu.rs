@@ -20,9 +20,14 @@ const SIZE: [u32; 2] = [96, 54];
 /// By how much a factor may differ from the twin's: weights of the hardware's look-ups have eight bits.
 const ROUNDED: f32 = 0.02;
 
-/// Pixels of a picture that may differ by more, since a texel, or an edge that a ray meets, lies next to a threshold: one in
-/// each of four pictures was found, of 56.
+/// Pixels of a picture that may differ by more, since a texel, or an edge that a ray meets, lies next to a threshold: 4 of
+/// 53,000 were found, no more than two in a picture.
 const OTHERS: usize = 2;
+
+/// Share of the pixels of a bent surface in full light that may be darker than it is: without normals 0.4% of the hills and
+/// 0.2% of the ball were found, where several bends within a few pixels look like a plane, and with normals 0.1% and none.
+/// They were 13% and 32%, and 1% and none, where two pixels sufficed to tell that a surface goes on as a plane.
+const DARK: f32 = 0.005;
 
 /// What is found about traced pixels.
 #[derive(Debug, Default)]
@@ -39,7 +44,7 @@ fn is_traced(factor: f32) -> bool {
     factor > 0.0 && factor.to_bits() & 1 == 1
 }
 
-/// Compares the factors of a picture's traced pixels with the twin's. With `few` rays they are shares of rays alone.
+/// Compares the factors of a picture's traced pixels with the twin's.
 fn compare(stage: &mut Stage, look: &Look, tracer: &Tracer) {
     let drawn = stage.draw(look);
     let (factors, _) = stage.traced(look, &drawn, |_| ());
@@ -122,8 +127,8 @@ fn bent(cells: u16, point: impl Fn(Vec2) -> Vec3) -> Thing {
 
 /// Hills that are less steep than the light.
 fn hills() -> Thing {
-    bent(96, |place| {
-        let Vec2 { x, y: z } = (place - 0.5) * 16.0;
+    bent(160, |place| {
+        let Vec2 { x, y: z } = (place - 0.5) * 8.0;
         Vec3::new(x, 0.2 * (2.0 * x).sin() * (1.7 * z).cos(), z)
     })
 }
@@ -139,23 +144,23 @@ fn ball() -> Thing {
 #[test]
 fn bent_surfaces_that_nothing_shadows_are_lit_by_four_rays_a_pixel() {
     let size = [160, 90];
+    let least = 1.0 - 1.0 / 64.0;
     let eye = DVec3::new(0.0, 2.5, 7.0);
     let forward = (-eye).as_vec3().normalize();
     let aspect = Look::aspect(size);
     let camera = PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y: 0.9, aspect, near: 0.1, far: 60.0 };
-    // With wide texels, so that many pixels are not sure.
-    let coarse = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256).with_max_distance(60.0);
     // The ball is seen from where the light comes from.
     for (name, thing, direction) in
         [("hills", hills(), Vec3::new(0.4, -1.0, -0.3).normalize()), ("ball", ball(), forward)]
     {
-        let mut stage = Stage::new(&traced(coarse, 4), vec![thing]);
+        let mut stage = Stage::new(&traced(hard(), 4), vec![thing]);
         for normals in [None, Some(NormalEncoding::Signed)] {
             let look = Look { camera, direction, size, normals, ..look(1, DepthConvention::Reversed, normals) };
             let drawn = stage.draw(&look);
             let (factors, counts) = stage.traced(&look, &drawn, |_| ());
-            let dark = factors.iter().filter(|factor| (0.0..1.0 - 1.0 / 64.0).contains(*factor)).count();
+            let dark = factors.iter().filter(|factor| (0.0..least).contains(*factor)).count();
             println!("{name}, {normals:?}: {dark} are dark; {counts:?}");
+            assert!(counts.traced > 300 && dark as f32 <= DARK * counts.facing as f32, "{name}, {normals:?}: {dark}");
         }
     }
 }

@@ -2,13 +2,20 @@
 
 @group(1) @binding(4) var<storage, read> list: List;
 
-// Whether a surface goes on to a neighbour of its pixel as the pixel's plane does: so that rays that start on the plane on
-// that side start above the surface.
-fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
-    let found = depth_at(pixel + axis);
-    let off = found - surface.depth - dot(surface.steps, vec2<f32>(axis));
+// Whether a pixel lies so near to the plane of another one that rays which start on the plane between them start above the
+// surface: by half of their height, since points may lie aside along both axes. step: from the other one.
+fn is_on_plane(pixel: vec2<i32>, step: vec2<i32>, surface: Surface) -> bool {
+    let found = depth_at(pixel + step);
+    let off = found - surface.depth - dot(surface.steps, vec2<f32>(step));
     let beneath = abs(off * dot(moved(resolve.world_from_pixel[2], surface), surface.normal)) * resolve.point_reach;
-    return found != 0.0 && beneath <= height_of(surface);
+    return found != 0.0 && beneath <= 0.5 * height_of(surface);
+}
+
+// Whether a surface goes on to a neighbour of its pixel as the pixel's plane does. Two pixels are on any plane that follows
+// from them, however the surface bends between them: it takes a third one in line.
+fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
+    return is_on_plane(pixel, axis, surface)
+        && (is_on_plane(pixel, -axis, surface) || is_on_plane(pixel, 2 * axis, surface));
 }
 
 // How far points may lie from a pixel's first sample, in pixels: up to the right and down, up to the left and above.

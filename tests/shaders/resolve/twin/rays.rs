@@ -89,12 +89,18 @@ impl Twin {
         if self.descriptor.filter.is_soft() { self.descriptor.softness.tangent() } else { 0.0 }
     }
 
-    /// Whether the neighbour of a pixel leaves its plane by so little that rays from there start above the surface.
-    fn goes_on(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], surface: &Surface) -> bool {
+    /// Whether a pixel leaves the plane of another one by so little that rays from between them start above the surface.
+    fn is_on_plane(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], surface: &Surface) -> bool {
         let found = self.depth_at([x + right, y + down]);
         let off = found - surface.depth - (surface.steps.x * right as f32 + surface.steps.y * down as f32);
         let up = dot(Self::moved(self.world_from_pixel[2], surface), surface.normal);
-        found != 0.0 && (off * up).abs() * self.point_reach <= self.height_of(surface)
+        found != 0.0 && (off * up).abs() * self.point_reach <= 0.5 * self.height_of(surface)
+    }
+
+    /// Whether the surface goes on to a neighbour as the pixel's plane does.
+    fn goes_on(&self, pixel: [i32; 2], axis: [i32; 2], surface: &Surface) -> bool {
+        let is_on_plane = |steps: i32| self.is_on_plane(pixel, axis.map(|side| side * steps), surface);
+        is_on_plane(1) && (is_on_plane(-1) || is_on_plane(2))
     }
 
     /// Least and greatest place of a pixel's points, in pixels from its first sample.
