@@ -14,7 +14,7 @@ const SEARCH: u32 = 20;
 const SEARCH_START: f32 = 0.5;
 const SEARCH_BESIDE: f32 = 0.5;
 /// Cosine and sine of the golden angle.
-const GOLDEN: Vec2 = Vec2::new(-0.737_368_88, 0.675_490_3);
+const GOLDEN: Vec2 = Vec2::new(-0.737_368_9, 0.675_490_3);
 
 /// A map that is looked up for the rays of a pixel.
 pub(super) struct Estimate<'a> {
