@@ -6,10 +6,13 @@
 //!                          └─▶ list of the others ──▶ rays ────────────────┘
 //! ```
 //!
-//! A pixel is *sure* to be lit where none of the 4×4 texels around it, in the finest map that holds it, is nearer to the
-//! light than its own plane by more than rounding, and sure to be in shadow where all of them shadow it by the technique's
-//! bias. Points outside all maps, or nearer to a map's border than the filter reaches, are traced; surfaces that face
-//! away from the light get 0 without a ray.
+//! A pixel is *sure* to be lit where none of the 4×4 texels around it, in the finest map that holds it (6×6 in the coarsest
+//! one), is nearer to the light than its own plane by more than rounding, and sure to be in shadow where all of them shadow
+//! it by the technique's bias. Points outside all maps, or nearer to a map's border than the filter reaches, are traced;
+//! surfaces that face away from the light get 0 without a ray.
+//!
+//! Several rays of a pixel, or those over the disc of a sun with a radius, are few: they correct what the map says of the
+//! whole pixel or disc, instead of standing for it.
 //!
 //! ```no_run
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, sun: &mut shadowfit_wgpu::SunShadows,

@@ -73,6 +73,10 @@ const WALK: &str = "examples/report/walk.toml";
 const COMPARED: [(&str, &str); 3] =
     [("examples/report/bevy.toml", "bevy"), ("stable-4", "stable-4"), ("windows-4", "windows-4")];
 
+/// Filtered and traced edges of coarse maps, each the technique and how its picture is named, and what makes maps coarse.
+const TRACED: [(&str, &str); 2] = [("windows-4", "filtered"), ("exact-4", "traced")];
+const COARSE: [&str; 2] = ["--resolution", "512"];
+
 /// Techniques whose edges are compared from frame to frame: a tight fit that is not held, and windows.
 const EDGES: [&str; 2] = ["histogram-4", "windows-4"];
 
@@ -240,6 +244,16 @@ fn shadows(images: &Path) -> Result<()> {
     let pictures = report("shadows", WALK, &techniques, &["path-24"], &[])?;
     for (place, (_, name)) in COMPARED.iter().enumerate() {
         let whole = open(&pictures.join(format!("{place}-{name}-path-24-picture.png")))?;
+        save(&enlarged(&whole, SHADOW), &images.join(format!("shadow-{name}.png")))?;
+    }
+    traced(images)
+}
+
+/// The same shadow of coarse maps, filtered and traced, enlarged.
+fn traced(images: &Path) -> Result<()> {
+    let pictures = report("traced", WALK, &TRACED.map(|(technique, _)| technique), &["path-24"], &COARSE)?;
+    for (place, (technique, name)) in TRACED.iter().enumerate() {
+        let whole = open(&pictures.join(format!("{place}-{technique}-path-24-picture.png")))?;
         save(&enlarged(&whole, SHADOW), &images.join(format!("shadow-{name}.png")))?;
     }
     Ok(())
