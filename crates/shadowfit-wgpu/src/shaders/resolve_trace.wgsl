@@ -20,6 +20,9 @@ fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
 
 // How far points may lie from a pixel's first sample, in pixels: up to the right and down, up to the left and above.
 fn sides_of(pixel: vec2<i32>, surface: Surface) -> array<vec2<f32>, 2> {
+    if resolve.point_reach == 0.0 {
+        return array<vec2<f32>, 2>(vec2<f32>(0.0), vec2<f32>(0.0));
+    }
     let far = vec4<bool>(
         goes_on(pixel, vec2<i32>(1, 0), surface), goes_on(pixel, vec2<i32>(0, 1), surface),
         goes_on(pixel, vec2<i32>(-1, 0), surface), goes_on(pixel, vec2<i32>(0, -1), surface));
