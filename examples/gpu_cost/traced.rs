@@ -81,7 +81,7 @@ fn step_along(pixel: vec2<i32>, axis: vec2<i32>, depth: f32, p: vec3<f32>) -> ve
 /// Rays for each pixel that the maps are not sure of.
 const RAYS_PER_PIXEL: [u32; 2] = [1, Edges::USUAL_SAMPLES];
 
-/// The look-up, and the rays of a pixel that edges trace, RAY_COUNT points of its surface: the centre alone, or four.
+/// The look-up, and the rays of a pixel that edges trace, `RAY_COUNT` points of its surface: the centre alone, or four.
 const LOOK_UP: &str = "shadowfit_factor_at(p, normal, vec2<f32>(id.xy))";
 const RAYS: &str = "
 fn lit(p: vec3<f32>, right: vec3<f32>, down: vec3<f32>, normal: vec3<f32>) -> f32 {
