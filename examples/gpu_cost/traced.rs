@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use glam::{Affine3A, DVec3, Mat4, Quat, Vec3};
-use shadowfit::settings::Edges;
+use shadowfit::settings::{Edges, FilterKind};
 use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Technique};
 use shadowfit_rays::{MeshId, RayInstance, RayMesh, RayScene, RayWgslOptions, rays_wgsl};
 use shadowfit_render::{GpuProfilerQuery, GpuTimer, bindings};
@@ -78,24 +78,47 @@ fn step_along(pixel: vec2<i32>, axis: vec2<i32>, depth: f32, p: vec3<f32>) -> ve
 }
 ";
 
-/// Rays for each pixel that the maps are not sure of.
-const RAYS_PER_PIXEL: [u32; 2] = [1, Edges::USUAL_SAMPLES];
+/// Filters, and rays for each pixel that the maps are not sure of.
+const TRACED: [(FilterKind, u32); 3] =
+    [(FilterKind::Pcf5x5, 1), (FilterKind::Pcf5x5, Edges::USUAL_SAMPLES), (FilterKind::Pcss, 8)];
 
-/// The look-up, and the rays of a pixel that edges trace, `RAY_COUNT` points of its surface: the centre alone, or four.
+/// The look-up, and the rays of a pixel that edges trace: as many as there are PLACES, each from a place on its surface, in
+/// pixels from its centre, to one in the sun's disc, as parts of the distance.
 const LOOK_UP: &str = "shadowfit_factor_at(p, normal, vec2<f32>(id.xy))";
 const RAYS: &str = "
 fn lit(p: vec3<f32>, right: vec3<f32>, down: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let to_light = picture.to_light.xyz;
+    let x = normalize(cross(to_light, select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(to_light.y) > 0.9)));
+    let y = cross(to_light, x);
+    var places = PLACES;
     var count = 0.0;
     for (var at = 0u; at < RAY_COUNT; at += 1u) {
-        let place = array<vec2<f32>, 4>(
-            vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125), vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
-        let beside = select(place[at], vec2<f32>(0.0), RAY_COUNT == 1u);
-        let start = p + right * beside.x + down * beside.y + normal * 0.001;
-        count += select(1.0, 0.0, shadowfit_rays_blocked(start, picture.to_light.xyz));
+        let place = places[at];
+        let start = p + right * place.x + down * place.y + normal * 0.001;
+        count += select(1.0, 0.0, shadowfit_rays_blocked(start, normalize(to_light + x * place.z + y * place.w)));
     }
     return count / f32(RAY_COUNT);
 }
 ";
+
+/// The places of rays: of a soft sun's on a spiral from the pixel's centre, of others on a rotated grid, or the centre.
+fn places(filter: FilterKind, samples: u32, tangent: f32) -> String {
+    let golden = core::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
+    let place = |index: u32| {
+        let (radius, angle) = (((index as f32 + 0.5) / samples as f32).sqrt() * tangent, index as f32 * golden);
+        match (filter.is_soft(), samples) {
+            (true, _) => [0.0, 0.0, radius * angle.cos(), radius * angle.sin()],
+            (false, 1) => [0.0; 4],
+            (false, _) => {
+                let [x, y] = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]][index as usize % 4];
+                [x, y, 0.0, 0.0]
+            }
+        }
+    };
+    let list: Vec<String> =
+        (0..samples).map(place).map(|[x, y, z, w]| format!("vec4<f32>({x}, {y}, {z}, {w})")).collect();
+    format!("array<vec4<f32>, {samples}>({})", list.join(", "))
+}
 
 /// Passes over a picture.
 struct Pictures {
@@ -108,7 +131,7 @@ struct Pictures {
 }
 
 impl Pictures {
-    fn new(bench: &Bench, size: [u32; 2], (map, rays): (&ShadowMap, &RayScene), samples: u32) -> Self {
+    fn new(bench: &Bench, size: [u32; 2], map: &ShadowMap, rays: &RayScene) -> Self {
         let device = &bench.gpu.device;
         let depth = engine::target(device, size, shadowfit_render::passes::DEPTH_FORMAT);
         let factors = wgpu::BindingType::StorageTexture {
@@ -126,8 +149,11 @@ impl Pictures {
         let group = bindings::group(device, "picture", &layout, &[uniform.as_entire_binding(), depths, factors]);
         let look_up = receiver_wgsl(map.descriptor(), &WgslOptions::group(1)) + &SHADER.replace("FACTOR", LOOK_UP);
         let all = SHADER.replace("FACTOR", "lit(p, right, down, normal)");
+        let descriptor = map.descriptor();
+        let samples = descriptor.edges.samples();
         let count = format!("const RAY_COUNT: u32 = {samples}u;\n");
-        let all = [rays_wgsl(&RayWgslOptions::group(1)).as_str(), &count, RAYS, &all].concat();
+        let each = RAYS.replace("PLACES", &places(descriptor.filter, samples, descriptor.softness.tangent()));
+        let all = [rays_wgsl(&RayWgslOptions::group(1)).as_str(), &count, &each, &all].concat();
         Self {
             look_up: pipeline(device, [&layout, map.receiver_layout()], look_up),
             rays: pipeline(device, [&layout, rays.layout()], all),
@@ -232,26 +258,40 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     let mut rows = Vec::new();
     for height in bench.height.map_or(HEIGHTS.to_vec(), |height| vec![height]) {
         let size = [height * 16 / 9, height];
-        for samples in RAYS_PER_PIXEL {
-            rows.push(row(size, samples, walk(bench, scene, size, samples)?));
+        for (filter, samples) in TRACED {
+            let edges = Edges::Traced { samples };
+            let technique = Technique::default().with_resolution(bench.map, bench.map).with_edges(edges);
+            let name = if filter.is_soft() { format!("{samples} to the sun") } else { samples.to_string() };
+            rows.push(row(size, name, walk(bench, scene, size, &technique.with_filter(filter))?));
         }
     }
     Ok(Table {
         title: "Exact edges",
         note: format!(
-            "Compute passes over the depth buffer of the {}, medians along the walk: PCF 5×5 for every pixel; finding the \
+            "Compute passes over the depth buffer of the {}, medians along the walk: the look-up for every pixel, PCF 5×5 or for a sun with a radius of 0.27° PCSS; finding the \
              pixels that the maps are not sure of, with a budget of none; rays for each of these; and as many rays for \
              every pixel that faces the light. Shares are of the pixels, the ratio is that of resolving to rays for all.",
             scene.name
         ),
-        columns: ["picture", "rays", "5×5", "classes", "their rays", "both", "all rays", "of all", "facing", "traced"]
-            .map(str::to_owned)
-            .to_vec(),
+        columns: [
+            "picture",
+            "rays",
+            "look-up",
+            "classes",
+            "their rays",
+            "both",
+            "all rays",
+            "of all",
+            "facing",
+            "traced",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows,
     })
 }
 
-fn row([width, height]: [u32; 2], samples: u32, times: Times) -> Vec<String> {
+fn row([width, height]: [u32; 2], rays: String, times: Times) -> Vec<String> {
     let pixels = f64::from(width) * f64::from(height);
     let part = |count: fn(&ResolveCounts) -> u32| {
         let parts = times.counts.iter().map(|counts| f64::from(count(counts)) / pixels);
@@ -260,19 +300,17 @@ fn row([width, height]: [u32; 2], samples: u32, times: Times) -> Vec<String> {
     let (facing, traced) = (part(|counts| counts.facing), part(|counts| counts.unsure));
     let difference = times.resolve.iter().zip(&times.classes).map(|(both, classes)| both - classes).collect();
     let [look_up, classes, both, all] = [times.look_up, times.classes, times.resolve, times.rays].map(median);
-    let mut row = vec![format!("{width} × {height}"), samples.to_string()];
+    let mut row = vec![format!("{width} × {height}"), rays];
     row.extend([look_up, classes, median(difference), both, all].map(ms));
     row.extend([share(both, all), facing, traced]);
     row
 }
 
-fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], samples: u32) -> Result<Times> {
+fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], technique: &Technique) -> Result<Times> {
     let gpu = &bench.gpu;
-    let edges = Edges::Traced { samples };
-    let technique = Technique::default().with_resolution(bench.map, bench.map).with_edges(edges);
-    let mut engine = Engine::new(gpu, scene, &technique)?;
+    let mut engine = Engine::new(gpu, scene, technique)?;
     let mut meshes = Meshes::new(bench, scene)?;
-    let pictures = Pictures::new(bench, size, (engine.sun.map(), &meshes.rays), samples);
+    let pictures = Pictures::new(bench, size, engine.sun.map(), &meshes.rays);
     engine.depth = pictures.depth.clone();
     let mut resolve = ResolvePass::new(&gpu.device, &gpu.queue)?;
     let (mut timer, mut times) = (Timer::new(gpu), Times::default());

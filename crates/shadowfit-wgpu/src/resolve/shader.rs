@@ -108,13 +108,16 @@ pub(super) fn select() -> String {
 /// `counts`: an engine's own test of hits.
 pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
+    let is_soft = descriptor.filter.is_soft();
     let points = descriptor.edges.samples().max(1);
+    // Whether points lie beside the pixel's first sample.
+    let has_sides = !is_soft && (points > 1 || shape.samples > 1);
     let threads = format!(
-        "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\n",
+        "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\nconst HAS_SIDES: \
+         bool = {has_sides};\n",
         TRACE_THREADS / points
     );
     let list = LIST.replace("LIST_COUNT", "u32");
-    let is_soft = descriptor.filter.is_soft();
     // Whatever the filter, rays to a sun with a radius are compared with casters at their distance.
     let filter = if is_soft { FilterKind::Pcss } else { descriptor.filter };
     let look_up = look_up(&ShadowMapDescriptor { filter, ..*descriptor });

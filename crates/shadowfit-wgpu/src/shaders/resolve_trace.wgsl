@@ -20,7 +20,8 @@ fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
 
 // How far points may lie from a pixel's first sample, in pixels: up to the right and down, up to the left and above.
 fn sides_of(pixel: vec2<i32>, surface: Surface) -> array<vec2<f32>, 2> {
-    if resolve.point_reach == 0.0 {
+    // A constant and no uniform: software rasterisers build a shader for each dispatch where uniforms alone decide one.
+    if !HAS_SIDES {
         return array<vec2<f32>, 2>(vec2<f32>(0.0), vec2<f32>(0.0));
     }
     let far = vec4<bool>(
