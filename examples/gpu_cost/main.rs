@@ -146,7 +146,9 @@ fn main() -> Result<()> {
         add(day::time(&bench, &scenes[0])?);
     }
     if wants(Part::Edges) {
-        add(traced::time(&bench, &scenes[0])?);
+        for scene in &scenes {
+            add(traced::time(&bench, scene)?);
+        }
         add(traced::time_instances(&bench)?);
     }
     if wants(Part::Rays) {

@@ -4,7 +4,7 @@ use shadowfit_rays::RayScene;
 
 use super::any_hit::AnyHit;
 use super::error::ResolveError;
-use super::group::{COUNTS, FLOATS, Layouts, Target, factors};
+use super::group::{COUNTS, FLOATS, Kept, Layouts, Target, factors};
 use super::pipeline::{module, pipeline};
 use super::pyramid::{BOUNDS, Pyramids};
 use super::result::{EdgeResult, ResolveCounts, WhyFiltered};
@@ -259,28 +259,12 @@ impl ResolvePass {
         for list in [&target.list, traced] {
             encoder.clear_buffer(list, 0, Some(COUNTS as u64 * 4));
         }
-        let timestamp_writes = timestamps;
-        let descriptor = wgpu::ComputePassDescriptor { label: Some("shadowfit resolve"), timestamp_writes };
-        let mut pass = encoder.begin_compute_pass(&descriptor);
+        let label = Some("shadowfit resolve");
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: timestamps });
         if let Some(pyramids) = self.pyramids.as_mut().filter(|_| is_soft) {
             pyramids.renew(&mut pass, sun, &receiver);
         }
-        pass.set_pipeline(&pipelines.classify);
-        pass.set_bind_group(0, &receiver, &[]);
-        pass.set_bind_group(1, &classify, &[]);
-        let [x, y] = source.resolve.size.map(|side| side.div_ceil(SQUARE));
-        pass.dispatch_workgroups(x, y, 1);
-        pass.set_pipeline(&pipelines.arguments);
-        pass.set_bind_group(0, &target.arguments, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-        if let Some(kept) = kept {
-            pass.set_pipeline(&pipelines.select);
-            pass.set_bind_group(0, &kept.group, &[]);
-            pass.dispatch_workgroups_indirect(&target.groups, 0);
-            pass.set_pipeline(&pipelines.arguments);
-            pass.set_bind_group(0, &kept.arguments, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-        }
+        pipelines.list(&mut pass, (target, kept), [&receiver, &classify], source.resolve.size);
         pass.set_pipeline(&pipelines.trace);
         pass.set_bind_group(0, &receiver, &[]);
         pass.set_bind_group(1, &trace, &[]);
@@ -393,6 +377,32 @@ impl Pipelines {
             key: (*descriptor, shape),
             layout,
             trace_layout,
+        }
+    }
+
+    /// Lists the pixels of a picture that rays are traced for, as many as its budget keeps, and counts their workgroups.
+    fn list(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        (target, kept): (&Target, Option<&Kept>),
+        [receiver, classify]: [&wgpu::BindGroup; 2],
+        size: [u32; 2],
+    ) {
+        pass.set_pipeline(&self.classify);
+        pass.set_bind_group(0, receiver, &[]);
+        pass.set_bind_group(1, classify, &[]);
+        let [x, y] = size.map(|side| side.div_ceil(SQUARE));
+        pass.dispatch_workgroups(x, y, 1);
+        pass.set_pipeline(&self.arguments);
+        pass.set_bind_group(0, &target.arguments, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+        if let Some(kept) = kept {
+            pass.set_pipeline(&self.select);
+            pass.set_bind_group(0, &kept.group, &[]);
+            pass.dispatch_workgroups_indirect(&target.groups, 0);
+            pass.set_pipeline(&self.arguments);
+            pass.set_bind_group(0, &kept.arguments, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
         }
     }
 }

@@ -82,7 +82,7 @@ pub static PRESETS: [Preset; 10] = [
     Preset {
         name: "exact-4",
         summary: "4 windows, edges traced where the maps are not sure",
-        advice: "For exact, smooth edges at about the cost of a second look-up and some rays. It needs the engine's \
+        advice: "For exact, smooth edges at about the cost of two more look-ups and some rays. It needs the engine's \
                  triangles (shadowfit-rays) and a depth pre-pass; without them it is windows-4.",
         make: || Technique::default().with_edges(Edges::Traced { samples: Edges::USUAL_SAMPLES }),
     },
