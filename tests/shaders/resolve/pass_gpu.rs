@@ -56,6 +56,7 @@ pub(super) fn look() -> Look {
         size: SIZE,
         samples: 1,
         convention: DepthConvention::Reversed,
+        format: wgpu::TextureFormat::Depth32Float,
         normals: Some(NormalEncoding::Signed),
         number: 0,
     }

@@ -49,6 +49,8 @@ pub(super) struct Look {
     pub(super) size: [u32; 2],
     pub(super) samples: u32,
     pub(super) convention: DepthConvention,
+    /// Of the depth buffer.
+    pub(super) format: wgpu::TextureFormat,
     pub(super) normals: Option<NormalEncoding>,
     pub(super) number: u32,
 }
@@ -246,8 +248,8 @@ impl Stage {
         normals: Option<&wgpu::TextureView>,
     ) -> wgpu::TextureView {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        let depth = self.texture(size, wgpu::TextureFormat::Depth32Float, samples, usage);
-        let pipeline = self.surface_pipeline(look.convention, samples, normals.is_some());
+        let depth = self.texture(size, look.format, samples, usage);
+        let pipeline = self.surface_pipeline(look, samples, normals.is_some());
         let buffer = self.buffer(bytemuck::cast_slice(vertices), wgpu::BufferUsages::VERTEX);
         let mut encoder = self.encoder();
         let color = normals.map(|view| wgpu::RenderPassColorAttachment {
@@ -504,9 +506,9 @@ impl Stage {
         })
     }
 
-    fn surface_pipeline(&self, convention: DepthConvention, samples: u32, has_normals: bool) -> wgpu::RenderPipeline {
+    fn surface_pipeline(&self, look: &Look, samples: u32, has_normals: bool) -> wgpu::RenderPipeline {
         let module = self.module(SURFACE.to_owned());
-        let is_reversed = convention == DepthConvention::Reversed;
+        let is_reversed = look.convention == DepthConvention::Reversed;
         let closer = if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
         let targets = [Some(wgpu::TextureFormat::Rgba32Float.into())];
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -524,7 +526,7 @@ impl Stage {
             },
             primitive: Default::default(),
             depth_stencil: Some(wgpu::DepthStencilState {
-                format: wgpu::TextureFormat::Depth32Float,
+                format: look.format,
                 depth_write_enabled: Some(true),
                 depth_compare: Some(closer),
                 stencil: Default::default(),

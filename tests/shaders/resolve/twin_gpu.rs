@@ -39,7 +39,8 @@ pub(super) fn look(samples: u32, convention: DepthConvention, normals: Option<No
         far: 100.0,
     };
     let direction = Vec3::new(-0.5, -0.7, -0.35).normalize();
-    Look { camera, direction, size: SIZE, samples, convention, normals, number: 0 }
+    let format = wgpu::TextureFormat::Depth32Float;
+    Look { camera, direction, size: SIZE, samples, convention, format, normals, number: 0 }
 }
 
 /// A scene's own view.
