@@ -114,7 +114,7 @@ impl SampleDrawer {
     }
 
     /// The occlusion that a frame finds in screen space for a picture of a size, rows from the top, 0 where there is sky.
-    pub(crate) fn occlusion(
+    pub(crate) async fn occlusion(
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
@@ -124,7 +124,7 @@ impl SampleDrawer {
         let target = RenderTarget::new(&gpu.device, size, self.samples);
         let passes = self.occlusion.get_or_insert_with(|| OcclusionPasses::new(gpu, self.samples));
         passes.draw(gpu, &mut scene.gpu_scene, (frame, camera), None, &target);
-        Ok(passes.read_occlusion(gpu)?)
+        Ok(passes.read_occlusion(gpu).await?)
     }
 
     /// What the shading of a mapped frame knows about each pixel.
@@ -132,7 +132,7 @@ impl SampleDrawer {
     /// # Errors
     ///
     /// As for [`Self::draw`], and where the device cannot tell triangles apart or was lost.
-    pub(crate) fn probe(
+    pub(crate) async fn probe(
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
@@ -145,7 +145,7 @@ impl SampleDrawer {
         let casts = casts(sample, scene.scene());
         let extras = FrameExtras { casts: casts.as_deref(), ..FrameExtras::default() };
         let frame = possible(gpu, *frame).0;
-        let probe = self.renderer.probe(gpu, &mut scene.gpu_scene, (&frame, extras), &targets)?;
+        let probe = self.renderer.probe(gpu, &mut scene.gpu_scene, (&frame, extras), &targets).await?;
         self.targets = Some(targets);
         Ok(probe?)
     }

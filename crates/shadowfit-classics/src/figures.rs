@@ -56,6 +56,21 @@ impl SampleFigures {
         camera: &PerspectiveCamera,
         seconds: f32,
     ) -> Result<Self> {
+        pollster::block_on(Self::measure_async(gpu, sample, values, camera, seconds))
+    }
+
+    /// The same, and lets a browser do other things while the GPU draws.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::measure`].
+    pub async fn measure_async(
+        gpu: Gpu,
+        sample: &Sample,
+        values: &SampleValues,
+        camera: &PerspectiveCamera,
+        seconds: f32,
+    ) -> Result<Self> {
         let mut scene = PreparedScene::new(&gpu, &material_layout(&gpu.device), sample.scene())?;
         if sample.controls.model_turn != 0.0 {
             scene.set_time(&gpu, 0, seconds);
@@ -64,14 +79,16 @@ impl SampleFigures {
         let size = [((height as f32 * camera.aspect).round() as u32).max(1), height];
         let mut bench = Bench { gpu, drawer: None, sample, camera, size };
         if let SampleDrawing::Occlusion { .. } = sample.drawing(values, camera)? {
-            return Ok(Self::Occlusion(bench.occlusion_errors(&mut scene, values)?));
+            return Ok(Self::Occlusion(bench.occlusion_errors(&mut scene, values).await?));
         }
-        let mut figures = |shadows: &str| -> Result<Option<PictureFigures>> {
+        let mut figures = [None, None];
+        for (figures, shadows) in figures.iter_mut().zip(["source", "ours"]) {
             let mut values = values.clone();
             values.set_from_str("shadows", shadows)?;
-            Ok(bench.judge(&mut scene, &values)?.tally.figures())
-        };
-        Ok(Self::Shadows { source: figures("source")?, modern: figures("ours")? })
+            *figures = bench.judge(&mut scene, &values).await?.tally.figures();
+        }
+        let [source, modern] = figures;
+        Ok(Self::Shadows { source, modern })
     }
 
     /// Those of the sample's shadows and of modern maps, where both have pixels that were judged.
@@ -129,16 +146,16 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    fn judge(&mut self, scene: &mut PreparedScene, values: &SampleValues) -> Result<Judged> {
+    async fn judge(&mut self, scene: &mut PreparedScene, values: &SampleValues) -> Result<Judged> {
         match self.sample.drawing(values, self.camera)? {
-            SampleDrawing::Technique { technique, .. } => self.judge_technique(scene, &technique),
-            SampleDrawing::Mapped(frame) => self.judge_mapped(scene, &frame),
+            SampleDrawing::Technique { technique, .. } => Box::pin(self.judge_technique(scene, &technique)).await,
+            SampleDrawing::Mapped(frame) => self.judge_mapped(scene, &frame).await,
             SampleDrawing::Occlusion { .. } => bail!("{} has no shadows to judge", self.sample.id),
         }
     }
 
     /// How far each method is from rays.
-    fn occlusion_errors(
+    async fn occlusion_errors(
         &mut self,
         scene: &mut PreparedScene,
         values: &SampleValues,
@@ -153,27 +170,28 @@ impl Bench<'_> {
             }
             let SampleDrawing::Occlusion { frame, .. } = self.sample.drawing(&values, self.camera)? else { continue };
             let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));
-            let occlusion = drawer.occlusion(&self.gpu, scene, (&frame, self.camera), self.size)?;
+            let occlusion = drawer.occlusion(&self.gpu, scene, (&frame, self.camera), self.size).await?;
             errors.push((name, truth.mean_absolute_error(&occlusion).context("nothing but sky is seen")?));
         }
         Ok(errors)
     }
 
-    fn judge_technique(&self, scene: &mut PreparedScene, technique: &Technique) -> Result<Judged> {
+    async fn judge_technique(&self, scene: &mut PreparedScene, technique: &Technique) -> Result<Judged> {
         let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(technique), 1)?;
         let judging = Judging { size: self.size, ray_offset: RAY_OFFSET, crawl: false, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
         let view = View { camera: *self.camera, direction: self.sample.direction, is_first: true };
         let maps = scene.fit_alone(&mut ShadowFitter::new(technique), Inputs::default(), &view)?;
-        evaluator.judge(&self.gpu, scene, &view, &maps, &mut SharedTruth::default())
+        evaluator.judge_async(&self.gpu, scene, &view, &maps, &mut SharedTruth::default()).await
     }
 
-    fn judge_mapped(&mut self, scene: &mut PreparedScene, frame: &SampleFrame) -> Result<Judged> {
+    async fn judge_mapped(&mut self, scene: &mut PreparedScene, frame: &SampleFrame) -> Result<Judged> {
         // What a light image darkens is no shadow.
         let light = SampleLight { image: LightImage::Square, ..frame.light };
         let frame = &SampleFrame { light, ..*frame };
         let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));
-        let probe = drawer.probe(&self.gpu, scene, self.sample, frame, self.size).context("the sample's shadows")?;
+        let probe =
+            drawer.probe(&self.gpu, scene, self.sample, frame, self.size).await.context("the sample's shadows")?;
         let origin = scene.origin();
         let rays = scene.rays();
         let camera = PixelCamera::new(&scene.camera_for_rays(self.camera), self.size);

@@ -1,10 +1,16 @@
-//! Icons, drawn with the font of the `lucide-icons` crate.
+//! Icons of the Lucide set, drawn with a font.
+//!
+//! `fonts/icons.ttf` has those of the set that are used here and some more, of the whole set's megabyte. One that is
+//! missing is added by `pyftsubset lucide.ttf --unicodes=…` (fonttools) with the code points of all of them, from the font
+//! of the `lucide-icons` crate.
 
 use egui::epaint::text::{FontData, FontInsert, FontPriority, InsertFontFamily};
 use egui::{Align2, Color32, Context, FontFamily, FontId, Pos2, Ui};
-use lucide_icons::LUCIDE_FONT_BYTES;
 
 pub use lucide_icons::Icon;
+
+/// The font of the icons: a part of Lucide, <https://lucide.dev/license> (ISC).
+const FONT_BYTES: &[u8] = include_bytes!("../fonts/icons.ttf");
 
 /// Height of an icon, in points.
 const SIZE: f32 = 15.0;
@@ -15,7 +21,7 @@ const FONT: &str = "lucide";
 /// Adds the font of the icons.
 pub(crate) fn add_icons(ctx: &Context) {
     let family = InsertFontFamily { family: FontFamily::Name(FONT.into()), priority: FontPriority::Highest };
-    ctx.add_font(FontInsert::new(FONT, FontData::from_static(LUCIDE_FONT_BYTES), vec![family]));
+    ctx.add_font(FontInsert::new(FONT, FontData::from_static(FONT_BYTES), vec![family]));
 }
 
 /// Paints an icon around a point. In a host that did not call [`apply_theme`](crate::apply_theme) the first icon adds

@@ -1,10 +1,9 @@
 //! Hierarchies breadth first: the nodes of a level stand together and children come after their parents, so that a level
 //! can be refitted by one dispatch and all of them by one backward sweep.
 
-use std::time::Duration;
-
 use glam::Vec3;
-use obvhs::bvh2::{Bvh2, builder::build_bvh2};
+use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
+use obvhs::ploc::PlocBuilder;
 use obvhs::{Boundable, BvhBuildParams};
 
 use crate::records::NodeRecord;
@@ -24,12 +23,31 @@ pub(crate) fn build<T: Boundable>(boxes: &[T], params: BvhBuildParams, max_depth
     if boxes.is_empty() {
         return Default::default();
     }
-    let bvh = build_bvh2(boxes, params, &mut Duration::default());
+    let bvh = build_bvh2(boxes, params);
     let hierarchy = Hierarchy::new(&bvh);
     if hierarchy.depth() <= max_depth {
         return (hierarchy, bvh.primitive_indices);
     }
     (Hierarchy::halves(boxes.len() as u32, params.max_prims_per_leaf), bvh.primitive_indices)
+}
+
+/// What `obvhs::bvh2::builder::build_bvh2` does, without the clock that it reads: browsers have no such one, and it ends
+/// the program there.
+fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
+    let indices = (0..boxes.len() as u32).collect();
+    let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
+        params.ploc_search_distance,
+        boxes,
+        indices,
+        params.sort_precision,
+        params.search_depth_threshold,
+    );
+    let mut optimizer = ReinsertionOptimizer::default();
+    optimizer.run(&mut bvh, params.reinsertion_batch_ratio, None);
+    collapse(&mut bvh, params.max_prims_per_leaf.clamp(1, 255), params.collapse_traversal_cost);
+    let ratio = params.reinsertion_batch_ratio * params.post_collapse_reinsertion_batch_ratio_multiplier;
+    optimizer.run(&mut bvh, ratio, None);
+    bvh
 }
 
 impl Hierarchy {

@@ -63,10 +63,13 @@ impl Gpu {
         Self::open(adapter).await
     }
 
-    /// The graphics instance: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others.
+    /// The graphics instance: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others; in browsers what the
+    /// features of this crate name.
     pub fn instance() -> wgpu::Instance {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
+        let of_browser = if cfg!(feature = "webgl") { wgpu::Backends::GL } else { wgpu::Backends::BROWSER_WEBGPU };
+        let usual = if cfg!(target_family = "wasm") { of_browser } else { wgpu::Backends::PRIMARY };
+        descriptor.backends = wgpu::Backends::from_env().unwrap_or(usual);
         wgpu::Instance::new(descriptor)
     }
 
@@ -91,6 +94,11 @@ impl Gpu {
         let wanted =
             wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::PRIMITIVE_INDEX;
         let limits = adapter.limits();
+        // WebGL2 has neither compute shaders nor storage buffers; all others have what WebGPU guarantees.
+        let guaranteed = match adapter.get_info().backend {
+            wgpu::Backend::Gl => wgpu::Limits::downlevel_webgl2_defaults(),
+            _ => wgpu::Limits::default(),
+        };
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("shadowfit"),
@@ -100,7 +108,7 @@ impl Gpu {
                     // them.
                     max_buffer_size: limits.max_buffer_size,
                     max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-                    ..wgpu::Limits::default().using_resolution(limits)
+                    ..guaranteed.using_resolution(limits)
                 },
                 ..Default::default()
             })

@@ -25,6 +25,7 @@ mod pixel;
 mod probe;
 mod quad;
 mod rays;
+mod read_back;
 mod renderer;
 mod scene;
 pub mod shaders;
@@ -48,12 +49,13 @@ pub use overlay::Overlay;
 pub use pixel::{PixelFacts, PixelQuery, PixelRead, TexelBlock};
 pub use probe::{Probe, ProbeError, ProbePixel, ProbeTargets};
 pub use quad::Quad;
+pub use read_back::{ReadBack, ReadError, read_texture};
 pub use renderer::Renderer;
 pub use scene::GpuScene;
 pub use shadowfit_rays::RayError;
 pub use shadowfit_wgpu::{Culling, MapUpdate, UpdateContent};
 pub use statistics::{MapStatistics, Statistics};
-pub use target::{ReadError, RenderTarget, read_texture};
+pub use target::RenderTarget;
 pub use timer::PassTimes;
 pub use uniform::{
     Atmosphere, BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform,

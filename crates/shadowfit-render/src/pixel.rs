@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::Gpu;
 use crate::probe::ProbePixel;
-use crate::target::ReadError;
+use crate::read_back::ReadError;
 
 /// Which pixel is asked about, and which texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,8 @@ use core::fmt;
 
 use shadowfit_wgpu::ShadowMapError;
 
-use crate::target::{DEPTH_FORMAT, ReadError, read_texture};
+use crate::read_back::{ReadBack, ReadError};
+use crate::target::DEPTH_FORMAT;
 use crate::{Gpu, bindings};
 
 /// Format of the probe's target: the triangle's number plus one (0 is the sky), and the bits of the factor.
@@ -120,8 +121,20 @@ impl ProbeTargets {
     ///
     /// [`ReadError`] if the device was lost or does not answer.
     pub fn read(&self, gpu: &Gpu) -> Result<Probe, ReadError> {
-        let bytes = read_texture(gpu, &self.texture, self.size, 8)?;
-        let pixels = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).into_iter().map(ProbePixel::of);
-        Ok(Probe { size: self.size, pixels: pixels.collect() })
+        Ok(self.probe(&ReadBack::new(gpu, &self.texture, self.size, 8).wait(gpu)?))
+    }
+
+    /// The same, and lets a browser do other things meanwhile.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::read`].
+    pub async fn arrive(&self, gpu: &Gpu) -> Result<Probe, ReadError> {
+        Ok(self.probe(&ReadBack::new(gpu, &self.texture, self.size, 8).arrive(gpu).await?))
+    }
+
+    fn probe(&self, bytes: &[u8]) -> Probe {
+        let pixels = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(bytes).into_iter().map(ProbePixel::of);
+        Probe { size: self.size, pixels: pixels.collect() }
     }
 }

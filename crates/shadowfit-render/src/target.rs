@@ -1,10 +1,8 @@
 //! A render target: colour (resolved to one sample), depth, and the way back to the CPU.
 
-use core::fmt;
-
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
-use crate::wait::waiting;
+use crate::read_back::{ReadBack, ReadError};
 
 /// Colour format of render targets, as the renderer writes it.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -92,40 +90,20 @@ impl RenderTarget {
         gpu.submit([encoder.finish()]);
     }
 
+    /// Begins to read the picture: sRGB pixels, four bytes each, rows from the top.
+    pub fn read_back(&self, gpu: &Gpu) -> ReadBack {
+        ReadBack::new(gpu, &self.color, self.size, 4)
+    }
+
     /// Waits for the picture and returns its sRGB pixels, four bytes each, rows from the top.
     ///
     /// # Errors
     ///
     /// [`ReadError`] if the device was lost or does not answer.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
-        read_texture(gpu, &self.color, self.size, 4)
+        self.read_back(gpu).wait(gpu)
     }
 }
-
-/// Why pixels could not be read back. There are no pixels then, not even black ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReadError {
-    /// The device was lost or destroyed, or has no memory left for the copy.
-    Lost,
-    /// The device did not finish its work.
-    Unfinished,
-}
-
-impl fmt::Display for ReadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let reason = match self {
-            Self::Lost => "it was lost, or is out of memory",
-            Self::Unfinished => "it did not finish its work",
-        };
-        write!(
-            f,
-            "pixels could not be read back from the graphics device: {reason}; start again, with smaller pictures \
-                   if it is out of memory"
-        )
-    }
-}
-
-impl core::error::Error for ReadError {}
 
 fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     // Of several samples nobody reads the colours before they are resolved.
@@ -148,41 +126,4 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | readable,
         view_formats: if format == COLOR_FORMAT { &[ENCODED_FORMAT] } else { &[] },
     })
-}
-
-/// Copies a texture of a `size` in pixels to the CPU, rows from the top without padding; waits for the GPU.
-///
-/// # Errors
-///
-/// [`ReadError`] if the device was lost or does not answer.
-pub fn read_texture(
-    gpu: &Gpu,
-    texture: &wgpu::Texture,
-    size: [u32; 2],
-    bytes_per_pixel: u32,
-) -> Result<Vec<u8>, ReadError> {
-    let _unreported = gpu.without_reports();
-    let row = size[0] * bytes_per_pixel;
-    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read back"),
-        size: u64::from(padded) * u64::from(size[1]),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
-        },
-        wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-    );
-    gpu.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    waiting(|| gpu.device.poll(wgpu::PollType::wait_indefinitely())).map_err(|_| ReadError::Unfinished)?;
-    // A device that was lost leaves the buffer unmapped.
-    let mapped = buffer.slice(..).get_mapped_range().map_err(|_| ReadError::Lost)?;
-    Ok(mapped.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
 }

@@ -1,7 +1,9 @@
 //! How long a thread waits for the GPU.
 
 use std::cell::Cell;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 std::thread_local! {
     static WAITED: Cell<Duration> = const { Cell::new(Duration::ZERO) };

@@ -16,7 +16,7 @@ mod scene;
 
 pub use deform::Deformed;
 pub use error::SceneError;
-pub use import::{LoadStep, SceneSize, load_gltf, load_gltf_scene, load_gltf_with_progress};
+pub use import::{LoadStep, SceneSize, load_gltf, load_gltf_from_memory, load_gltf_scene, load_gltf_with_progress};
 pub use pose::{Instance, Pose, Triangle};
 pub use scene::*;
 

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
-use std::time::Instant;
+use web_time::Instant;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use rayon::{ThreadPool, ThreadPoolBuilder};

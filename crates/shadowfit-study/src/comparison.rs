@@ -97,11 +97,20 @@ impl Comparison {
     ///
     /// When the camera makes no sense or the device cannot tell triangles apart.
     pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
+        pollster::block_on(self.frame_async(view, truth))
+    }
+
+    /// The same, and lets a browser do other things while the GPU draws.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::frame`].
+    pub async fn frame_async(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
         let mut outcomes = Vec::with_capacity(self.entries.len());
         for Entry { named, evaluator } in &mut self.entries {
             let maps = self.scene.fit_next(evaluator.renderer.sun_mut().fitter_mut(), named.inputs, view);
             let maps = maps.with_context(|| format!("technique {}", named.name))?.to_vec();
-            let judged = evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth)?;
+            let judged = evaluator.judge_async(&self.gpu, &mut self.scene, view, &maps, truth).await?;
             outcomes.push(Outcome { maps, judged });
         }
         Ok(outcomes)

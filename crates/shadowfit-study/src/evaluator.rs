@@ -129,8 +129,24 @@ impl Evaluator {
         maps: &[FittedMap],
         truth: &mut SharedTruth,
     ) -> Result<Judged> {
+        pollster::block_on(self.judge_async(gpu, scene, view, maps, truth))
+    }
+
+    /// The same, and lets a browser do other things while the GPU draws.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::judge`].
+    pub async fn judge_async(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[FittedMap],
+        truth: &mut SharedTruth,
+    ) -> Result<Judged> {
         let rays = scene.shared_rays();
-        let (job, seen) = self.judge_job(gpu, scene, view, maps, rays)?;
+        let (job, seen) = self.job(gpu, scene, view, maps, rays).await?;
         self.targets = Some(seen);
         Ok(job.judge_by(truth.or_trace(|| job.trace())))
     }
@@ -151,14 +167,25 @@ impl Evaluator {
         maps: &[FittedMap],
         rays: Arc<SceneRays>,
     ) -> Result<(JudgeJob, ProbeTargets)> {
+        pollster::block_on(self.job(gpu, scene, view, maps, rays))
+    }
+
+    async fn job(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[FittedMap],
+        rays: Arc<SceneRays>,
+    ) -> Result<(JudgeJob, ProbeTargets)> {
         if view.is_first {
             self.before = None;
         }
         let seen = self.draw_probe(gpu, scene, view, maps, None)?;
-        let pixels = seen.read(gpu)?.pixels;
+        let pixels = seen.arrive(gpu).await?.pixels;
         let traced = self.renderer.edge_result() == EdgeResult::Traced;
         let traced = self.renderer.take_edge_counts().filter(|_| traced);
-        let before = self.frame_before(gpu, scene, view)?;
+        let before = self.frame_before(gpu, scene, view).await?;
         self.note_view(view, maps);
         let job = JudgeJob {
             rays,
@@ -175,11 +202,11 @@ impl Evaluator {
     }
 
     /// The maps of the view before, and their shadow factors at the points of this one, if crawl is measured.
-    fn frame_before(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View) -> Result<Option<FrameBefore>> {
+    async fn frame_before(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View) -> Result<Option<FrameBefore>> {
         let Some(Before { maps, eye, forward }) = self.before.take().filter(|_| self.judging.crawl) else {
             return Ok(None);
         };
-        let factors = factors(&self.probe(gpu, scene, view, &maps, Some((eye, forward)))?);
+        let factors = factors(&self.probe(gpu, scene, view, &maps, Some((eye, forward))).await?);
         Ok(Some(FrameBefore { maps, eye, forward, factors }))
     }
 
@@ -237,6 +264,12 @@ impl Evaluator {
         Ok(())
     }
 
+    /// The probe of the view that was judged last, whose depth buffer tells which surfaces it shows. The next one gets
+    /// targets of its own.
+    pub fn take_probe(&mut self) -> Option<ProbeTargets> {
+        self.targets.take()
+    }
+
     /// Notes a view as the one before: crawl is measured against it. Views that are judged are noted without this call.
     pub fn note_view(&mut self, view: &View, maps: &[FittedMap]) {
         let forward = view.camera.forward.normalize();
@@ -288,7 +321,7 @@ impl Evaluator {
 
     /// Triangle and shadow factor of each pixel. `choice` is the eye and the forward direction that choose the maps, if
     /// they are not the camera's.
-    fn probe(
+    async fn probe(
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
@@ -297,7 +330,7 @@ impl Evaluator {
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<Vec<Option<ProbePixel>>> {
         let targets = self.draw_probe(gpu, scene, view, maps, choice)?;
-        let probe = targets.read(gpu);
+        let probe = targets.arrive(gpu).await;
         self.targets = Some(targets);
         Ok(probe?.pixels)
     }

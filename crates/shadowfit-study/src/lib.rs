@@ -8,6 +8,7 @@
 //! judges through the same evaluator.
 
 mod agreement;
+mod background;
 mod background_judge;
 mod boxes;
 mod comparison;
@@ -28,6 +29,9 @@ mod view;
 mod why;
 
 pub use agreement::Agreement;
+#[cfg(target_family = "wasm")]
+pub use background::next_turn;
+pub use background::{in_background, in_background_async};
 pub use background_judge::{BackgroundJudge, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
@@ -41,6 +45,6 @@ pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PosedScene, PreparedScene};
 pub use settings_file::{TRANSLATED, settings_from_toml, settings_to_toml, technique_to_toml};
 pub use technique_file::NamedTechnique;
-pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune};
+pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune, tune_async};
 pub use view::View;
 pub use why::{StoredTexels, Why, WhyInput, why};

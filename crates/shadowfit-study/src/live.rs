@@ -1,6 +1,6 @@
 //! Pictures judged on the GPU, where they are drawn.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use anyhow::{Context, Result};
 use glam::DVec3;

@@ -11,12 +11,11 @@
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::thread;
 
 use glam::DVec3;
 use shadowfit_scene::{Pose, Scene};
 
-use crate::SceneRays;
+use crate::{SceneRays, in_background};
 
 /// The rays of a scene's poses, which are counted from 0.
 #[derive(Debug, Default)]
@@ -50,6 +49,13 @@ struct Making {
     result: Receiver<SceneRays>,
 }
 
+impl Making {
+    /// Waits for the rays; in a browser, where nothing else runs meanwhile, they are there or never will be.
+    fn wait(self) -> Option<SceneRays> {
+        if cfg!(target_family = "wasm") { self.result.try_recv().ok() } else { self.result.recv().ok() }
+    }
+}
+
 /// A scene in a pose, and the world position, in metres, that its rays are relative to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Posed<'a> {
@@ -73,7 +79,7 @@ impl PosedRays {
         self.present.get_or_init(|| {
             let mut others = self.others();
             let making = others.making.take_if(|making| making.pose == self.pose);
-            let made = making.and_then(|making| making.result.recv().ok()).unwrap_or_else(|| {
+            let made = making.and_then(Making::wait).unwrap_or_else(|| {
                 let spare = others.spare.take();
                 let from = spare.or_else(|| others.earlier.take().map(|earlier| earlier.rays));
                 make(posed.scene, posed.pose, posed.origin, from)
@@ -114,8 +120,8 @@ impl PosedRays {
             // Nobody receives once the scene is gone.
             let _ = sender.send(make(&scene, &its_pose, origin, from));
         };
-        match thread::Builder::new().name("rays".to_owned()).spawn(work) {
-            Ok(_) => others.making = Some(Making { pose, result }),
+        match in_background("rays", work) {
+            Ok(()) => others.making = Some(Making { pose, result }),
             Err(_) => others.failed = Some(pose),
         }
     }
@@ -170,6 +176,7 @@ fn make(scene: &Scene, pose: &Pose, origin: DVec3, from: Option<Arc<SceneRays>>)
 
 #[cfg(test)]
 mod tests {
+    use std::thread;
     use std::time::Duration;
 
     use shadowfit_scene::builtin::default_scene;

@@ -182,6 +182,20 @@ pub fn tune(
     settings: &TuneSettings,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Tuned> {
+    pollster::block_on(tune_async(comparison, views, settings, progress))
+}
+
+/// The same, and lets a browser do other things while the GPU draws.
+///
+/// # Errors
+///
+/// As for [`tune`].
+pub async fn tune_async(
+    comparison: &mut Comparison,
+    views: &[View],
+    settings: &TuneSettings,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Tuned> {
     ensure!(!views.is_empty(), "there is no frame to tune for");
     let rounds = rounds(&settings.start, settings.scope);
     let mut search = Search {
@@ -196,14 +210,14 @@ pub fn tune(
         inputs: settings.inputs,
         best_step: 0,
     };
-    search.measure(&settings.start, "the start")?;
+    search.measure(&settings.start, "the start").await?;
     search.steps[0].is_kept = true;
     let mut goes_on = progress(&search.progress("the start"));
     for changes in rounds {
         // The best of each round is kept.
         let from = search.best;
         for change in changes {
-            if goes_on && search.try_change(&from, &change)? {
+            if goes_on && search.try_change(&from, &change).await? {
                 goes_on = progress(&search.progress(&change.what));
             }
         }
@@ -215,13 +229,13 @@ pub fn tune(
 
 impl Search<'_> {
     /// Tries a change, and returns whether it changed anything.
-    fn try_change(&mut self, from: &Technique, change: &Change) -> Result<bool> {
+    async fn try_change(&mut self, from: &Technique, change: &Change) -> Result<bool> {
         let mut candidate = *from;
         (change.apply)(&mut candidate);
         if self.tried.contains(&candidate) {
             return Ok(false);
         }
-        match self.measure(&candidate, &change.what) {
+        match self.measure(&candidate, &change.what).await {
             Err(error) if is_refusal(&error) => {}
             result => result.with_context(|| change.what.clone())?,
         }
@@ -229,9 +243,9 @@ impl Search<'_> {
     }
 
     /// Measures a technique, which becomes the best one if its error is less.
-    fn measure(&mut self, technique: &Technique, what: &str) -> Result<()> {
+    async fn measure(&mut self, technique: &Technique, what: &str) -> Result<()> {
         self.tried.push(*technique);
-        let tally = self.sums(technique)?;
+        let tally = self.sums(technique).await?;
         let error = self.weights.error(&tally);
         let is_first = self.steps.is_empty();
         if is_first || error < self.steps[self.best_step].error {
@@ -242,12 +256,12 @@ impl Search<'_> {
     }
 
     /// Sums over all frames.
-    fn sums(&mut self, technique: &Technique) -> Result<PictureTally> {
+    async fn sums(&mut self, technique: &Technique) -> Result<PictureTally> {
         self.comparison.clear();
         self.comparison.add(NamedTechnique { inputs: self.inputs, ..(*technique).into() })?;
         let mut tally = PictureTally::default();
         for (view, truth) in self.views.iter().zip(&mut self.truths) {
-            for outcome in self.comparison.frame(view, truth)? {
+            for outcome in self.comparison.frame_async(view, truth).await? {
                 tally.merge(&outcome.judged.tally);
             }
         }
@@ -422,14 +436,14 @@ mod tests {
             inputs: Inputs::default(),
             best_step: 0,
         };
-        search.measure(&bad(), "the start").expect("measured");
+        pollster::block_on(search.measure(&bad(), "the start")).expect("measured");
         let impossible = Change::new("blockers in clamped maps", |technique: &mut Technique| {
             (technique.filter, technique.fit.casters) = (FilterKind::Pcss, CasterPolicy::DepthClamp);
         });
         let no_maps =
             Change::new("no resolution", |technique: &mut Technique| technique.fit.resolution = glam::UVec2::ZERO);
         for change in [impossible, no_maps] {
-            assert!(search.try_change(&bad(), &change).expect("passed over"), "{}", change.what);
+            assert!(pollster::block_on(search.try_change(&bad(), &change)).expect("passed over"), "{}", change.what);
             assert_eq!((search.steps.len(), search.best), (1, bad()));
         }
         let settings = TuneSettings { start: bad().with_resolution(1, 1), ..TuneSettings::default() };

@@ -16,7 +16,7 @@ use crate::script::{self, Line};
 use crate::source::{OPTION_PREFIX, SceneSource};
 
 /// Fly through a scene under one sun, and show, measure and fix shadow acne, aliasing and clipping holes.
-#[derive(Clone, Debug, Parser)]
+#[derive(Clone, Debug, Default, Parser)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 #[command(name = "viewer", version, after_help = "Press H in the window for its keys.")]
 pub struct Arguments {

@@ -1,10 +1,11 @@
 //! Writes files as a whole, and pictures that carry their settings.
 
-use std::fs::File;
-use std::io::{BufReader, BufWriter};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+#[cfg(not(target_family = "wasm"))]
+use anyhow::Context;
+use anyhow::Result;
 
 /// Keyword of the text of a picture that holds the viewer's settings.
 const SETTINGS_KEYWORD: &str = "shadowfit settings";
@@ -13,20 +14,31 @@ const SETTINGS_KEYWORD: &str = "shadowfit settings";
 /// text.
 pub(crate) fn write_png(path: &Path, size: [u32; 2], rgba: &[u8], settings: Option<&str>) -> Result<()> {
     let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-    whole(path, |unfinished| encode(unfinished, size, &rgb, settings))
+    write_whole(path, &encode(size, &rgb, settings)?)
 }
 
-/// Writes a file whole or not at all.
+/// The content of a file; in a browser that of one that was chosen or dropped.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
+    #[cfg(target_family = "wasm")]
+    return crate::web::files::read(path);
+    #[cfg(not(target_family = "wasm"))]
+    Ok(std::fs::read(path)?)
+}
+
+/// Hands a file to the browser, which saves it.
+#[cfg(target_family = "wasm")]
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    whole(path, |unfinished| Ok(std::fs::write(unfinished, bytes)?))
+    crate::web::page::download(&path.file_name().unwrap_or_default().to_string_lossy(), bytes);
+    Ok(())
 }
 
-/// Writes a temporary file beside the target, and then renames it.
-fn whole(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+/// Writes a file whole or not at all: a temporary one beside the target, which is then renamed.
+#[cfg(not(target_family = "wasm"))]
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");
     let unfinished = path.with_file_name(name);
-    let written = write(&unfinished).and_then(|()| Ok(std::fs::rename(&unfinished, path)?));
+    let written = std::fs::write(&unfinished, bytes).and_then(|()| std::fs::rename(&unfinished, path));
     if written.is_err() {
         // The first error is the one to report.
         let _ = std::fs::remove_file(&unfinished);
@@ -34,19 +46,22 @@ fn whole(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     written.with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Encodes as small as the format allows: pictures are written rarely and kept long.
-fn encode(path: &Path, [width, height]: [u32; 2], rgb: &[u8], settings: Option<&str>) -> Result<()> {
-    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
+/// Encodes as small as the format allows, since pictures are written rarely and kept long; in a browser quickly, since
+/// it stands still meanwhile.
+fn encode([width, height]: [u32; 2], rgb: &[u8], settings: Option<&str>) -> Result<Vec<u8>> {
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_compression(png::Compression::High);
+    encoder.set_compression(if cfg!(target_family = "wasm") { png::Compression::Fast } else { png::Compression::High });
     if let Some(settings) = settings {
         encoder.add_itxt_chunk(SETTINGS_KEYWORD.to_owned(), settings.to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(rgb)?;
-    Ok(writer.finish()?)
+    writer.finish()?;
+    Ok(png)
 }
 
 /// The settings that a picture of the viewer was made with; `None` for any other picture.
@@ -55,8 +70,7 @@ fn encode(path: &Path, [width, height]: [u32; 2], rgb: &[u8], settings: Option<&
 ///
 /// If the file cannot be read or is no PNG.
 pub(crate) fn settings_of_png(path: &Path) -> Result<Option<String>> {
-    let file = BufReader::new(File::open(path)?);
-    let reader = png::Decoder::new(file).read_info()?;
+    let reader = png::Decoder::new(Cursor::new(read(path)?)).read_info()?;
     let texts = &reader.info().utf8_text;
     let text = texts.iter().find(|text| text.keyword == SETTINGS_KEYWORD);
     Ok(text.map(png::text_metadata::ITXtChunk::get_text).transpose()?)
@@ -70,6 +84,9 @@ pub(crate) fn free_name(folder: &Path, extension: &str) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+    use std::io::BufReader;
+
     use super::*;
 
     #[test]

@@ -17,7 +17,7 @@ use crate::saved::Saved;
 use crate::stage::Stage;
 
 use paint::Painter;
-pub(crate) use paint::{Canvas, Layout};
+pub(crate) use paint::{Canvas, Layout, red_first};
 pub(crate) use picture::Pictures;
 
 /// egui, the panel, and the pictures between them.

@@ -1,6 +1,7 @@
 //! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and fits, draws and judges
 //! through `shadowfit-study`; the artefact demonstrations; a window around it, and a headless mode that renders the
-//! same views to files. `examples/viewer` is its thin main.
+//! same views to files. `examples/viewer` is its thin main. In a browser it is the module of a page, whose files lie in
+//! `web`: see `src/web.rs`.
 
 mod artefact;
 mod cli;
@@ -10,8 +11,9 @@ mod effect;
 mod export;
 mod files;
 mod fitted;
-#[cfg(feature = "gamepad")]
+#[cfg(all(feature = "gamepad", not(target_family = "wasm")))]
 mod gamepad;
+#[cfg(not(target_family = "wasm"))]
 mod headless;
 mod input;
 mod interface;
@@ -29,17 +31,23 @@ mod tuning;
 mod undo;
 mod view_search;
 mod viewer;
+#[cfg(target_family = "wasm")]
+mod web;
+#[cfg(not(target_family = "wasm"))]
 mod window;
 
+#[cfg(not(target_family = "wasm"))]
 use std::process::ExitCode;
 
 pub use cli::Arguments;
+#[cfg(not(target_family = "wasm"))]
 pub use headless::render_pictures;
 pub use shadowfit_egui::Artefact;
 pub use stage::{Shown, Stage, StageError};
 
 /// Runs the viewer with the process's arguments: the window, or with `--headless` the pictures. Errors are printed to
 /// the standard error, with exit code 2.
+#[cfg(not(target_family = "wasm"))]
 pub fn main() -> ExitCode {
     let arguments = cli::parse();
     let result = match &arguments.headless {

@@ -4,12 +4,12 @@ mod progress;
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use web_time::Instant;
 
 use anyhow::{Context, Error, Result, anyhow};
 use shadowfit_render::Gpu;
 use shadowfit_scene::{LoadStep, SceneSize};
-use shadowfit_study::PreparedScene;
+use shadowfit_study::{PreparedScene, in_background};
 
 use crate::source::SceneSource;
 use progress::{Progress, READY};
@@ -37,7 +37,7 @@ impl Loading {
             }
         };
         // Where no thread can be made, the channel is closed, which is reported as the end of the thread.
-        let _ = std::thread::Builder::new().name("loading".to_owned()).spawn(work);
+        let _ = in_background("loading", work);
         Self { source, line, progress, result }
     }
 

@@ -7,6 +7,7 @@ use shadowfit::PerspectiveCamera;
 use shadowfit_classics::{Sample, SampleFigures, SampleValues};
 use shadowfit_egui::CardFigure;
 use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_study::in_background_async;
 
 /// Input of a measurement: a sample by its values, a camera, and the time of its animation, in seconds.
 pub(crate) type Task = (&'static Sample, SampleValues, PerspectiveCamera, f32);
@@ -22,15 +23,16 @@ impl Measuring {
     /// Begins a measurement; the result of one that is under way is dropped.
     pub(crate) fn start(&mut self, adapter: AdapterChoice, (sample, values, camera, seconds): Task) {
         let (sender, result) = channel();
-        let work = move || {
+        let work = move || async move {
+            let measured = match Gpu::headless(adapter).await {
+                Ok(gpu) => SampleFigures::measure_async(gpu, sample, &values, &camera, seconds).await,
+                Err(error) => Err(error.into()),
+            };
             // The receiver is gone where another measurement was begun.
-            let gpu = pollster::block_on(Gpu::headless(adapter)).map_err(anyhow::Error::from);
-            let measured = gpu.and_then(|gpu| SampleFigures::measure(gpu, sample, &values, &camera, seconds));
             let _ = sender.send(measured);
         };
-        let started = std::thread::Builder::new().name("measuring".to_owned()).spawn(work);
-        self.lines = match started {
-            Ok(_) => vec![line("Measuring", "…")],
+        self.lines = match in_background_async("measuring", work) {
+            Ok(()) => vec![line("Measuring", "…")],
             Err(error) => vec![line("Not measured", &error.to_string())],
         };
         self.result = Some(result);

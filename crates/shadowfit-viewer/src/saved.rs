@@ -7,16 +7,22 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use egui::ThemePreference;
+#[cfg(not(target_family = "wasm"))]
 use etcetera::BaseStrategy;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
-use shadowfit_study::{NamedTechnique, TRANSLATED, settings_from_toml, settings_to_toml, technique_to_toml};
+#[cfg(not(target_family = "wasm"))]
+use shadowfit_study::TRANSLATED;
+use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml, technique_to_toml};
 
+#[cfg(not(target_family = "wasm"))]
 use crate::files::write_whole;
 use crate::source::SceneSource;
+#[cfg(target_family = "wasm")]
+pub(crate) use crate::web::store::Store;
 
 /// Version of the file; one of a later version is set aside.
 const VERSION: u32 = 1;
@@ -240,6 +246,7 @@ fn read_technique(table: &toml::Table) -> Result<Settings> {
 }
 
 /// The file that everything is saved in.
+#[cfg(not(target_family = "wasm"))]
 #[derive(Clone, Debug)]
 pub(crate) struct Store {
     path: PathBuf,
@@ -247,6 +254,7 @@ pub(crate) struct Store {
     written: Option<String>,
 }
 
+#[cfg(not(target_family = "wasm"))]
 impl Store {
     /// The file of the user on this system; `None` where the system has no folder for settings.
     pub(crate) fn of_person() -> Option<Self> {

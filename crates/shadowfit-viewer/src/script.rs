@@ -22,6 +22,7 @@ use shadowfit_params as params;
 use shadowfit_params::tool::Settings;
 use shadowfit_study::NamedTechnique;
 
+use crate::files;
 use crate::source::OPTION_PREFIX;
 
 /// The action of a line of a script.
@@ -217,7 +218,8 @@ pub(crate) const ACTIONS: &[Action] = &[
 /// For a line that is not an action, with the name of the file, the number of the line and the actions that exist.
 pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("the script {name} cannot be read"))?;
+    let bytes = files::read(path).with_context(|| format!("the script {name} cannot be read"))?;
+    let text = String::from_utf8(bytes).with_context(|| format!("the script {name} is no text"))?;
     let mut lines = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split_once(" #").map_or(line, |(line, _)| line).trim();

@@ -42,7 +42,7 @@ impl SceneSource {
     /// A file, by a path that names the same one whatever the working folder is.
     pub(crate) fn file(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
-        // An empty path has no absolute one, and cannot be loaded either.
+        // An empty path has no absolute one, and cannot be loaded either. In browsers files have names alone.
         Self::File { path: std::path::absolute(&path).unwrap_or(path), index: None }
     }
 
@@ -95,7 +95,10 @@ impl SceneSource {
         Ok(match self {
             Self::BuiltIn(scene) => scene.build(),
             Self::Sample { sample, .. } => sample.scene(),
+            #[cfg(not(target_family = "wasm"))]
             Self::File { path, index } => shadowfit_scene::load_gltf_with_progress(path, *index, progress)?,
+            #[cfg(target_family = "wasm")]
+            Self::File { path, index } => crate::web::files::load_gltf(path, *index, progress)?,
         })
     }
 }

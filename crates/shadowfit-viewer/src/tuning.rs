@@ -11,7 +11,9 @@ use shadowfit_params::figures::JudgedFigures;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::Scene;
-use shadowfit_study::{Comparison, Judging, Progress, TuneScope, TuneSettings, Tuned, View, tune};
+use shadowfit_study::{
+    Comparison, Judging, Progress, TuneScope, TuneSettings, Tuned, View, in_background_async, tune_async,
+};
 
 use crate::stage::{changes, judged_figures};
 
@@ -88,15 +90,16 @@ impl Tuning {
         let is_cancelled = Arc::new(AtomicBool::new(false));
         let settings = Box::new(task.settings);
         let flag = Arc::clone(&is_cancelled);
-        let work = move || {
-            let tuned = task.run(&mut |progress| {
+        let work = move || async move {
+            let mut tell = |progress: &Progress| {
                 sender.send(News::Progress(progress.clone())).is_ok() && !flag.load(Ordering::Relaxed)
-            });
+            };
+            let tuned = task.run(&mut tell).await;
             // The receiver is gone once the viewer has ended.
             let _ = sender.send(News::Done(Box::new(tuned)));
         };
-        self.state = match std::thread::Builder::new().name("tuning".to_owned()).spawn(work) {
-            Ok(_) => State::Running { settings, progress: None, news, is_cancelled, is_abandoned: false },
+        self.state = match in_background_async("tuning", work) {
+            Ok(()) => State::Running { settings, progress: None, news, is_cancelled, is_abandoned: false },
             Err(error) => State::Failed(format!("no thread could be started: {error}")),
         };
     }
@@ -185,15 +188,15 @@ fn without_figures(what: &str) -> Tune<'_> {
 }
 
 impl Task {
-    fn run(self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tuned> {
-        let gpu = pollster::block_on(Gpu::headless(self.adapter))?;
+    async fn run(self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tuned> {
+        let gpu = Gpu::headless(self.adapter).await?;
         let scene = Scene::clone(&self.scene);
         let judging = Judging { size: SIZE, ..Judging::default() };
         let mut comparison = Comparison::new(gpu, scene, judging)?;
         comparison.set_time(self.pose.0, self.pose.1);
         let Settings { technique: start, inputs, .. } = self.settings;
         let settings = TuneSettings { start, inputs, scope: TuneScope::Everything, ..TuneSettings::default() };
-        tune(&mut comparison, &self.views, &settings, progress)
+        tune_async(&mut comparison, &self.views, &settings, progress).await
     }
 }
 

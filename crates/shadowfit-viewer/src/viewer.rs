@@ -4,6 +4,7 @@
 mod commands;
 mod opening;
 mod sample;
+mod saving;
 mod start;
 #[cfg(test)]
 mod tests;
@@ -16,13 +17,13 @@ use anyhow::Result;
 use egui::{Event, RawInput};
 use shadowfit_egui::{Changes, Chord, Command, UserPreset};
 use shadowfit_params::tool::Settings;
+#[cfg(not(target_family = "wasm"))]
 use tempfile::TempDir;
 
 use crate::artefact::Found;
 use crate::effect::{Activity, Effect};
-use crate::files::write_png;
 use crate::input::Input;
-use crate::interface::{Canvas, Interface, InterfaceInput, InterfaceOutput, Layout};
+use crate::interface::{Interface, InterfaceInput, InterfaceOutput, Layout};
 use crate::loading::Loading;
 use crate::playback::Player;
 use crate::sample_figures::Measuring;
@@ -32,7 +33,9 @@ use crate::stage::Stage;
 use crate::tuning::Tuning;
 use crate::undo::{History, State};
 
+#[cfg(not(target_family = "wasm"))]
 pub(crate) use commands::compared_with;
+use saving::Saving;
 pub(crate) use start::Start;
 
 /// Seconds between two writes of the saved settings.
@@ -70,7 +73,10 @@ pub(crate) struct Viewer {
     line: Option<String>,
     /// Pictures of the whole window to be saved, and the lines of the script that asked for them.
     shots: Vec<(PathBuf, Option<String>)>,
+    /// Pictures whose pixels are on their way.
+    saving: Vec<Saving>,
     /// Where random actions save, so that they do not fill the user's folder; removed at the end.
+    #[cfg(not(target_family = "wasm"))]
     litter: Option<TempDir>,
     pub(crate) window_requests: WindowRequests,
     /// The error that the viewer ends with.
@@ -135,6 +141,8 @@ impl Viewer {
             commands: VecDeque::new(),
             line: None,
             shots: Vec::new(),
+            saving: Vec::new(),
+            #[cfg(not(target_family = "wasm"))]
             litter: None,
             window_requests: WindowRequests::default(),
             failure: None,
@@ -236,18 +244,8 @@ impl Viewer {
     pub(crate) fn paint(&mut self, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
         self.interface.paint(&self.stage, layout, target, size);
         for (path, line) in std::mem::take(&mut self.shots) {
-            let saved = self.save_window(layout, &path, size);
-            self.line = line;
-            self.tell(saved.map(|()| format!("Saved {}", path.display())));
+            self.save_window(layout, (path, line), size);
         }
-        self.line = None;
-    }
-
-    /// Saves a frame as a picture.
-    fn save_window(&mut self, layout: &Layout, path: &std::path::Path, size: [u32; 2]) -> Result<()> {
-        let whole = Canvas::new(&self.stage.gpu().device, size, self.interface.format());
-        self.interface.paint(&self.stage, layout, &whole.view, size);
-        write_png(path, size, &whole.read(self.stage.gpu())?, Some(&self.text_of_settings()))
     }
 
     /// Plays a frame of the script.
@@ -301,6 +299,7 @@ impl Viewer {
             self.chooser = None;
             self.commands.extend(chosen.ok().flatten().map(|path| Request::from(Command::OpenFile(path))));
         }
+        self.take_saved();
         self.tuning.take();
         self.measuring.take();
     }
@@ -333,6 +332,12 @@ impl Viewer {
         self.message = Some(Message { text: text.into(), since: self.clock });
     }
 
+    /// The message on show.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn message(&self) -> Option<&str> {
+        self.message.as_ref().map(|message| message.text.as_str())
+    }
+
     /// Title of the window.
     pub(crate) fn title(&self) -> String {
         format!("shadowfit: {} ({})", self.source.label(), self.stage.gpu().name())
@@ -340,12 +345,16 @@ impl Viewer {
 
     /// Whether background work is running that a script may wait for.
     pub(crate) fn is_waiting(&self) -> bool {
-        self.loading.is_some() || self.searching.is_some() || self.tuning.is_running() || self.measuring.is_running()
+        self.loading.is_some()
+            || self.searching.is_some()
+            || !self.saving.is_empty()
+            || self.tuning.is_running()
+            || self.measuring.is_running()
     }
 
     /// Whether the script has ended and every scene that it opened is there.
     pub(crate) fn has_played(&self) -> bool {
-        self.player.is_done() && self.loading.is_none()
+        self.player.is_done() && self.loading.is_none() && self.saving.is_empty()
     }
 
     /// Whether the scene of the start is shown.

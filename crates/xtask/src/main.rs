@@ -13,6 +13,7 @@ mod process;
 mod run;
 mod setup;
 mod test;
+mod web;
 
 use std::process::ExitCode;
 
@@ -59,6 +60,15 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
+    /// Build the viewer as a web page, serve it on this machine and open it in the browser where there is one.
+    Web {
+        /// Writes the page into this folder instead, for any host of static files.
+        #[arg(long, value_name = "DIR")]
+        build: Option<std::path::PathBuf>,
+        /// Port to serve on; any free one if it is 0.
+        #[arg(long, value_name = "PORT", default_value_t = 8080)]
+        port: u16,
+    },
     /// Rewrite the golden images of the tests from what is rendered now; look at the diff before committing it.
     Golden,
 }
@@ -71,6 +81,7 @@ fn main() -> ExitCode {
         Task::Gallery { samples } => gallery::gallery(&samples),
         Task::Maths => maths::maths(),
         Task::Bench { args } => bench::bench(&args),
+        Task::Web { build, port } => web::web(build.as_deref(), port),
         Task::Golden => test::golden(),
     };
     match result {
@@ -95,7 +106,7 @@ mod tests {
 
     #[test]
     fn every_task_but_the_viewer_has_help_of_its_own() {
-        for task in ["test", "ci", "gallery", "maths", "bench", "golden"] {
+        for task in ["test", "ci", "gallery", "maths", "bench", "web", "golden"] {
             let asked = Cli::try_parse_from(["xtask", task, "--help"]).err().map(|error| error.kind());
             assert_eq!(asked, Some(clap::error::ErrorKind::DisplayHelp), "{task}");
         }

@@ -103,7 +103,7 @@ impl SampleRenderer {
     /// # Errors
     ///
     /// The outer one as [`Self::draw`]; the inner one where the device has no primitive index, or was lost.
-    pub fn probe(
+    pub async fn probe(
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
@@ -127,7 +127,7 @@ impl SampleRenderer {
         self.draw_scene(&mut pass, scene, (frame, &plan.seen), probed);
         drop(pass);
         gpu.submit([encoder.finish()]);
-        Ok(targets.read(gpu).map_err(ProbeError::from))
+        Ok(targets.arrive(gpu).await.map_err(ProbeError::from))
     }
 
     /// The bytes of the map that was drawn last, rows from the top; `None` before the first frame.

@@ -3,7 +3,7 @@
 use shadowfit::PerspectiveCamera;
 use shadowfit_render::attachment::{cleared, depth};
 use shadowfit_render::passes::Draw;
-use shadowfit_render::{Atmosphere, FrameUniform, Gpu, GpuScene, ReadError, RenderTarget, bindings, read_texture};
+use shadowfit_render::{Atmosphere, FrameUniform, Gpu, GpuScene, ReadBack, ReadError, RenderTarget, bindings};
 
 use super::pipelines::{Drawn, Pipelines};
 use super::targets::Targets;
@@ -73,16 +73,16 @@ impl OcclusionPasses {
         gpu.submit([encoder.finish()]);
     }
 
-    /// Waits for the occlusion of the frame that was drawn last and returns it, 0 (open) to 1 (closed), rows from the top;
+    /// The occlusion of the frame that was drawn last, once it has come back from the GPU: 0 (open) to 1 (closed), rows from the top;
     /// 0 where there is sky. A pixel's middle is that of [`Renderer::probe`](shadowfit_render::Renderer::probe) for the same camera
     /// and size. Empty before the first frame.
     ///
     /// # Errors
     ///
     /// [`ReadError`] if the device was lost or does not answer.
-    pub fn read_occlusion(&self, gpu: &Gpu) -> Result<Vec<f32>, ReadError> {
+    pub async fn read_occlusion(&self, gpu: &Gpu) -> Result<Vec<f32>, ReadError> {
         let Some(targets) = &self.targets else { return Ok(Vec::new()) };
-        let bytes = read_texture(gpu, targets.occlusion(self.is_blurred), targets.size, 2)?;
+        let bytes = ReadBack::new(gpu, targets.occlusion(self.is_blurred), targets.size, 2).arrive(gpu).await?;
         Ok(bytes.as_chunks().0.iter().map(|half| from_half(u16::from_le_bytes(*half))).collect())
     }
 

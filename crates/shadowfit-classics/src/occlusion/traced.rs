@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use shadowfit::PerspectiveCamera;
 use shadowfit_scene::Pose;
-use shadowfit_study::{PreparedScene, SceneRays};
+use shadowfit_study::{PreparedScene, SceneRays, in_background};
 use shadowfit_truth::{AmbientSettings, AmbientTruth, PixelCamera, Truth};
 
 /// What occlusion was traced for.
@@ -54,7 +54,7 @@ impl Traced {
                     let _ = sender.send(trace(&rays, &camera));
                 };
                 // Where no thread can be made, the picture stays as it is in screen space.
-                let started = std::thread::Builder::new().name("occlusion".to_owned()).spawn(work);
+                let started = in_background("occlusion", work);
                 self.under_way = started.is_ok().then(|| (key.clone(), result));
             }
         }

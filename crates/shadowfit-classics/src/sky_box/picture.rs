@@ -1,6 +1,7 @@
 //! The picture of a sky: colours computed from directions alone, so that the faces of its cube join without a seam.
 
 use glam::{UVec2, Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::face::direction_of;
 
@@ -44,11 +45,7 @@ impl SkyPicture {
         let to_light = to_light.try_normalize().unwrap_or(Vec3::Y);
         let size = size.max(1);
         let mut faces: [Vec<[u8; 4]>; 6] = Default::default();
-        std::thread::scope(|scope| {
-            for (index, face) in faces.iter_mut().enumerate() {
-                scope.spawn(move || *face = texels(index, to_light, size));
-            }
-        });
+        faces.par_iter_mut().enumerate().for_each(|(index, face)| *face = texels(index, to_light, size));
         Self { size, faces }
     }
 

@@ -102,7 +102,7 @@ fn occlusion_darkens_the_ambient_light_alone() {
     }
     // White surfaces in ambient light show 1 - occlusion times that light, to the byte but for the rounding.
     let picture = pictures.draw(&camera, &OcclusionFrame { light: lit(0.8, 0.0), ..frame(settings) });
-    let occlusion = pictures.passes.read_occlusion(&pictures.gpu).expect("occlusion");
+    let occlusion = pollster::block_on(pictures.passes.read_occlusion(&pictures.gpu)).expect("occlusion");
     assert!(occlusion.iter().any(|occlusion| *occlusion > 0.5));
     let probe = shown(&mut pictures, &camera);
     for ((pixel, occlusion), _) in picture.iter().zip(&occlusion).zip(&probe).filter(|(_, shown)| **shown) {
@@ -174,7 +174,7 @@ fn a_picture_of_four_samples_has_the_same_surfaces_and_the_grey_view_shows_occlu
     let at = (80 * SIZE[0] + 64) as usize;
     assert_eq!(picture[at], reference[at]);
     let grey = single.draw(&camera, &OcclusionFrame { view: OcclusionView::Occlusion, ..grey });
-    let occlusion = single.passes.read_occlusion(&single.gpu).expect("occlusion");
+    let occlusion = pollster::block_on(single.passes.read_occlusion(&single.gpu)).expect("occlusion");
     for (pixel, occlusion) in grey.iter().zip(&occlusion) {
         assert!((f32::from(pixel[0]) - 255.0 * (1.0 - occlusion)).abs() <= 0.51 && pixel[0] == pixel[2]);
     }

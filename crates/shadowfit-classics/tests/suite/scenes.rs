@@ -104,7 +104,7 @@ impl Pictures {
 
     pub(crate) fn occlusion(&mut self, camera: &PerspectiveCamera, settings: OcclusionSettings) -> Vec<f32> {
         self.draw(camera, &frame(Some(settings)));
-        self.passes.read_occlusion(&self.gpu).expect("occlusion")
+        pollster::block_on(self.passes.read_occlusion(&self.gpu)).expect("occlusion")
     }
 }
 

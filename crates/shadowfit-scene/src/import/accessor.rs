@@ -1,14 +1,13 @@
 //! Typed reads from buffers, every range checked before anything is allocated or read.
 
 use std::cell::Cell;
-use std::path::Path;
 
 use gltf::json::accessor::{Accessor, ComponentType, sparse::Sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, buffer};
 
 use super::container::MAX_FILE_BYTES;
-use super::uri::read_uri;
+use super::uri::{Folder, read_uri};
 use crate::error::Problem;
 
 /// Elements that one import may decode. Files can refer to the same data many times, so that their
@@ -47,7 +46,7 @@ struct Layout<'a> {
 
 impl<'a> Reader<'a> {
     /// Loads the buffers. One that cannot be loaded is a problem only for what reads it.
-    pub(crate) fn new(root: &'a Root, mut binary: Option<Vec<u8>>, folder: &Path) -> Self {
+    pub(crate) fn new(root: &'a Root, mut binary: Option<Vec<u8>>, folder: Folder<'_>) -> Self {
         let mut bytes_left = MAX_FILE_BYTES;
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
@@ -245,7 +244,7 @@ fn load_buffer(
     index: usize,
     buffer: &buffer::Buffer,
     binary: &mut Option<Vec<u8>>,
-    folder: &Path,
+    folder: Folder<'_>,
     max_bytes: u64,
 ) -> Result<Vec<u8>, Problem> {
     const HINT: &str = "Keep the files that belong to the scene beside it, as they were exported";

@@ -6,7 +6,6 @@ use std::path::Path;
 
 use gltf::json::{Root, Value, deserialize};
 
-use super::uri::read_file;
 use crate::SceneError;
 
 /// Largest file read, glTF and buffers alike: what a GLB can hold at most.
@@ -31,20 +30,15 @@ pub(crate) struct Source {
     pub(crate) ignored_extensions: Vec<String>,
 }
 
-/// Reads and parses `path`. Between the two, `tell_json` is called with the length of the JSON, in bytes.
-pub(crate) fn read(path: &Path, tell_json: impl FnOnce(u64)) -> Result<Source, SceneError> {
-    let bytes = read_file(path, MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
-        path: path.to_owned(),
-        reason,
-        hint: "Check the path and its permissions",
-    })?;
+/// Parses the content of the file `path`. Before that, `tell_json` is called with the length of the JSON, in bytes.
+pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> Result<Source, SceneError> {
     let malformed = |(element, reason): (&str, String)| SceneError::Malformed {
         path: path.to_owned(),
         element: element.to_owned(),
         reason,
         hint: "Export it again as glTF 2.0, or fetch the file again if it was cut short",
     };
-    let (json, binary) = split(&bytes).map_err(malformed)?;
+    let (json, binary) = split(bytes).map_err(malformed)?;
     tell_json(json.len() as u64);
     let parsed = deserialize::from_slice::<Root>(json);
     if parsed.is_err() {

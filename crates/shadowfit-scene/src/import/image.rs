@@ -3,14 +3,13 @@
 
 use std::collections::HashMap;
 use std::io::Cursor;
-use std::path::Path;
 
 use gltf::json::{Root, image as json};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::accessor::Reader;
 use super::container::MAX_FILE_BYTES;
-use super::uri::read_uri;
+use super::uri::{Folder, read_uri};
 use crate::Image;
 
 /// Greatest width and height, in pixels: the texture size that every GPU of the last decade has.
@@ -25,7 +24,7 @@ const MAX_TOTAL_BYTES: u64 = 1 << 30;
 /// Loads each image at most once, and only those that a material uses.
 pub(crate) struct Images<'a> {
     root: &'a Root,
-    folder: &'a Path,
+    folder: Folder<'a>,
     /// By index in the file: index in the scene, or why it cannot be used.
     loaded: HashMap<usize, Result<usize, String>>,
     decoded: Vec<Image>,
@@ -35,7 +34,7 @@ pub(crate) struct Images<'a> {
 
 impl<'a> Images<'a> {
     /// Loads nothing yet.
-    pub(crate) fn new(root: &'a Root, folder: &'a Path) -> Self {
+    pub(crate) fn new(root: &'a Root, folder: Folder<'a>) -> Self {
         let (loaded, decoded) = (HashMap::new(), Vec::new());
         Self { root, folder, loaded, decoded, placeholder: None, bytes_left: MAX_TOTAL_BYTES }
     }

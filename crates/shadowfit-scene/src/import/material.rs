@@ -1,7 +1,6 @@
 //! Materials and the textures they use.
 
 use std::collections::HashMap;
-use std::path::Path;
 
 use glam::{Vec3, Vec4};
 use gltf::json::extensions::texture::TextureTransform;
@@ -13,6 +12,7 @@ use gltf::json::{Index, Root, deserialize};
 use super::accessor::Reader;
 use super::image::Images;
 use super::notes::Notes;
+use super::uri::Folder;
 use crate::error::{Problem, entry};
 use crate::{AlphaMode, Image, Material, Texture, Wrap};
 
@@ -49,7 +49,7 @@ struct Use<'a> {
 
 impl<'a> Materials<'a> {
     /// Holds the default material only.
-    pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, folder: &'a Path) -> Self {
+    pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, folder: Folder<'a>) -> Self {
         let images = Images::new(root, folder);
         Self { root, reader, images, looks: HashMap::new(), loaded: vec![Material::default()] }
     }

@@ -20,8 +20,8 @@ mod topology;
 mod uri;
 mod view;
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use glam::Mat4;
@@ -30,12 +30,13 @@ use shadowfit::Aabb;
 
 use self::accessor::Reader;
 use self::animation::Animations;
-use self::container::Source;
+use self::container::{MAX_FILE_BYTES, Source};
 use self::material::Materials;
 use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
 pub use self::size::SceneSize;
+use self::uri::{Folder, file_size, read_file};
 use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
 
@@ -80,13 +81,51 @@ pub fn load_gltf_with_progress(
     scene: Option<usize>,
     progress: &dyn Fn(LoadStep, &SceneSize),
 ) -> Result<Scene, SceneError> {
-    let mut size = SceneSize::of_file(path);
+    let size = SceneSize::of_file(file_size(path));
     progress(LoadStep::Read, &size);
-    let mut source = container::read(path, |json| {
+    let bytes = read_file(path, MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
+        path: path.to_owned(),
+        reason,
+        hint: "Check the path and its permissions",
+    })?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    load(path, (&bytes, Folder::Disk(folder)), scene, size, progress)
+}
+
+/// Loads scene number `scene` of the file `name` (`None`: its default one) without a file system, such as in a browser:
+/// `files` is the content of that file and of those that it refers to, by their paths relative to it. Files that were
+/// chosen one by one have no folders, so one of the same name alone is taken, too.
+///
+/// # Errors
+/// As [`load_gltf_scene`].
+pub fn load_gltf_from_memory(
+    name: &str,
+    files: &BTreeMap<String, Vec<u8>>,
+    scene: Option<usize>,
+    progress: &dyn Fn(LoadStep, &SceneSize),
+) -> Result<Scene, SceneError> {
+    let path = Path::new(name);
+    let bytes = files.get(name).ok_or_else(|| SceneError::Unreadable {
+        path: path.to_owned(),
+        reason: "it is not there".to_owned(),
+        hint: "Open the file again",
+    })?;
+    let size = SceneSize::of_file(bytes.len() as u64);
+    progress(LoadStep::Read, &size);
+    load(path, (bytes, Folder::Memory(files)), scene, size, progress)
+}
+
+fn load(
+    path: &Path,
+    (bytes, folder): (&[u8], Folder<'_>),
+    scene: Option<usize>,
+    mut size: SceneSize,
+    progress: &dyn Fn(LoadStep, &SceneSize),
+) -> Result<Scene, SceneError> {
+    let mut source = container::parse(path, bytes, |json| {
         size.json = json;
         progress(LoadStep::Parse, &size);
     })?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let binary = source.binary.take();
     let tree = nodes::collect(&source.root, scene).map_err(|problem| problem.at(path))?;
     check_not_empty(&source.root, &tree, path)?;
@@ -107,7 +146,7 @@ fn check_not_empty(root: &Root, tree: &Tree, path: &Path) -> Result<(), SceneErr
     Err(SceneError::Empty { path: path.to_owned(), reason: reason.to_owned(), hint })
 }
 
-fn import(source: &Source, reader: &Reader, mut tree: Tree, folder: &Path) -> Result<Scene, Problem> {
+fn import(source: &Source, reader: &Reader, mut tree: Tree, folder: Folder<'_>) -> Result<Scene, Problem> {
     let root = &source.root;
     let mut notes = Notes::default();
     if !source.ignored_extensions.is_empty() {
@@ -136,7 +175,7 @@ fn meshes<'a>(
     reader: &'a Reader<'a>,
     tree: &Tree,
     nodes: &mut [Node],
-    folder: &'a Path,
+    folder: Folder<'a>,
     notes: &mut Notes,
 ) -> Result<(Vec<Mesh>, Materials<'a>), Problem> {
     let mut materials = Materials::new(root, reader, folder);

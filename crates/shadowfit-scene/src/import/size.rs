@@ -1,13 +1,11 @@
 //! How much there is to load: what a file says about itself before its content is decoded.
 
-use std::path::Path;
-
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, image, mesh};
 
 use super::nodes::Tree;
-use super::uri::{file_size, uri_size};
+use super::uri::{Folder, uri_size};
 
 /// The amounts that decide how long a file takes to be loaded and its scene to be made ready. They are what the file
 /// claims, and may be wrong where it cannot be loaded.
@@ -28,13 +26,13 @@ pub struct SceneSize {
 }
 
 impl SceneSize {
-    /// That of a file which has not been read.
-    pub(super) fn of_file(path: &Path) -> Self {
-        Self { file: file_size(path), ..Self::default() }
+    /// That of a file of so many bytes which has not been read.
+    pub(super) fn of_file(bytes: u64) -> Self {
+        Self { file: bytes, ..Self::default() }
     }
 
     /// The same with what the JSON says about a scene.
-    pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: &Path) -> Self {
+    pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: Folder<'_>) -> Self {
         let mut is_counted = vec![false; root.meshes.len()];
         let (mut all, mut drawn) = (0, 0);
         for index in tree.file_index.iter().filter_map(|node| root.nodes[*node].mesh) {
@@ -58,7 +56,7 @@ fn triangles(root: &Root, primitive: &mesh::Primitive) -> u64 {
 }
 
 /// Bytes of an image; 0 where they are unknown.
-fn encoded(root: &Root, image: &image::Image, folder: &Path) -> u64 {
+fn encoded(root: &Root, image: &image::Image, folder: Folder<'_>) -> u64 {
     match (&image.uri, image.buffer_view) {
         (Some(uri), _) => uri_size(folder, uri),
         (None, Some(view)) => root.buffer_views.get(view.value()).map_or(0, |view| view.byte_length.0),

@@ -1,6 +1,7 @@
-//! Bytes behind a URI: data URIs, and files inside the folder of the glTF file. Nothing else is
-//! ever opened, whatever the file asks for.
+//! Bytes behind a URI: data URIs, and files inside the folder of the glTF file, or those that came with it where there
+//! is no file system. Nothing else is ever opened, whatever the file asks for.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
@@ -18,16 +19,33 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
+/// Where the files are that a glTF file refers to.
+#[derive(Clone, Copy)]
+pub(crate) enum Folder<'a> {
+    /// A folder of the file system.
+    Disk(&'a Path),
+    /// Contents by their paths.
+    Memory(&'a BTreeMap<String, Vec<u8>>),
+}
+
 /// Reads what `uri` refers to from `folder`; the error is a readable reason.
-pub(crate) fn read_uri(folder: &Path, uri: &str, max_bytes: u64) -> Result<Vec<u8>, String> {
+pub(crate) fn read_uri(folder: Folder<'_>, uri: &str, max_bytes: u64) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decode_data(data);
     }
     if has_scheme(uri) {
         return Err(format!("the URI {} is neither a data URI nor a relative path", quoted(uri)));
     }
-    let file = locate(folder, uri)?;
-    read_file(&file, max_bytes).map_err(|reason| format!("{} cannot be read: {reason}", quoted(uri)))
+    let unreadable = |reason: String| format!("{} cannot be read: {reason}", quoted(uri));
+    match folder {
+        Folder::Disk(folder) => read_file(&locate(folder, uri)?, max_bytes).map_err(unreadable),
+        Folder::Memory(files) => {
+            let bytes =
+                find(files, uri).ok_or_else(|| unreadable("it was not chosen together with the scene".to_owned()))?;
+            check_length(bytes.len() as u64, max_bytes).map_err(unreadable)?;
+            Ok(bytes.clone())
+        }
+    }
 }
 
 /// Reads a regular file of at most `max_bytes`; the error is a readable reason.
@@ -39,10 +57,23 @@ pub(crate) fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> 
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(max_bytes) + 1).unwrap_or(0));
     let file = File::open(path).map_err(|error| error.to_string())?;
     file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > max_bytes {
+    check_length(bytes.len() as u64, max_bytes)?;
+    Ok(bytes)
+}
+
+fn check_length(bytes: u64, max_bytes: u64) -> Result<(), String> {
+    if bytes > max_bytes {
         return Err(format!("it is larger than the limit of {max_bytes} bytes"));
     }
-    Ok(bytes)
+    Ok(())
+}
+
+/// The content of the file that a relative URI names: that of its path, or of its name alone.
+fn find<'a>(files: &'a BTreeMap<String, Vec<u8>>, uri: &str) -> Option<&'a Vec<u8>> {
+    let decoded = percent_decode_str(uri).decode_utf8().ok()?;
+    let path = decoded.strip_prefix("./").unwrap_or(&decoded);
+    let name = path.rsplit('/').next()?;
+    files.get(path).or_else(|| files.get(uri)).or_else(|| files.get(name))
 }
 
 /// Bytes of a file; 0 where that is unknown.
@@ -51,10 +82,11 @@ pub(crate) fn file_size(path: &Path) -> u64 {
 }
 
 /// About as many bytes as `uri` refers to; 0 where that is unknown.
-pub(crate) fn uri_size(folder: &Path, uri: &str) -> u64 {
-    match uri.strip_prefix("data:") {
-        Some(data) => data.len() as u64 / 4 * 3,
-        None => locate(folder, uri).map_or(0, |path| file_size(&path)),
+pub(crate) fn uri_size(folder: Folder<'_>, uri: &str) -> u64 {
+    match (uri.strip_prefix("data:"), folder) {
+        (Some(data), _) => data.len() as u64 / 4 * 3,
+        (None, Folder::Disk(folder)) => locate(folder, uri).map_or(0, |path| file_size(&path)),
+        (None, Folder::Memory(files)) => find(files, uri).map_or(0, |bytes| bytes.len() as u64),
     }
 }
 
@@ -114,7 +146,7 @@ mod tests {
 
     #[test]
     fn data_uris_are_decoded_with_and_without_padding() {
-        let folder = Path::new(".");
+        let folder = Folder::Disk(Path::new("."));
         assert_eq!(read_uri(folder, "data:;base64,AQI=", 9).unwrap(), [1, 2]);
         assert_eq!(read_uri(folder, "data:application/octet-stream;base64,AQI", 9).unwrap(), [1, 2]);
         assert_eq!(read_uri(folder, "data:text/plain,a%20b", 9).unwrap(), b"a b");
@@ -123,12 +155,25 @@ mod tests {
 
     #[test]
     fn uris_that_leave_the_folder_or_have_a_scheme_are_refused() {
-        let folder = Path::new(".");
+        let folder = Folder::Disk(Path::new("."));
         for uri in ["../a.bin", "a/../../b", "/etc/hostname", "%2e%2e/a", "..%2Fa"] {
             assert!(read_uri(folder, uri, 9).unwrap_err().contains("leads out"), "{uri}");
         }
         for uri in ["file:///etc/hostname", "http://example.com/a", "C:/a"] {
             assert!(read_uri(folder, uri, 9).unwrap_err().contains("neither"), "{uri}");
+        }
+    }
+
+    #[test]
+    fn files_in_memory_go_by_their_paths_and_else_by_their_names() {
+        let files = [("a b.bin", vec![1]), ("textures/c.png", vec![2]), ("d.png", vec![3; 10])];
+        let files = files.map(|(name, bytes)| (name.to_owned(), bytes)).into_iter().collect();
+        let read = |uri| read_uri(Folder::Memory(&files), uri, 9);
+        assert_eq!(read("a%20b.bin").unwrap(), [1]);
+        assert_eq!(read("./textures/c.png").unwrap(), [2]);
+        assert!(read("textures/d.png").unwrap_err().contains("limit of 9 bytes"));
+        for uri in ["c.png", "../c.png", "/etc/hostname"] {
+            assert!(read(uri).unwrap_err().contains("not chosen together"), "{uri}");
         }
     }
 }

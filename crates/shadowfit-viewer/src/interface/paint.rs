@@ -2,7 +2,7 @@
 
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
-use shadowfit_render::{Gpu, ReadError, RenderTarget, read_texture};
+use shadowfit_render::{Gpu, ReadBack, ReadError, RenderTarget};
 
 /// Paints egui's shapes, and the pictures of the stage as textures among them.
 pub(crate) struct Painter {
@@ -99,10 +99,25 @@ impl Canvas {
     ///
     /// If the device was lost.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
-        let mut pixels = read_texture(gpu, &self.texture, self.size, 4)?;
-        if self.texture.format().remove_srgb_suffix() == wgpu::TextureFormat::Bgra8Unorm {
-            pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+        let mut pixels = self.read_back(gpu).wait(gpu)?;
+        if self.is_blue_first() {
+            red_first(&mut pixels);
         }
         Ok(pixels)
     }
+
+    /// Begins to read the pixels, in the order of the texture.
+    pub(crate) fn read_back(&self, gpu: &Gpu) -> ReadBack {
+        ReadBack::new(gpu, &self.texture, self.size, 4)
+    }
+
+    /// Whether the texture has blue first.
+    pub(crate) fn is_blue_first(&self) -> bool {
+        self.texture.format().remove_srgb_suffix() == wgpu::TextureFormat::Bgra8Unorm
+    }
+}
+
+/// Exchanges blue and red of pixels of four bytes.
+pub(crate) fn red_first(pixels: &mut [u8]) {
+    pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
 }

@@ -8,7 +8,7 @@ use egui::{
 use shadowfit_egui::Command;
 use shadowfit_params::figures::Figures;
 use shadowfit_params::tool::ViewMode;
-use shadowfit_render::RenderTarget;
+use shadowfit_render::{ReadBack, RenderTarget};
 
 use super::paint::Painter;
 use super::{InterfaceInput, InterfaceOutput};
@@ -71,10 +71,10 @@ impl Pictures {
         }
     }
 
-    /// The picture as it is on show, both halves where two techniques are compared: sRGB pixels, four bytes each, rows
-    /// from the top.
-    pub(crate) fn read(&self, stage: &Stage) -> anyhow::Result<Vec<u8>> {
-        Ok(self.main.target.read(stage.gpu())?)
+    /// Begins to read the picture as it is on show, both halves where two techniques are compared: sRGB pixels, four
+    /// bytes each, rows from the top.
+    pub(crate) fn read_back(&self, stage: &Stage) -> ReadBack {
+        self.main.target.read_back(stage.gpu())
     }
 
     /// Makes the pictures as large as their places.

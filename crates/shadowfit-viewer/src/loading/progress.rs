@@ -3,7 +3,7 @@
 //! The time of each phase follows from the scene's size by what it took in measured scenes. How fast this machine is
 //! follows from the phases before; within one, the clock moves the bar, up to where the next one begins.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use shadowfit_scene::SceneSize;
 

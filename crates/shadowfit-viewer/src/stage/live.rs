@@ -1,5 +1,6 @@
 //! Pictures judged against rays while they are shown: each one on a graphics card; without one, the next as soon as a
-//! thread is done with the last.
+//! thread is done with the last. Browsers have no threads, so what draws judges there, too: where the CPU draws, as
+//! rarely as a thread would.
 
 use anyhow::{Result, anyhow};
 use shadowfit::{FittedMap, PerspectiveCamera, Technique};
@@ -68,8 +69,10 @@ struct Sums {
 /// The judge of a side's pictures.
 #[derive(Debug, Default)]
 pub(super) struct Live {
-    /// Whether the GPU judges each frame.
+    /// Whether the GPU judges.
     pub(super) on_gpu: bool,
+    /// Whether it is too slow to judge each frame.
+    is_slow: bool,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
     /// The picture that the thread judges, and its probe.
@@ -90,14 +93,15 @@ pub(super) struct Live {
 
 impl Live {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        Self { on_gpu: !gpu.is_software(), ..Self::default() }
+        let is_slow = gpu.is_software();
+        Self { on_gpu: !is_slow || cfg!(target_family = "wasm"), is_slow, ..Self::default() }
     }
 
     /// Forgets all pictures, for another scene.
     pub(super) fn forget(&mut self) {
-        let Self { on_gpu, waits, .. } = *self;
+        let Self { on_gpu, is_slow, waits, .. } = *self;
         // The thread stops judging.
-        *self = Self { on_gpu, waits, ..Self::default() };
+        *self = Self { on_gpu, is_slow, waits, ..Self::default() };
     }
 
     /// The picture that was judged last.
@@ -165,17 +169,28 @@ impl Live {
         if shot.scene.ready_rays().is_none() && !self.pose_rays(shot) {
             return Ok(false);
         }
-        if self.on_gpu {
+        if self.on_gpu && !self.is_slow {
             return self.judge_on_gpu(evaluator, shot, (view, key), maps, size);
         }
         let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
         let waited = self.begun.map_or(f32::MAX, |begun| shot.clock - begun);
         let is_due = self.waits || is_asked || shot.clock - since >= STILL || waited >= MOVING;
         let is_known = self.judged.as_ref().is_some_and(|judged| judged.key == key);
-        if is_known || !is_due || self.background.as_ref().is_some_and(BackgroundJudge::is_busy) {
+        let is_busy = self.background.as_ref().is_some_and(BackgroundJudge::is_busy) || !self.drawn.is_empty();
+        if is_known || !is_due || is_busy {
             return Ok(false);
         }
-        self.start(evaluator, shot, (view, key), maps, size)
+        self.begun = Some(shot.clock);
+        let size = if self.waits { size } else { background_size(size) };
+        if !self.on_gpu {
+            return self.start(evaluator, shot, (view, key), maps, size);
+        }
+        let maps_stay = self.judge_on_gpu(evaluator, shot, (view, key), maps, size)?;
+        // Later frames of other views need to know what this one showed.
+        if let Some(judged) = &mut self.judged {
+            judged.seen = evaluator.take_probe();
+        }
+        Ok(maps_stay)
     }
 
     /// Makes rays of the present pose, at once where that is quick, otherwise on a thread for a later frame. Returns
@@ -236,9 +251,7 @@ impl Live {
         size: [u32; 2],
     ) -> Result<bool> {
         let Some(rays) = shot.scene.ready_rays() else { return Ok(false) };
-        let scale = (BACKGROUND_WIDTH as f32 / size[0] as f32).min(1.0);
-        evaluator.judging.size =
-            if self.waits { size } else { size.map(|side| ((side as f32 * scale).round() as u32).max(1)) };
+        evaluator.judging.size = size;
         evaluator.judging.crawl = !self.waits;
         let (job, seen) = evaluator.judge_job(shot.gpu, shot.scene, view, maps, rays)?;
         let measures_crawl = job.before.is_some();
@@ -250,7 +263,6 @@ impl Live {
         background.start(job);
         self.background = Some(background);
         self.started = Some((Drawn { key, size, at: shot.clock }, seen));
-        self.begun = Some(shot.clock);
         if self.waits {
             while self.background.as_ref().is_some_and(BackgroundJudge::is_busy) && self.started.is_some() {
                 std::thread::sleep(std::time::Duration::from_millis(1));
@@ -281,6 +293,12 @@ impl Live {
         self.sums = Some(Sums { of, figures: found.judged.tally.figures(), gpu_ms: None });
         Ok(())
     }
+}
+
+/// The size at which a thread, or a GPU that is as slow, judges a picture of a size.
+fn background_size(size: [u32; 2]) -> [u32; 2] {
+    let scale = (BACKGROUND_WIDTH as f32 / size[0] as f32).min(1.0);
+    size.map(|side| ((side as f32 * scale).round() as u32).max(1))
 }
 
 /// Figures for the panel.

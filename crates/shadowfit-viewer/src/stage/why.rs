@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use glam::DVec3;
 use shadowfit_egui::{PixelClass, WhyCard};
 use shadowfit_render::{PixelQuery, PixelRead, TexelBlock};
-use shadowfit_study::{Judging, StoredTexels, View, Why, WhyInput, why};
+use shadowfit_study::{Judging, StoredTexels, View, Why, WhyInput, in_background, why};
 use shadowfit_truth::Class;
 
 use super::Stage;
@@ -189,7 +189,7 @@ fn think(question: WhyInput) -> Receiver<Option<Why>> {
         let _ = sender.send(why(&question));
     };
     // Without a thread the channel is closed, and there is no answer.
-    let _ = std::thread::Builder::new().name("why".to_owned()).spawn(work);
+    let _ = in_background("why", work);
     answer
 }
 

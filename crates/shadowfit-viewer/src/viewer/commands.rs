@@ -1,7 +1,9 @@
 //! Runs each command.
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, channel};
+#[cfg(not(target_family = "wasm"))]
+use std::sync::mpsc::Receiver;
+use std::sync::mpsc::channel;
 
 use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
@@ -9,12 +11,12 @@ use shadowfit_egui::{Artefact, Command, Toggle, UserPreset};
 use shadowfit_params as params;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
-use shadowfit_study::{NamedTechnique, settings_to_toml};
+use shadowfit_study::{NamedTechnique, in_background, settings_to_toml};
 
 use super::Viewer;
 use crate::cli::find_technique;
 use crate::export::command_line;
-use crate::files::{free_name, write_png, write_whole};
+use crate::files::{free_name, write_whole};
 use crate::saved::Bookmark;
 use crate::source::{OPTION_PREFIX, SceneSource};
 use crate::tuning::Task;
@@ -137,7 +139,10 @@ impl Viewer {
             Command::Technique(name) => {
                 find_technique(&name, &self.edited_technique()).map(|named| self.take_technique(named))
             }
-            Command::Screenshot(path) => self.save_picture(path),
+            Command::Screenshot(path) => match self.save_picture(path) {
+                Ok(()) => return,
+                Err(error) => Err(error),
+            },
             Command::SaveFigures(path) => {
                 let text = self.interface.panel().figures_csv();
                 self.save_text(path, &text)
@@ -170,7 +175,7 @@ impl Viewer {
             // The receiver is gone if another artefact was asked for.
             let _ = sender.send(search.run());
         };
-        if std::thread::Builder::new().name("search".to_owned()).spawn(work).is_ok() {
+        if in_background("search", work).is_ok() {
             self.searching = Some(receiver);
         }
     }
@@ -315,11 +320,11 @@ impl Viewer {
     }
 
     /// Saves the picture without bars and panel.
-    fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
+    fn save_picture(&mut self, path: Option<PathBuf>) -> Result<()> {
         let path = self.place(path, "png")?;
-        let pixels = self.interface.pictures.read(&self.stage)?;
-        write_png(&path, self.interface.pictures.size(), &pixels, Some(&self.text_of_settings()))?;
-        Ok(format!("Saved {}", path.display()))
+        let (pixels, size) = (self.interface.pictures.read_back(&self.stage), self.interface.pictures.size());
+        self.save_later((path, self.line.clone()), pixels, size, false);
+        Ok(())
     }
 
     /// The path of a file to save, with a new name if none is given.
@@ -327,6 +332,7 @@ impl Viewer {
         if let Some(path) = path {
             return Ok(self.start.place(path));
         }
+        #[cfg(not(target_family = "wasm"))]
         if self.player.is_random() && self.start.folder().is_none() {
             let litter = self.litter.take().map_or_else(tempfile::tempdir, Ok)?;
             return Ok(free_name(self.litter.insert(litter).path(), extension));
@@ -376,6 +382,9 @@ impl Viewer {
 
     /// Lets the user choose a file, with the system's dialog on a thread.
     fn choose_file(&mut self) {
+        #[cfg(target_family = "wasm")]
+        crate::web::page::choose_file();
+        #[cfg(not(target_family = "wasm"))]
         if self.chooser.is_none() {
             self.chooser = dialog();
         }
@@ -395,6 +404,7 @@ pub(super) fn preset(named: &NamedTechnique) -> UserPreset {
     UserPreset { name: named.name.clone(), technique: named.technique }
 }
 
+#[cfg(not(target_family = "wasm"))]
 fn dialog() -> Option<Receiver<Option<PathBuf>>> {
     let (sender, receiver) = channel();
     let work = move || {

@@ -7,9 +7,11 @@ use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 
 use super::Viewer;
 use crate::cli::check_animation;
-use crate::files::settings_of_png;
+use crate::files::{self, settings_of_png};
 use crate::loading::Loading;
+use crate::playback::Player;
 use crate::sample_figures::Measuring;
+use crate::script;
 use crate::source::SceneSource;
 use crate::undo::History;
 
@@ -25,13 +27,20 @@ impl Viewer {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let opened = match extension.as_str() {
             "png" => self.open_picture(path),
-            "toml" => NamedTechnique::read(path).map(|named| self.take_technique(named)),
+            "toml" => technique(path).map(|named| self.take_technique(named)),
+            "txt" => self.play_file(path),
             _ => {
                 self.open(SceneSource::file(path));
                 return;
             }
         };
         self.tell(opened.with_context(|| format!("{} cannot be opened", path.display())));
+    }
+
+    /// Plays a script.
+    fn play_file(&mut self, path: &Path) -> Result<String> {
+        self.player = Player::new(script::read(path)?);
+        Ok(format!("Playing {}", path.display()))
     }
 
     /// Takes the settings that a screenshot was made with: the technique for the side that the panel edits.
@@ -122,4 +131,13 @@ impl Viewer {
         }
         self.interface.scene_changed(&self.stage);
     }
+}
+
+/// The technique of a file; one without a name gets the file's.
+fn technique(path: &Path) -> Result<NamedTechnique> {
+    let mut named = NamedTechnique::from_toml(std::str::from_utf8(&files::read(path)?)?)?;
+    if named.name.is_empty() {
+        named.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    }
+    Ok(named)
 }

@@ -1,0 +1,149 @@
+//! The pixels of a texture on their way from the GPU.
+
+use core::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use crate::Gpu;
+use crate::wait::waiting;
+
+/// States of the way.
+const BUSY: u8 = 0;
+const READABLE: u8 = 1;
+const FAILED: u8 = 2;
+
+/// Pixels that the GPU still copies.
+#[derive(Debug)]
+pub struct ReadBack {
+    buffer: wgpu::Buffer,
+    /// Bytes of a row, and of one with its padding.
+    row: u32,
+    padded: u32,
+    state: Arc<AtomicU8>,
+}
+
+/// Why pixels could not be read back. There are no pixels then, not even black ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReadError {
+    /// The device was lost or destroyed, or has no memory left for the copy.
+    Lost,
+    /// The device did not finish its work. Browsers finish none while a program waits: use [`ReadBack::arrive`] there.
+    Unfinished,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let reason = match self {
+            Self::Lost => "it was lost, or is out of memory",
+            Self::Unfinished => "it did not finish its work",
+        };
+        write!(
+            f,
+            "pixels could not be read back from the graphics device: {reason}; start again, with smaller pictures \
+                   if it is out of memory"
+        )
+    }
+}
+
+impl core::error::Error for ReadError {}
+
+impl ReadBack {
+    /// Begins to copy a texture of a `size` in pixels.
+    pub fn new(gpu: &Gpu, texture: &wgpu::Texture, size: [u32; 2], bytes_per_pixel: u32) -> Self {
+        let _unreported = gpu.without_reports();
+        let row = size[0] * bytes_per_pixel;
+        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size: u64::from(padded) * u64::from(size[1]),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            },
+            wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        );
+        gpu.submit([encoder.finish()]);
+        let state = Arc::new(AtomicU8::new(BUSY));
+        let told = Arc::clone(&state);
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            told.store(if result.is_ok() { READABLE } else { FAILED }, Ordering::Release);
+        });
+        Self { buffer, row, padded, state }
+    }
+
+    /// The pixels, rows from the top without padding, once they have arrived; `None` before that. Does not wait.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError`] if the device was lost.
+    pub fn take(&self, gpu: &Gpu) -> Option<Result<Vec<u8>, ReadError>> {
+        let polled = gpu.device.poll(wgpu::PollType::Poll);
+        match self.state.load(Ordering::Acquire) {
+            BUSY if polled.is_ok() => None,
+            READABLE => Some(self.pixels()),
+            _ => Some(Err(ReadError::Lost)),
+        }
+    }
+
+    /// The same, and waits for the GPU.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError`] if the device was lost or does not answer.
+    pub fn wait(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
+        waiting(|| gpu.device.poll(wgpu::PollType::wait_indefinitely())).map_err(|_| ReadError::Unfinished)?;
+        match self.state.load(Ordering::Acquire) {
+            BUSY => Err(ReadError::Unfinished),
+            READABLE => self.pixels(),
+            _ => Err(ReadError::Lost),
+        }
+    }
+
+    /// The same, and lets a browser do other things meanwhile; elsewhere it is [`Self::wait`].
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError`] if the device was lost or does not answer.
+    #[cfg_attr(not(target_family = "wasm"), expect(clippy::unused_async, reason = "only browsers wait"))]
+    pub async fn arrive(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
+        #[cfg(target_family = "wasm")]
+        loop {
+            if let Some(pixels) = self.take(gpu) {
+                return pixels;
+            }
+            gloo_timers::future::TimeoutFuture::new(POLL_MS).await;
+        }
+        #[cfg(not(target_family = "wasm"))]
+        self.wait(gpu)
+    }
+
+    fn pixels(&self) -> Result<Vec<u8>, ReadError> {
+        let mapped = self.buffer.slice(..).get_mapped_range().map_err(|_| ReadError::Lost)?;
+        let rows = mapped.chunks(self.padded as usize).flat_map(|line| &line[..self.row as usize]);
+        Ok(rows.copied().collect())
+    }
+}
+
+/// Time between two looks for pixels in a browser, in milliseconds.
+#[cfg(target_family = "wasm")]
+const POLL_MS: u32 = 2;
+
+/// Copies a texture of a `size` in pixels to the CPU, rows from the top without padding; waits for the GPU.
+///
+/// # Errors
+///
+/// [`ReadError`] if the device was lost or does not answer.
+pub fn read_texture(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    size: [u32; 2],
+    bytes_per_pixel: u32,
+) -> Result<Vec<u8>, ReadError> {
+    ReadBack::new(gpu, texture, size, bytes_per_pixel).wait(gpu)
+}

@@ -1,0 +1,372 @@
+//! The viewer in a browser.
+//!
+//! ```text
+//!   page (web/page.js)                         worker (web/worker.js)
+//!   canvas, keys, pointers, files   ──events──►  this module: the same viewer as in a window,
+//!   storage, downloads, clipboard   ◄─messages─  which draws on the page's canvas
+//! ```
+//!
+//! The worker keeps the page free: however long the viewer computes, the page scrolls, types and shows progress.
+
+mod facts;
+pub(crate) mod files;
+mod input;
+pub(crate) mod page;
+pub(crate) mod store;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use anyhow::{Context, Result, anyhow};
+use egui::{FontData, FontDefinitions, FontFamily, OutputCommand, Pos2, RawInput, Rect, ViewportInfo};
+use epaint_default_fonts::{EGUI_ICONS, HACK_REGULAR, UBUNTU_LIGHT};
+use shadowfit_egui::Command;
+use shadowfit_render::{AdapterChoice, Gpu};
+use wasm_bindgen::JsError;
+use wasm_bindgen::prelude::wasm_bindgen;
+use web_sys::OffscreenCanvas;
+use web_time::Instant;
+
+use crate::cli::Arguments;
+use crate::stage::Stage;
+use crate::viewer::{Start, Viewer};
+use input::Events;
+use store::Store;
+
+/// Samples per pixel: software rasterisers pay for each.
+const GPU_SAMPLES: u32 = 4;
+const SOFTWARE_SAMPLES: u32 = 1;
+/// Frames that the GPU may have to draw before another one is begun: browsers accept any number.
+const MOST_AHEAD: u32 = 2;
+
+/// The viewer of a page.
+#[wasm_bindgen]
+pub struct Page {
+    canvas: OffscreenCanvas,
+    surface: wgpu::Surface<'static>,
+    configuration: wgpu::SurfaceConfiguration,
+    viewer: Viewer,
+    events: Events,
+    /// Pixels per point.
+    scale: f32,
+    /// Whether the surface must be configured before the next frame.
+    is_stale: bool,
+    is_focused: bool,
+    theme: Option<egui::Theme>,
+    /// Frames that the GPU has not finished.
+    ahead: Arc<AtomicU32>,
+    start: Instant,
+    last_frame: Instant,
+    told: Told,
+}
+
+/// What the page was told last.
+#[derive(Debug, Default)]
+struct Told {
+    cursor: Option<egui::CursorIcon>,
+    is_ready: bool,
+    types: bool,
+}
+
+#[wasm_bindgen]
+impl Page {
+    /// Opens the graphics device and draws on a canvas of some pixels, `scale` of them a point. `kept` is the text of the
+    /// last visit.
+    ///
+    /// # Errors
+    ///
+    /// With a message for people if the browser gives no device.
+    pub async fn open(canvas: OffscreenCanvas, scale: f32, kept: Option<String>) -> Result<Page, JsError> {
+        console_error_panic_hook::set_once();
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            page::tell("panic", &panic.to_string());
+            hook(panic);
+        }));
+        Self::new(canvas, scale, kept).await.map_err(|error| JsError::new(&format!("{error:#}")))
+    }
+
+    async fn new(canvas: OffscreenCanvas, scale: f32, kept: Option<String>) -> Result<Self> {
+        let instance = Gpu::instance();
+        let target = wgpu::SurfaceTarget::OffscreenCanvas(canvas.clone());
+        let surface = instance.create_surface(target).context("the page cannot be drawn on")?;
+        let gpu = Gpu::for_surface(AdapterChoice::Any, &instance, &surface).await?;
+        watch(&gpu);
+        let mut configuration = surface
+            .get_default_config(&gpu.adapter, canvas.width().max(1), canvas.height().max(1))
+            .ok_or_else(|| anyhow!("{} cannot draw on this page", gpu.name()))?;
+        // The interface blends encoded colours, so the surface must not encode them again.
+        configuration.format = configuration.format.remove_srgb_suffix();
+        surface.configure(&gpu.device, &configuration);
+        let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
+        let mut stage = Stage::empty(gpu, samples)?;
+        stage.read_depths();
+        let start = Start::new(&Arguments::default())?;
+        let viewer = Viewer::new(stage, configuration.format, start, Some(Store::new(kept)));
+        viewer.interface.context.set_fonts(fonts());
+        let now = Instant::now();
+        Ok(Self {
+            canvas,
+            surface,
+            configuration,
+            viewer,
+            events: Events::default(),
+            scale,
+            is_stale: false,
+            is_focused: true,
+            theme: None,
+            ahead: Arc::default(),
+            start: now,
+            last_frame: now,
+            told: Told::default(),
+        })
+    }
+
+    /// Draws a frame, unless the GPU still has some to draw.
+    ///
+    /// # Errors
+    ///
+    /// With a message for people where nothing can be drawn any more.
+    pub fn frame(&mut self) -> Result<(), JsError> {
+        if self.ahead.load(Ordering::Relaxed) >= MOST_AHEAD {
+            return Ok(());
+        }
+        self.draw().map_err(|error| JsError::new(&format!("{error:#}")))
+    }
+
+    /// The canvas got another size, in pixels, `scale` of them a point.
+    pub fn resize(&mut self, width: u32, height: u32, scale: f32) {
+        let limit = self.viewer.stage.gpu().device.limits().max_texture_dimension_2d;
+        (self.configuration.width, self.configuration.height) = (width.clamp(1, limit), height.clamp(1, limit));
+        (self.scale, self.is_stale) = (scale, true);
+    }
+
+    /// The keys that are held with others.
+    pub fn held(&mut self, bits: u32) {
+        self.events.held(bits);
+    }
+
+    /// The mouse moved to a point, in points, and by how far.
+    pub fn moved(&mut self, x: f32, y: f32, by_x: f32, by_y: f32) {
+        self.events.moved(Pos2::new(x, y), [by_x, by_y]);
+    }
+
+    /// A button of the mouse was pressed or released.
+    pub fn button(&mut self, x: f32, y: f32, number: u32, pressed: bool) {
+        self.events.button(Pos2::new(x, y), number, pressed);
+    }
+
+    /// The mouse left the page.
+    pub fn gone(&mut self) {
+        self.events.gone();
+    }
+
+    /// The wheel turned.
+    pub fn wheel(&mut self, x: f32, y: f32, unit: u32) {
+        self.events.wheel([x, y], unit);
+    }
+
+    /// A finger.
+    pub fn touch(&mut self, finger: u32, phase: &str, x: f32, y: f32) {
+        self.events.touch(finger.into(), phase, Pos2::new(x, y));
+    }
+
+    /// A key was pressed or released.
+    pub fn key(&mut self, code: &str, name: &str, pressed: bool, repeat: bool) {
+        self.events.key(code, name, pressed, repeat);
+    }
+
+    /// A text was pasted.
+    pub fn paste(&mut self, text: String) {
+        self.events.waiting.push(egui::Event::Paste(text));
+    }
+
+    /// What is selected is to be copied.
+    pub fn copy(&mut self) {
+        self.events.waiting.push(egui::Event::Copy);
+    }
+
+    /// What is selected is to be cut.
+    pub fn cut(&mut self) {
+        self.events.waiting.push(egui::Event::Cut);
+    }
+
+    /// The page got or lost the keyboard.
+    pub fn focus(&mut self, is_focused: bool) {
+        self.is_focused = is_focused;
+        if !is_focused {
+            self.viewer.input.release_all();
+        }
+    }
+
+    /// Whether the browser prefers dark pages.
+    pub fn dark(&mut self, is_dark: bool) {
+        self.theme = Some(if is_dark { egui::Theme::Dark } else { egui::Theme::Light });
+    }
+
+    /// Other files were chosen: those before are forgotten.
+    pub fn files(&mut self) {
+        files::clear();
+    }
+
+    /// One of the files that were chosen together.
+    pub fn file(&mut self, name: String, bytes: Vec<u8>) {
+        files::keep(name, bytes);
+    }
+
+    /// Opens one of them.
+    pub fn open_file(&mut self, name: String) {
+        self.viewer.ask(Command::OpenFile(PathBuf::from(name)));
+    }
+
+    /// Saves the settings: the page is about to be hidden.
+    pub fn save(&mut self) {
+        self.viewer.save();
+    }
+
+    /// Facts for tests of the page, as a line of JSON.
+    pub fn facts(&mut self) -> String {
+        facts::of(&mut self.viewer)
+    }
+}
+
+impl Page {
+    fn draw(&mut self) -> Result<()> {
+        let now = Instant::now();
+        let seconds = (now - self.last_frame).as_secs_f32();
+        self.last_frame = now;
+        let gpu = self.viewer.stage.gpu();
+        if std::mem::take(&mut self.is_stale) {
+            self.canvas.set_width(self.configuration.width);
+            self.canvas.set_height(self.configuration.height);
+            self.surface.configure(&gpu.device, &self.configuration);
+        }
+        let (layout, output) = {
+            let raw_input = self.raw_input();
+            self.viewer.frame(raw_input, seconds)
+        };
+        self.handle(&output);
+        use wgpu::CurrentSurfaceTexture as Current;
+        let texture = match self.surface.get_current_texture() {
+            Current::Success(texture) => texture,
+            Current::Suboptimal(texture) => {
+                self.is_stale = true;
+                texture
+            }
+            Current::Outdated | Current::Lost => {
+                self.is_stale = true;
+                return Ok(());
+            }
+            Current::Timeout | Current::Occluded => return Ok(()),
+            Current::Validation => return Err(anyhow!("the canvas cannot be drawn on any more")),
+        };
+        let view = texture.texture.create_view(&Default::default());
+        let size = [self.configuration.width, self.configuration.height];
+        self.viewer.paint(&layout, &view, size);
+        let gpu = self.viewer.stage.gpu();
+        gpu.queue.present(texture);
+        self.ahead.fetch_add(1, Ordering::Relaxed);
+        let ahead = Arc::clone(&self.ahead);
+        gpu.queue.on_submitted_work_done(move || _ = ahead.fetch_sub(1, Ordering::Relaxed));
+        Ok(())
+    }
+
+    fn raw_input(&mut self) -> RawInput {
+        let size = [self.configuration.width, self.configuration.height].map(|side| side as f32 / self.scale);
+        let viewport = ViewportInfo { native_pixels_per_point: Some(self.scale), ..ViewportInfo::default() };
+        RawInput {
+            viewports: std::iter::once((egui::ViewportId::ROOT, viewport)).collect(),
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size.into())),
+            max_texture_side: Some(self.viewer.stage.gpu().device.limits().max_texture_dimension_2d as usize),
+            time: Some(self.start.elapsed().as_secs_f64()),
+            events: std::mem::take(&mut self.events.waiting),
+            focused: self.is_focused,
+            system_theme: self.theme,
+            ..RawInput::default()
+        }
+    }
+
+    /// Tells the page what egui and the viewer want of it.
+    fn handle(&mut self, output: &egui::PlatformOutput) {
+        for command in &output.commands {
+            match command {
+                OutputCommand::CopyText(text) => page::tell("copy", text),
+                OutputCommand::OpenUrl(url) => page::tell("open", &url.url),
+                _ => {}
+            }
+        }
+        if self.told.cursor != Some(output.cursor_icon) {
+            self.told.cursor = Some(output.cursor_icon);
+            page::tell("cursor", cursor(output.cursor_icon));
+        }
+        if self.told.types != output.ime.is_some() {
+            self.told.types = output.ime.is_some();
+            page::tell("types", if self.told.types { "yes" } else { "" });
+        }
+        let requests = std::mem::take(&mut self.viewer.window_requests);
+        if requests.new_title {
+            page::tell("title", &self.viewer.title());
+        }
+        if !self.told.is_ready && self.viewer.is_ready() {
+            self.told.is_ready = true;
+            page::tell("ready", self.viewer.stage.gpu().name().as_str());
+        }
+        if let Some(failure) = self.viewer.failure.take() {
+            page::tell("failure", &format!("{failure:#}"));
+        }
+    }
+}
+
+/// egui's own fonts without those for emoji, which are larger than the others. That for code has arrows.
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::empty();
+    let all = [("text", UBUNTU_LIGHT), ("code", HACK_REGULAR), ("icons", EGUI_ICONS)];
+    fonts.font_data.extend(all.map(|(name, bytes)| (name.to_owned(), Arc::new(FontData::from_static(bytes)))));
+    for (family, names) in
+        [(FontFamily::Proportional, ["text", "icons", "code"]), (FontFamily::Monospace, ["code", "icons", "text"])]
+    {
+        fonts.families.insert(family, names.map(str::to_owned).to_vec());
+    }
+    fonts
+}
+
+/// Tells the page about errors of the device that nothing else reports.
+fn watch(gpu: &Gpu) {
+    gpu.device.set_device_lost_callback(|reason, message| {
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            page::tell("lost", &message);
+        }
+    });
+    gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| match error {
+        wgpu::Error::OutOfMemory { .. } => page::tell("memory", &error.to_string()),
+        _ => page::tell("error", &error.to_string()),
+    }));
+}
+
+/// The name of a pointer's shape in CSS.
+fn cursor(icon: egui::CursorIcon) -> &'static str {
+    use egui::CursorIcon as Icon;
+    match icon {
+        Icon::None => "none",
+        Icon::ContextMenu => "context-menu",
+        Icon::Help => "help",
+        Icon::PointingHand => "pointer",
+        Icon::Progress => "progress",
+        Icon::Wait => "wait",
+        Icon::Cell => "cell",
+        Icon::Crosshair => "crosshair",
+        Icon::Text | Icon::VerticalText => "text",
+        Icon::Move | Icon::AllScroll => "move",
+        Icon::NoDrop | Icon::NotAllowed => "not-allowed",
+        Icon::Grab => "grab",
+        Icon::Grabbing => "grabbing",
+        Icon::ResizeHorizontal | Icon::ResizeColumn | Icon::ResizeEast | Icon::ResizeWest => "ew-resize",
+        Icon::ResizeVertical | Icon::ResizeRow | Icon::ResizeNorth | Icon::ResizeSouth => "ns-resize",
+        Icon::ResizeNeSw | Icon::ResizeNorthEast | Icon::ResizeSouthWest => "nesw-resize",
+        Icon::ResizeNwSe | Icon::ResizeNorthWest | Icon::ResizeSouthEast => "nwse-resize",
+        Icon::ZoomIn => "zoom-in",
+        Icon::ZoomOut => "zoom-out",
+        _ => "default",
+    }
+}

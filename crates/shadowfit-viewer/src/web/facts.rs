@@ -1,0 +1,30 @@
+//! What a page shows, as a line of JSON: tests of the page ask for it.
+
+use serde_json::json;
+
+use crate::viewer::Viewer;
+
+pub(super) fn of(viewer: &mut Viewer) -> String {
+    let stage = &viewer.stage;
+    let figures = stage.judged_figures();
+    let camera = &stage.camera;
+    json!({
+        "title": viewer.title(),
+        "is_ready": viewer.is_ready(),
+        "is_waiting": viewer.is_waiting(),
+        "has_played": viewer.has_played(),
+        "is_judged": stage.is_judged(),
+        "frame_ms": viewer.interface.frame_ms,
+        "position": camera.position.to_array(),
+        "angles": [camera.yaw, camera.pitch],
+        "artefact": stage.shown().map(|shown| (format!("{:?}", shown.artefact), shown.fixed)),
+        "view": format!("{:?}", stage.settings.view.mode),
+        "wrong": figures.map(|figures| figures.wrong),
+        "false_shadow": figures.map(|figures| figures.false_shadow),
+        "hole": figures.map(|figures| figures.hole),
+        "problem": stage.problem(),
+        "message": viewer.message(),
+        "settings": shadowfit_study::settings_to_toml(&stage.settings, ""),
+    })
+    .to_string()
+}

@@ -1,0 +1,309 @@
+// The page around the viewer, which runs in a worker: hands it keys, pointers, sizes and files, and does for it what only
+// a page can: store, download, copy, open.
+
+import { sizes } from './sizes.js';
+
+const STORED = 'shadowfit viewer';
+const element = (id) => document.getElementById(id);
+const [canvas, typing, files, cover] = ['canvas', 'typing', 'files', 'cover'].map(element);
+const asked = new URLSearchParams(location.search);
+
+/// What to do about each way in which it can end.
+const ADVICE = {
+  none:
+    'This browser has neither WebGPU nor WebGL2 turned on. A current Chrome, Edge, Firefox or Safari has; if yours is, '
+    + 'turn on hardware acceleration in its settings and load the page again.',
+  lost: 'The graphics driver was reset, or the browser took its memory back. Your settings are saved: load the page again.',
+  memory: 'The graphics card has no memory left. Close other pages that draw, or choose a smaller scene, and load the page again.',
+  panic: 'This is a bug of the viewer. Your settings are saved: load the page again, and please report the text above.',
+  failure: 'Load the page again; if that does not help, please report the text above.',
+};
+
+function show(state, advice) {
+  cover.classList.remove('gone');
+  cover.classList.add('failed');
+  element('state').textContent = state;
+  element('advice').textContent = advice;
+  element('again').hidden = false;
+}
+
+element('again').onclick = () => location.reload();
+
+// ---- the worker
+
+const worker = new Worker(new URL('worker.js', import.meta.url), { type: 'module' });
+const tell = (...message) => worker.postMessage(message);
+const questions = [];
+
+/// For tests, and for whoever is curious in the console.
+window.viewer = {
+  facts: () => new Promise((resolve) => {
+    questions.push(resolve);
+    tell('facts');
+  }),
+  tell,
+};
+
+/// Local storage, which a browser may forbid.
+const stored = (key, text) => {
+  try {
+    return text === undefined ? localStorage.getItem(key) : localStorage.setItem(key, text);
+  } catch {
+    return null;
+  }
+};
+
+const told = {
+  loaded(share) {
+    element('progress').value = share;
+  },
+  api(name) {
+    document.documentElement.dataset.api = name;
+    element('progress').value = 0;
+  },
+  compiled() {
+    element('progress').removeAttribute('value');
+    element('state').textContent = 'Starting';
+  },
+  ready(adapter) {
+    document.documentElement.dataset.ready = adapter || 'yes';
+    cover.classList.add('gone');
+    canvas.focus();
+  },
+  none() {
+    show('Nothing to draw with', ADVICE.none);
+  },
+  failure(text) {
+    show(text, ADVICE.failure);
+  },
+  panic(text) {
+    show(text, ADVICE.panic);
+  },
+  lost(text) {
+    show(`The graphics device was lost. ${text}`, ADVICE.lost);
+  },
+  memory(text) {
+    show(text, ADVICE.memory);
+  },
+  error(text) {
+    console.error(text);
+  },
+  title(text) {
+    document.title = text;
+  },
+  cursor(name) {
+    canvas.style.cursor = name;
+  },
+  keep(text) {
+    stored(STORED, text);
+  },
+  'keep aside'(text) {
+    stored(`${STORED}, damaged`, text);
+  },
+  copy(text) {
+    navigator.clipboard?.writeText(text).catch(() => copyByHand(text));
+  },
+  open(url) {
+    window.open(url, '_blank', 'noopener');
+  },
+  choose() {
+    files.value = '';
+    files.click();
+  },
+  types(whether) {
+    (whether ? typing : canvas).focus({ preventScroll: true });
+  },
+  download(bytes, name) {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([bytes]));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  },
+  facts(text) {
+    questions.shift()?.(JSON.parse(text));
+  },
+};
+
+worker.onmessage = ({ data: [kind, value, name] }) => told[kind](value, name);
+worker.onerror = (event) => show(event.message ?? 'The viewer cannot be loaded.', ADVICE.failure);
+
+/// Where the clipboard is closed to pages, by way of a selected text.
+function copyByHand(text) {
+  typing.value = text;
+  typing.select();
+  document.execCommand('copy');
+  typing.value = '';
+  canvas.focus();
+}
+
+// ---- size and looks
+
+const pixels = () => [innerWidth, innerHeight].map((side) => Math.max(1, Math.round(side * devicePixelRatio)));
+
+new ResizeObserver(([{ devicePixelContentBoxSize: box }]) => {
+  const [width, height] = box ? [box[0].inlineSize, box[0].blockSize] : pixels();
+  tell('resize', Math.max(width, 1), Math.max(height, 1), devicePixelRatio);
+}).observe(canvas);
+
+const dark = matchMedia('(prefers-color-scheme: dark)');
+dark.addEventListener('change', () => tell('dark', dark.matches));
+
+// ---- keys
+
+const SHIFT = 1;
+const CTRL = 2;
+const ALT = 4;
+const META = 8;
+let bits = 0;
+
+function held(event) {
+  const now = (event.shiftKey ? SHIFT : 0) | (event.ctrlKey ? CTRL : 0) | (event.altKey ? ALT : 0) | (event.metaKey ? META : 0);
+  if (now !== bits) {
+    bits = now;
+    tell('held', bits);
+  }
+}
+
+/// Whether a key is left to the browser: its own function keys, and what it does with Control or Command but for the
+/// letters that the viewer undoes, opens and saves with.
+function isOfBrowser({ key, ctrlKey, metaKey, altKey }) {
+  if (/^F(5|6|7|11|12)$/.test(key)) {
+    return true;
+  }
+  return (ctrlKey || metaKey) && !altKey && !/^[zyos]$/i.test(key);
+}
+
+addEventListener('keydown', (event) => {
+  held(event);
+  if (event.isComposing || event.key === 'Unidentified' || event.key === 'Process') {
+    return;
+  }
+  if (isOfBrowser(event)) {
+    return;
+  }
+  event.preventDefault();
+  tell('key', event.code, event.key, true, event.repeat);
+});
+
+addEventListener('keyup', (event) => {
+  held(event);
+  tell('key', event.code, event.key, false, false);
+});
+
+typing.addEventListener('input', () => {
+  [...typing.value].forEach((letter) => tell('key', '', letter, true, false));
+  typing.value = '';
+});
+
+addEventListener('focus', () => tell('focus', true));
+addEventListener('blur', () => tell('focus', false));
+addEventListener('copy', (event) => {
+  event.preventDefault();
+  tell('copy');
+});
+addEventListener('cut', (event) => {
+  event.preventDefault();
+  tell('cut');
+});
+addEventListener('paste', (event) => {
+  event.preventDefault();
+  tell('paste', event.clipboardData?.getData('text') ?? '');
+});
+
+// ---- pointers
+
+const at = ({ clientX, clientY }) => [clientX, clientY];
+
+function finger(event) {
+  event.preventDefault();
+  tell('touch', event.pointerId, event.type, ...at(event));
+}
+
+canvas.addEventListener('pointerdown', (event) => {
+  held(event);
+  canvas.setPointerCapture(event.pointerId);
+  if (event.pointerType === 'touch') {
+    finger(event);
+    return;
+  }
+  canvas.focus();
+  event.preventDefault();
+  tell('button', ...at(event), event.button, true);
+});
+
+canvas.addEventListener('pointermove', (event) => {
+  if (event.pointerType === 'touch') {
+    finger(event);
+    return;
+  }
+  held(event);
+  tell('moved', ...at(event), event.movementX, event.movementY);
+});
+
+for (const kind of ['pointerup', 'pointercancel']) {
+  canvas.addEventListener(kind, (event) => {
+    if (event.pointerType === 'touch') {
+      finger(event);
+    } else {
+      tell('button', ...at(event), Math.max(event.button, 0), false);
+    }
+  });
+}
+
+canvas.addEventListener('pointerleave', (event) => {
+  if (event.pointerType !== 'touch') {
+    tell('gone');
+  }
+});
+canvas.addEventListener('wheel', (event) => {
+  event.preventDefault();
+  held(event);
+  tell('wheel', event.deltaX, event.deltaY, event.deltaMode);
+}, { passive: false });
+canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+
+// ---- files
+
+/// Hands over files that were chosen together, and opens the one that the others belong to.
+async function open(list) {
+  const chosen = [...list];
+  const main = chosen.find(({ name }) => /\.(glb|gltf)$/i.test(name)) ?? chosen[0];
+  if (!main) {
+    return;
+  }
+  tell('files');
+  for (const file of chosen) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    worker.postMessage(['file', file.name, bytes], [bytes.buffer]);
+  }
+  tell('open_file', main.name);
+}
+
+files.onchange = () => open(files.files);
+addEventListener('dragover', (event) => event.preventDefault());
+addEventListener('drop', (event) => {
+  event.preventDefault();
+  open(event.dataTransfer.files);
+});
+
+// ---- the start
+
+document.addEventListener('visibilitychange', () => {
+  if (document.hidden) {
+    tell('save');
+  }
+});
+
+if (!canvas.transferControlToOffscreen) {
+  told.none();
+} else {
+  const [width, height] = pixels();
+  const drawn = canvas.transferControlToOffscreen();
+  const kept = asked.has('afresh') ? null : stored(STORED);
+  worker.postMessage(
+    { canvas: drawn, width, height, scale: devicePixelRatio, kept, wanted: asked.get('api'), sizes },
+    [drawn],
+  );
+  tell('dark', dark.matches);
+}

@@ -1,0 +1,100 @@
+// Runs the viewer: loads its module, hands it what the page tells, and draws frames.
+
+const waiting = [];
+let viewer = null;
+
+self.tellPage = (kind, value, name) => {
+  const transferred = value instanceof Uint8Array ? [value.buffer] : [];
+  postMessage([kind, value, name], transferred);
+};
+
+/// The module's bytes, compiled while they arrive; the page is told how many have.
+async function fetched(url, bytes) {
+  const answer = await fetch(url);
+  if (!answer.ok) {
+    throw new Error(`${url} cannot be loaded: ${answer.status}`);
+  }
+  let loaded = 0;
+  const counted = new TransformStream({
+    transform(part, out) {
+      loaded += part.byteLength;
+      postMessage(['loaded', Math.min(loaded / bytes, 1)]);
+      out.enqueue(part);
+    },
+  });
+  const headers = { 'Content-Type': 'application/wasm' };
+  return new Response(answer.body.pipeThrough(counted), { headers });
+}
+
+/// Which graphics API the browser has: `wanted` if it is given.
+async function api(wanted) {
+  if (wanted) {
+    return wanted;
+  }
+  const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
+  if (adapter) {
+    return 'webgpu';
+  }
+  return new OffscreenCanvas(1, 1).getContext('webgl2') ? 'webgl2' : null;
+}
+
+function call([method, ...values]) {
+  try {
+    const answer = viewer[method](...values);
+    if (method === 'facts') {
+      postMessage(['facts', answer]);
+    }
+  } catch (error) {
+    failed(error);
+  }
+}
+
+let isOver = false;
+
+function failed(error) {
+  if (!isOver) {
+    isOver = true;
+    postMessage(['failure', `${error.message ?? error}`]);
+  }
+}
+
+function frame() {
+  if (isOver) {
+    return;
+  }
+  try {
+    viewer.frame();
+  } catch (error) {
+    failed(error);
+    return;
+  }
+  requestAnimationFrame(frame);
+}
+
+async function start({ canvas, width, height, scale, kept, wanted, sizes }) {
+  const found = await api(wanted);
+  if (!found) {
+    postMessage(['none']);
+    return;
+  }
+  postMessage(['api', found]);
+  const module = await import(`./${found}/shadowfit_viewer.js`);
+  const url = new URL(`./${found}/shadowfit_viewer_bg.wasm`, import.meta.url);
+  await module.default({ module_or_path: await fetched(url, sizes[found]) });
+  postMessage(['compiled']);
+  canvas.width = width;
+  canvas.height = height;
+  viewer = await module.Page.open(canvas, scale, kept ?? undefined);
+  waiting.splice(0).forEach(call);
+  requestAnimationFrame(frame);
+}
+
+onmessage = ({ data }) => {
+  if (!Array.isArray(data)) {
+    start(data).catch(failed);
+  } else if (viewer) {
+    call(data);
+  } else {
+    waiting.push(data);
+  }
+};
