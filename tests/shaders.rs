@@ -44,6 +44,7 @@ use shadowfit::settings::{Edges, FilterKind, MapFormat, MapSelection};
 use shadowfit_classics::mapped::SampleFrame;
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
 use shadowfit_rays::{RayWgslOptions, rays_wgsl, refit_wgsl};
+use shadowfit_render::passes::Numbering;
 use shadowfit_render::{Overlay, shaders};
 use shadowfit_wgpu::demand::demand_wgsl;
 use shadowfit_wgpu::resolve::{NormalEncoding, resolve_wgsl, resolved_wgsl};
@@ -137,7 +138,8 @@ fn modules() -> Vec<(String, String)> {
         let sets = if map.cross_fades { "two sets" } else { "one set" };
         let kind = format!("{:?} {:?} {:?} {:?} {sets}", map.format, map.filter, map.depth, map.selection);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
-        all.push((format!("probe, {kind}"), shaders::probe(&map)));
+        all.push((format!("probe, {kind}"), shaders::probe(&map, Numbering::Primitives)));
+        all.push((format!("unrolled probe, {kind}"), shaders::probe(&map, Numbering::Vertices)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));
         all.push((format!("block, {kind}"), shaders::block(&map)));
         for overlay in Overlay::ALL {
@@ -162,7 +164,9 @@ fn sample_modules() -> Vec<(String, String)> {
     for frame in sample_frames() {
         let (format, test, shading) = (frame.map.format, frame.test.name, frame.shading.name);
         all.insert(format!("samples' inset, {format:?}"), mapped::shaders::inset(format));
-        all.insert(format!("probe of samples, {format:?} {test}"), mapped::shaders::probe(&frame));
+        let probe = |numbering| mapped::shaders::probe(&frame, numbering);
+        all.insert(format!("probe of samples, {format:?} {test}"), probe(Numbering::Primitives));
+        all.insert(format!("unrolled probe of samples, {format:?} {test}"), probe(Numbering::Vertices));
         all.insert(format!("sample, {format:?} {test} {shading}"), mapped::shaders::shaded(&frame));
     }
     all.into_iter().collect()

@@ -131,7 +131,7 @@ impl SampleDrawer {
     ///
     /// # Errors
     ///
-    /// As for [`Self::draw`], and where the device cannot tell triangles apart or was lost.
+    /// As for [`Self::draw`], and where the device was lost.
     pub(crate) async fn probe(
         &mut self,
         gpu: &Gpu,

@@ -48,7 +48,7 @@ impl SampleFigures {
     ///
     /// # Errors
     ///
-    /// Where the camera cannot be fitted to, or the device cannot tell triangles apart.
+    /// Where the camera cannot be fitted to.
     pub fn measure(
         gpu: Gpu,
         sample: &Sample,

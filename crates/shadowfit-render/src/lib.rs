@@ -33,6 +33,7 @@ mod statistics;
 mod target;
 mod timer;
 mod uniform;
+mod unrolled;
 mod vertex_buffer;
 mod wait;
 

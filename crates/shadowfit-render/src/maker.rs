@@ -158,6 +158,9 @@ pub struct Streams {
     pub surface: bool,
 }
 
+/// Bytes of an element of each of the streams of vertices.
+pub(crate) const STRIDES: [usize; 4] = [12, 12, 16, 24];
+
 /// Number of the stream of instances, which comes after those of vertices.
 pub(crate) const INSTANCES: u32 = 4;
 
@@ -169,19 +172,21 @@ pub fn part_buffers(number: InstanceNumber, streams: Streams) -> [Option<wgpu::V
     const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x2, 4 => Float32x4];
     const FIRST_TRIANGLE: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, first_triangle));
     const HOLDER: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, holder));
-    let stream =
-        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
+    let stream = |array_stride: usize, step_mode, attributes| {
+        Some(wgpu::VertexBufferLayout { array_stride: array_stride as u64, step_mode, attributes })
+    };
+    let [positions, normals, tangents, surface] = STRIDES;
     let instance = match number {
         InstanceNumber::FirstTriangle => &FIRST_TRIANGLE,
         InstanceNumber::Holder => &HOLDER,
     };
     let each = wgpu::VertexStepMode::Vertex;
     [
-        stream(12, each, &POSITIONS),
-        stream(12, each, &NORMALS),
-        stream(if streams.tangents { 16 } else { 0 }, each, &TANGENTS),
-        stream(if streams.surface { 24 } else { 0 }, each, &SURFACE),
-        stream(size_of::<InstanceData>() as u64, wgpu::VertexStepMode::Instance, instance),
+        stream(positions, each, &POSITIONS),
+        stream(normals, each, &NORMALS),
+        stream(if streams.tangents { tangents } else { 0 }, each, &TANGENTS),
+        stream(if streams.surface { surface } else { 0 }, each, &SURFACE),
+        stream(size_of::<InstanceData>(), wgpu::VertexStepMode::Instance, instance),
     ]
 }
 

@@ -44,15 +44,8 @@ pub struct Probe {
 pub enum ProbeError {
     /// A fit does not suit the shadow map.
     ShadowMap(ShadowMapError),
-    /// The device has no [`wgpu::Features::PRIMITIVE_INDEX`].
-    NoPrimitiveIndex,
     /// The probe could not be read back.
     Read(ReadError),
-}
-
-/// Whether a device can tell triangles apart.
-pub fn can_probe(device: &wgpu::Device) -> bool {
-    device.features().contains(wgpu::Features::PRIMITIVE_INDEX)
 }
 
 impl From<ReadError> for ProbeError {
@@ -72,11 +65,6 @@ impl fmt::Display for ProbeError {
         match self {
             Self::ShadowMap(error) => error.fmt(f),
             Self::Read(error) => error.fmt(f),
-            Self::NoPrimitiveIndex => write!(
-                f,
-                "this graphics adapter cannot tell which triangle a pixel shows (no PRIMITIVE_INDEX), so that its \
-                 pictures cannot be judged; take the software adapter"
-            ),
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::judged::JudgedInput;
 use crate::maker::Maker;
 use crate::marks::MarkPasses;
 use crate::pipelines::{Drawn, Layouts, MapPipelines, Pipelines};
-use crate::probe::{Probe, ProbeError, ProbeTargets, can_probe};
+use crate::probe::{Probe, ProbeError, ProbeTargets};
 use crate::scene::GpuScene;
 use crate::statistics::{MapStatistics, Statistics};
 use crate::target::RenderTarget;
@@ -185,8 +185,7 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`ProbeError`] for maps that the shadow map cannot take, a device without the primitive index, and one that was
-    /// lost.
+    /// [`ProbeError`] for maps that the shadow map cannot take, and a device that was lost.
     pub fn probe(
         &mut self,
         gpu: &Gpu,
@@ -211,9 +210,6 @@ impl Renderer {
         frame: &Frame<'_>,
         targets: &ProbeTargets,
     ) -> Result<(), ProbeError> {
-        if !can_probe(&gpu.device) {
-            return Err(ProbeError::NoPrimitiveIndex);
-        }
         // A probe shows no overlay.
         let frame = Frame { overlay: crate::Overlay::None, ..self.with_known_maps(scene, frame) };
         let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;

@@ -17,6 +17,7 @@ use crate::maker::{INSTANCES, Streams};
 use crate::material::upload_materials;
 use crate::rays::{RayPart, SceneRays};
 use crate::uniform::InstanceData;
+use crate::unrolled::{Numbering, Unrolled};
 
 /// A scene that can be drawn.
 #[derive(Debug)]
@@ -51,6 +52,8 @@ pub(crate) struct Part {
     has: Streams,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) index_count: u32,
+    /// Where probes number triangles by their vertices.
+    unrolled: Option<Unrolled>,
     /// Its triangles in the order of their clusters, for the shadow passes.
     pub(crate) caster_indices: wgpu::Buffer,
     clusters: Vec<Cluster>,
@@ -147,6 +150,10 @@ impl GpuScene {
                         let streams: [&[u8]; 3] = [cast_slice(positions), cast_slice(normals), cast_slice(tangents)];
                         for (buffer, stream) in part.streams.iter().zip(streams) {
                             gpu.queue.write_buffer(buffer, 0, stream);
+                        }
+                        if let Some(unrolled) = &part.unrolled {
+                            let primitive = &scene.meshes[entry.instance.mesh].primitives[entry.instance.primitive];
+                            unrolled.write(gpu, &primitive.indices, streams);
                         }
                         Aabb::from_points(deformed.positions)
                     }
@@ -328,6 +335,15 @@ impl GpuScene {
         pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
     }
 
+    /// Draws a part of a probe, with its material as a bind group, by a pipeline of its [`Numbering`].
+    pub fn draw_probed(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: u32) {
+        let part = &self.parts[draw.part];
+        let Some(unrolled) = &part.unrolled else { return self.draw(pass, draw, Some(material_group)) };
+        pass.set_bind_group(material_group, &self.materials[part.material], &[]);
+        pass.set_vertex_buffer(INSTANCES, self.instance_buffer.slice(..));
+        unrolled.draw(pass, &part.streams, draw.instances.clone());
+    }
+
     /// Uploads the frame's instance list.
     pub fn end_frame(&mut self, gpu: &Gpu) {
         let bytes: &[u8] = cast_slice(&self.data);
@@ -357,27 +373,28 @@ impl GpuScene {
 impl Part {
     fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, (mirrored, deforms): (bool, bool)) -> Self {
         let material = &scene.materials[primitive.material];
-        let Primitive { positions, normals, tangents, indices, .. } = primitive;
-        let has = Streams {
-            tangents: !tangents.is_empty(),
-            surface: !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
-        };
-        let buffer = |usage, bytes: &[u8]| filled_buffer(gpu, usage, bytes);
-        let vertex = |bytes: &[u8]| buffer(wgpu::BufferUsages::VERTEX, bytes);
+        let Primitive { positions, normals, indices, .. } = primitive;
+        let has = streams(gpu, primitive);
+        let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
+        let vertices: [&[u8]; 4] =
+            [cast_slice(positions), cast_slice(normals), cast_slice(&tangents), cast_slice(&surface)];
         // Passes fit what deforms to them for rays.
         let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
-        let streams = [
-            buffer(wgpu::BufferUsages::VERTEX | read, cast_slice(positions)),
-            vertex(cast_slice(normals)),
-            vertex(if has.tangents { cast_slice(tangents) } else { bytemuck::bytes_of(&Vec4::ZERO) }),
-            vertex(cast_slice(&surface(primitive, has))),
+        // Blended surfaces are not probed.
+        let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(&gpu.device) == Numbering::Vertices;
+        let each = [
+            Some(vertices[0]),
+            Some(vertices[1]),
+            has.tangents.then_some(vertices[2]),
+            has.surface.then_some(vertices[3]),
         ];
         // What casts nothing is not cut, and neither is what deforms.
         let is_whole = deforms || material.alpha == AlphaMode::Blend;
         let (caster_indices, clusters) = clustered(positions, indices, is_whole);
-        let index = |indices: &[u32]| buffer(wgpu::BufferUsages::INDEX, cast_slice(indices));
+        let index = |indices: &[u32]| filled_buffer(gpu, wgpu::BufferUsages::INDEX, cast_slice(indices));
         Self {
-            streams,
+            streams: vertices.map(|bytes| filled_buffer(gpu, wgpu::BufferUsages::VERTEX | read, bytes)),
+            unrolled: is_unrolled.then(|| Unrolled::new(gpu, indices, each)),
             has,
             indices: index(indices),
             caster_indices: index(&caster_indices),
@@ -492,6 +509,21 @@ fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
     scene.instance_skin(instance).is_some() || !primitive.morphs.is_empty()
 }
 
+/// Which streams get an element for each vertex: all on OpenGL, where those of browsers have no single elements.
+fn streams(gpu: &Gpu, primitive: &Primitive) -> Streams {
+    let has_all = gpu.adapter.get_info().backend == wgpu::Backend::Gl;
+    Streams {
+        tangents: has_all || !primitive.tangents.is_empty(),
+        surface: has_all || !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
+    }
+}
+
+/// Tangents of each vertex, or of all.
+fn tangents(primitive: &Primitive, has: Streams) -> Vec<Vec4> {
+    let count = if has.tangents { primitive.positions.len() } else { 1 };
+    if primitive.tangents.is_empty() { vec![Vec4::ZERO; count] } else { primitive.tangents.clone() }
+}
+
 /// Texture coordinates and colours of each vertex, or those of all.
 fn surface(primitive: &Primitive, has: Streams) -> Vec<[f32; 6]> {
     let element = |index: usize| {
@@ -526,7 +558,7 @@ fn instance_buffer(device: &wgpu::Device, count: usize) -> wgpu::Buffer {
 /// Bytes that are on their way to the GPU at a time: each of them is held twice meanwhile.
 const UPLOAD: usize = 64 << 20;
 
-fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+pub(crate) fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("primitive"),
         size: (bytes.len() as u64).max(4),

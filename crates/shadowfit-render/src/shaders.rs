@@ -7,6 +7,7 @@ use shadowfit_wgpu::resolve::resolved_wgsl;
 use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
 use crate::Overlay;
+use crate::unrolled::Numbering;
 
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
@@ -62,10 +63,13 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     .concat()
 }
 
-/// The probe pass, with the groups of the shaded one; it needs the primitive index. The directive that enables it
-/// must come first.
-pub fn probe(shadow_map: &ShadowMapDescriptor) -> String {
-    ["enable primitive_index;\n", &scene(shadow_map), include_str!("shaders/probe.wgsl")].concat()
+/// The probe pass, with the groups of the shaded one.
+pub fn probe(shadow_map: &ShadowMapDescriptor, numbering: Numbering) -> String {
+    let entries = match numbering {
+        Numbering::Primitives => include_str!("shaders/probe_primitive.wgsl"),
+        Numbering::Vertices => include_str!("shaders/probe_vertex.wgsl"),
+    };
+    [numbering.directive(), &scene(shadow_map), include_str!("shaders/probe.wgsl"), entries].concat()
 }
 
 /// The pass that draws what edges are resolved from, with the groups of the shaded one.

@@ -95,7 +95,7 @@ impl Comparison {
     ///
     /// # Errors
     ///
-    /// When the camera makes no sense or the device cannot tell triangles apart.
+    /// When the camera makes no sense or the device was lost.
     pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
         pollster::block_on(self.frame_async(view, truth))
     }

@@ -78,7 +78,7 @@ impl Evaluator {
     ///
     /// # Errors
     ///
-    /// When the device cannot tell triangles apart.
+    /// When the camera has no direction.
     pub fn read_pixel(
         &mut self,
         gpu: &Gpu,
@@ -120,7 +120,7 @@ impl Evaluator {
     ///
     /// # Errors
     ///
-    /// When a map does not suit the shadow map, or the device cannot tell triangles apart.
+    /// When a map does not suit the shadow map, or the device was lost.
     pub fn judge(
         &mut self,
         gpu: &Gpu,

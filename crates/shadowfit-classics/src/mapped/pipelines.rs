@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use shadowfit_render::passes::{
-    ENCODED_FORMAT, InstanceNumber, Maker, PROBE_FORMAT, Shape, Streams, culled, depth, material_layout, part_buffers,
+    ENCODED_FORMAT, InstanceNumber, Maker, Numbering, PROBE_FORMAT, Shape, Streams, culled, depth, material_layout,
+    part_buffers,
 };
 use shadowfit_render::{Gpu, bindings};
 
@@ -68,7 +69,8 @@ impl SamplePipelines {
 
     fn make(&self, gpu: &Gpu, purpose: Use, frame: &SampleFrame) -> wgpu::RenderPipeline {
         let maker = Maker { device: &gpu.device, samples: self.samples };
-        let seen = |target: wgpu::TextureFormat, (cull_mode, streams), samples, (label, source, entry)| {
+        let numbering = Numbering::of(&gpu.device);
+        let seen = |target: wgpu::TextureFormat, (cull_mode, streams), samples, (label, source, entries)| {
             let module = maker.module(label, source);
             let layout = maker.layout(&[&self.uniform, self.map(frame.map.format), &self.material]);
             maker.pipeline(&Shape {
@@ -77,16 +79,19 @@ impl SamplePipelines {
                 primitive: culled(cull_mode),
                 depth: depth(true, wgpu::CompareFunction::GreaterEqual),
                 samples,
-                ..Shape::new(label, &layout, &module, ["vs_sample", entry])
+                ..Shape::new(label, &layout, &module, entries)
             })
         };
         match purpose {
             Use::Caster(cull_mode, streams) => self.caster(&maker, frame, (cull_mode, streams)),
             Use::Shaded(faces, streams) => {
-                seen(ENCODED_FORMAT, (faces, streams), self.samples, ("sample", shaders::shaded(frame), "fs_shaded"))
+                let shader = ("sample", shaders::shaded(frame), ["vs_sample", "fs_shaded"]);
+                seen(ENCODED_FORMAT, (faces, streams), self.samples, shader)
             }
             Use::Probe(faces, streams) => {
-                seen(PROBE_FORMAT, (faces, streams), 1, ("sample's probe", shaders::probe(frame), "fs_probe"))
+                let entries = [numbering.vertex_entry("vs_sample"), "fs_probe"];
+                let shader = ("sample's probe", shaders::probe(frame, numbering), entries);
+                seen(PROBE_FORMAT, (faces, streams), 1, shader)
             }
             Use::Inset => {
                 let format = frame.map.format;

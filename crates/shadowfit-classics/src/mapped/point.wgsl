@@ -19,14 +19,18 @@ struct PointOut {
     @location(3) @interpolate(flat) number: u32,
 }
 
-@vertex
-fn vs_sample(in: PointIn) -> PointOut {
+fn sample_vertex(in: PointIn) -> PointOut {
     let local = vec4<f32>(in.position, 1.0);
     let position = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
     let cofactors = mat3x3<f32>(
         cross(in.row1.xyz, in.row2.xyz), cross(in.row2.xyz, in.row0.xyz), cross(in.row0.xyz, in.row1.xyz));
     let normal = vec3<f32>(dot(cofactors[0], in.normal), dot(cofactors[1], in.normal), dot(cofactors[2], in.normal));
     return PointOut(sample.clip_from_world * vec4<f32>(position, 1.0), position, normal, in.uv, in.number);
+}
+
+@vertex
+fn vs_sample(in: PointIn) -> PointOut {
+    return sample_vertex(in);
 }
 
 // A visible point as the light sees it.

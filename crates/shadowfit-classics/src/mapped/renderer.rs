@@ -3,7 +3,7 @@
 use core::fmt;
 
 use shadowfit_render::attachment::{cleared, depth, drawn_over, part};
-use shadowfit_render::passes::{Draw, PartKey, can_probe};
+use shadowfit_render::passes::{Draw, PartKey};
 use shadowfit_render::{
     Gpu, GpuScene, Probe, ProbeError, ProbeTargets, ReadError, RenderTarget, bindings, read_texture,
 };
@@ -102,7 +102,7 @@ impl SampleRenderer {
     ///
     /// # Errors
     ///
-    /// The outer one as [`Self::draw`]; the inner one where the device has no primitive index, or was lost.
+    /// The outer one as [`Self::draw`]; the inner one where the device was lost.
     pub async fn probe(
         &mut self,
         gpu: &Gpu,
@@ -110,9 +110,6 @@ impl SampleRenderer {
         (frame, extras): (&SampleFrame, FrameExtras<'_>),
         targets: &ProbeTargets,
     ) -> Result<Result<Probe, ProbeError>, SampleError> {
-        if !can_probe(&gpu.device) {
-            return Ok(Err(ProbeError::NoPrimitiveIndex));
-        }
         let plan = self.prepare(gpu, scene, (frame, extras))?;
         let probed = |key: PartKey| Use::Probe(seen_faces(frame, key), key.streams);
         self.add(gpu, frame, &plan.seen, probed);
@@ -212,8 +209,12 @@ impl SampleRenderer {
         let Some(map) = &self.map else { return };
         pass.set_bind_group(MAP_GROUP, &map.group, &[]);
         for draw in draws {
-            pass.set_pipeline(self.pipelines.get(purpose(draw.key), frame));
-            scene.draw(pass, draw, Some(MATERIAL_GROUP));
+            let purpose = purpose(draw.key);
+            pass.set_pipeline(self.pipelines.get(purpose, frame));
+            match purpose {
+                Use::Probe(..) => scene.draw_probed(pass, draw, MATERIAL_GROUP),
+                _ => scene.draw(pass, draw, Some(MATERIAL_GROUP)),
+            }
         }
     }
 

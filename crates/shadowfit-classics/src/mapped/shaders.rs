@@ -1,5 +1,6 @@
 //! The shader modules of mapped frames, put together from pieces: how a map is read, one shadow test, one shading.
 
+use shadowfit_render::passes::Numbering;
 use shadowfit_render::shaders::material;
 
 use super::{SampleFormat, SampleFrame};
@@ -20,9 +21,13 @@ pub fn shaded(frame: &SampleFrame) -> String {
     [&tested(frame), &frame.shading.wgsl.concat(), include_str!("shaded.wgsl")].concat()
 }
 
-/// The probe of a picture, with its groups; it needs the primitive index, whose directive must come first.
-pub fn probe(frame: &SampleFrame) -> String {
-    ["enable primitive_index;\n", &tested(frame), include_str!("probe.wgsl")].concat()
+/// The probe of a picture, with its groups.
+pub fn probe(frame: &SampleFrame, numbering: Numbering) -> String {
+    let entries = match numbering {
+        Numbering::Primitives => include_str!("probe_primitive.wgsl"),
+        Numbering::Vertices => include_str!("probe_vertex.wgsl"),
+    };
+    [numbering.directive(), &tested(frame), entries].concat()
 }
 
 /// The map's inset: sample and map are groups 0 and 1.

@@ -13,6 +13,7 @@ use crate::probe::PROBE_FORMAT;
 use crate::renderer::NORMAL_FORMAT;
 use crate::scene::{Part, PartKey};
 use crate::uniform::InsetVertex;
+use crate::unrolled::Numbering;
 use crate::{Overlay, shaders};
 
 /// What the parts of a scene are drawn as.
@@ -111,7 +112,7 @@ impl Maker<'_> {
         let source = match drawn {
             Drawn::Shaded(Overlay::None) => shaders::scene(map.descriptor()),
             Drawn::Shaded(overlay) => shaders::overlay(map.descriptor(), overlay),
-            Drawn::Probe => shaders::probe(map.descriptor()),
+            Drawn::Probe => shaders::probe(map.descriptor(), Numbering::of(self.device)),
             Drawn::Surfaces(_) => shaders::surfaces(map.descriptor()),
         };
         self.module("parts", source)
@@ -140,6 +141,10 @@ impl Maker<'_> {
             Drawn::Surfaces(samples) => (&normals, samples),
             Drawn::Shaded(_) => (if key.blended { &BLENDED_COLOR } else { &COLOR }, self.samples),
         };
+        let vertex_entry = match drawn {
+            Drawn::Probe => Numbering::of(self.device).vertex_entry("vs_scene"),
+            _ => "vs_scene",
+        };
         self.pipeline(&Shape {
             buffers: &part_buffers(number, key.streams),
             targets,
@@ -147,7 +152,7 @@ impl Maker<'_> {
             depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),
             samples,
             constants: &key.constants(),
-            ..Shape::new("parts", layout, module, ["vs_scene", entry])
+            ..Shape::new("parts", layout, module, [vertex_entry, entry])
         })
     }
 

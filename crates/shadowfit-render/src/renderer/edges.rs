@@ -171,8 +171,7 @@ impl Renderer {
             ..Default::default()
         });
         set_part(&mut pass, plan);
-        let drawn = Drawn::Surfaces(surfaces.key.1);
-        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.of_map.part(part, drawn));
+        self.draw_scene(&mut pass, scene, &plan.opaque, Drawn::Surfaces(surfaces.key.1));
         drop(pass);
         self.timer.end(query, encoder);
     }

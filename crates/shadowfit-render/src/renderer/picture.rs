@@ -6,7 +6,7 @@ use super::{Plan, Renderer};
 use crate::attachment::{cleared, depth, drawn_over, kept_depth};
 use crate::pipelines::Drawn;
 use crate::probe::ProbeTargets;
-use crate::scene::{Draw, GpuScene, Part};
+use crate::scene::{Draw, GpuScene};
 use crate::target::{COLOR_FORMAT, RenderTarget};
 use crate::timer::Pass;
 use crate::{Gpu, bindings};
@@ -61,7 +61,7 @@ impl Renderer {
     }
 
     fn draw_picture(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, plan: &Plan) {
-        let pipeline = |part: &Part| self.pipelines.of_map.part(part, Drawn::Shaded(plan.overlay));
+        let drawn = Drawn::Shaded(plan.overlay);
         set_part(pass, plan);
         if plan.part.is_some() {
             pass.set_pipeline(&self.pipelines.clear);
@@ -70,11 +70,11 @@ impl Renderer {
         if let Some(judged) = plan.judged.as_ref().filter(|_| plan.overlay.is_judged()) {
             pass.set_bind_group(JUDGED_GROUP, judged, &[]);
         }
-        self.draw_scene(pass, scene, &plan.opaque, pipeline);
+        self.draw_scene(pass, scene, &plan.opaque, drawn);
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_pipeline(self.pipelines.sky(plan.overlay));
         pass.draw(0..3, 0..1);
-        self.draw_scene(pass, scene, &plan.blended, pipeline);
+        self.draw_scene(pass, scene, &plan.blended, drawn);
         pass.set_bind_group(0, &self.frame_group, &[]);
         self.lines.draw(pass, &self.pipelines.lines, 6);
     }
@@ -97,23 +97,20 @@ impl Renderer {
             ..Default::default()
         });
         set_part(&mut pass, plan);
-        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.of_map.part(part, Drawn::Probe));
+        self.draw_scene(&mut pass, scene, &plan.opaque, Drawn::Probe);
         drop(pass);
         self.timer.end(query, encoder);
     }
 
-    pub(super) fn draw_scene<'a>(
-        &'a self,
-        pass: &mut wgpu::RenderPass<'_>,
-        scene: &GpuScene,
-        draws: &[Draw],
-        pipeline: impl Fn(&Part) -> &'a wgpu::RenderPipeline,
-    ) {
+    pub(super) fn draw_scene(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draws: &[Draw], drawn: Drawn) {
         pass.set_bind_group(0, &self.lit_group, &[]);
         pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
         for draw in draws {
-            pass.set_pipeline(pipeline(&scene.parts[draw.part]));
-            scene.draw(pass, draw, Some(MATERIAL_GROUP));
+            pass.set_pipeline(self.pipelines.of_map.part(&scene.parts[draw.part], drawn));
+            match drawn {
+                Drawn::Probe => scene.draw_probed(pass, draw, MATERIAL_GROUP),
+                _ => scene.draw(pass, draw, Some(MATERIAL_GROUP)),
+            }
         }
     }
 

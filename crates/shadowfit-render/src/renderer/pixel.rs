@@ -5,7 +5,7 @@ use crate::attachment::cleared;
 use crate::frame::Frame;
 use crate::pipelines::Drawn;
 use crate::pixel::{BLOCK_FORMAT, PixelQuery, PixelRead, ROW, TexelBlock};
-use crate::probe::{ProbeError, ProbeTargets, can_probe};
+use crate::probe::{ProbeError, ProbeTargets};
 use crate::scene::GpuScene;
 use crate::uniform::BlockUniform;
 use crate::{Gpu, bindings};
@@ -16,7 +16,7 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`ProbeError`] for a device without the primitive index, and for a camera without a direction.
+    /// [`ProbeError`] for a camera without a direction.
     pub fn probe_pixel(
         &mut self,
         gpu: &Gpu,
@@ -24,9 +24,6 @@ impl Renderer {
         frame: &Frame<'_>,
         query: &PixelQuery,
     ) -> Result<PixelRead, ProbeError> {
-        if !can_probe(&gpu.device) {
-            return Err(ProbeError::NoPrimitiveIndex);
-        }
         let kept = self.pixel_targets.take().filter(|targets| targets.size == query.size);
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, query.size));
         let [x, y] = [0, 1].map(|i| query.pixel[i].min(targets.size[i] - 1));

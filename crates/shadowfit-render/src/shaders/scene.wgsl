@@ -23,8 +23,7 @@ struct SceneOut {
     @location(5) @interpolate(flat) number: u32,
 }
 
-@vertex
-fn vs_scene(in: SceneIn) -> SceneOut {
+fn scene_vertex(in: SceneIn) -> SceneOut {
     let local = vec4<f32>(in.position, 1.0);
     let position = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
     // Normals follow the cofactors of the transform, which also serve uneven and mirrored scales.
@@ -45,6 +44,11 @@ fn vs_scene(in: SceneIn) -> SceneOut {
     out.color = in.color;
     out.number = in.number;
     return out;
+}
+
+@vertex
+fn vs_scene(in: SceneIn) -> SceneOut {
+    return scene_vertex(in);
 }
 
 // Unit normal of the triangle itself, on the side that the eye sees. `dx`, `dy`: the derivatives

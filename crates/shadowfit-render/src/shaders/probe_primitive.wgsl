@@ -1,0 +1,6 @@
+// The probe pass where fragments know their primitive. Comes after probe.wgsl.
+
+@fragment
+fn fs_probe(in: SceneOut, @builtin(primitive_index) triangle: u32) -> @location(0) vec2<u32> {
+    return probed(in, in.number + triangle);
+}

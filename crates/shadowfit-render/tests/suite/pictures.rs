@@ -1,0 +1,55 @@
+//! A scene, its maps, and what draws it.
+
+use glam::{DVec3, Vec3};
+use shadowfit::{FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
+use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Probe, ProbeTargets, Renderer};
+use shadowfit_scene::Scene;
+use shadowfit_wgpu::ShadowMapDescriptor;
+
+/// Size of the pictures, in pixels.
+pub(crate) const SIZE: [u32; 2] = [160, 90];
+
+/// The way the light travels.
+const SUNLIGHT: Vec3 = Vec3::new(0.45, -0.75, -0.35);
+
+/// A scene, its maps, and what draws it.
+pub(crate) struct Pictures {
+    pub(crate) gpu: Gpu,
+    pub(crate) renderer: Renderer,
+    pub(crate) scene: GpuScene,
+    camera: PerspectiveCamera,
+    maps: FittedMaps,
+}
+
+impl Pictures {
+    /// A scene at rest, seen from a place.
+    pub(crate) fn new(gpu: Gpu, technique: &Technique, samples: u32, scene: &Scene, eye: DVec3) -> Self {
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(technique), samples).expect("a renderer");
+        let gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0));
+        let camera = PerspectiveCamera {
+            eye,
+            forward: (DVec3::Y - eye).as_vec3().normalize(),
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: SIZE[0] as f32 / SIZE[1] as f32,
+            near: 0.1,
+            far: 120.0,
+        };
+        let casters = gpu_scene.casters();
+        let views = [camera.frustum().expect("a view")];
+        let input = FitInput {
+            receivers: Some(casters.boxes),
+            casters: Some(casters.boxes),
+            ..FitInput::new(&views, SUNLIGHT.normalize())
+        };
+        let maps = *ShadowFitter::new(technique).fit(&input).expect("maps");
+        Self { gpu, renderer, scene: gpu_scene, camera, maps }
+    }
+
+    pub(crate) fn probe(&mut self) -> Probe {
+        let atmosphere = Atmosphere::default();
+        let frame = Frame::new(&self.camera, SUNLIGHT.normalize(), &self.maps, &atmosphere);
+        let targets = ProbeTargets::new(&self.gpu.device, SIZE);
+        self.renderer.probe(&self.gpu, &mut self.scene, &frame, &targets).expect("a probe")
+    }
+}
