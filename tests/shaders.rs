@@ -32,6 +32,7 @@ mod several_maps_gpu;
 mod sweep_gpu;
 mod tents_gpu;
 mod tint_gpu;
+mod webgl2;
 mod wrap_gpu;
 
 use std::collections::BTreeSet;
@@ -106,6 +107,7 @@ fn modules() -> Vec<(String, String)> {
         ("sky".to_owned(), shaders::sky()),
         ("lines".to_owned(), shaders::lines()),
         ("clear".to_owned(), shaders::clear()),
+        ("encode".to_owned(), shaders::encode()),
         ("mip".to_owned(), shaders::mip()),
         ("quads".to_owned(), shaders::quads()),
         ("mark rows".to_owned(), shaders::mark_rows(1)),
@@ -140,14 +142,18 @@ fn modules() -> Vec<(String, String)> {
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map, Numbering::Primitives)));
         all.push((format!("unrolled probe, {kind}"), shaders::probe(&map, Numbering::Vertices)));
-        all.push((format!("inset, {kind}"), shaders::inset(&map)));
-        all.push((format!("block, {kind}"), shaders::block(&map)));
+        for backend in [wgpu::Backend::Vulkan, wgpu::Backend::Gl] {
+            all.push((format!("{backend:?} inset, {kind}"), shaders::inset(&map, backend)));
+            all.push((format!("{backend:?} block, {kind}"), shaders::block(&map, backend)));
+        }
         for overlay in Overlay::ALL {
             all.push((format!("overlay {overlay:?}, {kind}"), shaders::overlay(&map, overlay)));
         }
         let receiver = receiver_wgsl(&map, &WgslOptions::group(1));
-        let stored = stored_wgsl(&map, &WgslOptions::group(1));
-        all.push((format!("receiver piece with views, {kind}"), receiver.clone() + &stored));
+        for backend in [wgpu::Backend::Vulkan, wgpu::Backend::Gl] {
+            let stored = stored_wgsl(&map, &WgslOptions::group(1), backend);
+            all.push((format!("receiver piece with {backend:?} views, {kind}"), receiver.clone() + &stored));
+        }
         if map.filter == FilterKind::default() {
             let resolved = resolved_wgsl(&WgslOptions::group(2), 0);
             all.push((format!("receiver piece with what was resolved, {kind}"), receiver.clone() + &resolved));

@@ -107,7 +107,9 @@ fn read_bits(gpu: &Gpu, map: &ShadowMap) -> Vec<u32> {
         view_formats: &[],
     });
     let options = WgslOptions::group(0);
-    let source = receiver_wgsl(map.descriptor(), &options) + &stored_wgsl(map.descriptor(), &options) + READ;
+    let source = receiver_wgsl(map.descriptor(), &options)
+        + &stored_wgsl(map.descriptor(), &options, gpu.adapter.get_info().backend)
+        + READ;
     let pipeline = pipeline(gpu, &source, map.receiver_layout(), None, format.into());
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

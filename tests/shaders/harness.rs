@@ -222,7 +222,10 @@ impl<'a> Harness<'a> {
             .replace("vec2<f32>(ROW", &format!("vec2<f32>({ROW}.0"))
             .replace("ROW", &format!("{ROW}u"));
         let (map, options) = (self.map.descriptor(), WgslOptions::group(0));
-        let module = module(self.gpu, receiver_wgsl(map, &options) + &stored_wgsl(map, &options) + &source);
+        let module = module(
+            self.gpu,
+            receiver_wgsl(map, &options) + &stored_wgsl(map, &options, self.gpu.adapter.get_info().backend) + &source,
+        );
         let pipeline = receiver_pipeline(self.gpu, self.map.receiver_layout(), &module);
         let targets = [(); 2].map(|()| target(self.gpu, rows));
         let views = [0, 1].map(|index: usize| targets[index].create_view(&wgpu::TextureViewDescriptor::default()));

@@ -116,7 +116,8 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
 #[test]
 fn what_overlays_marks_and_blocks_of_texels_read_lies_as_in_wgsl() {
     let map = ShadowMapDescriptor::default();
-    let judged = layout!("Judged" = JudgedUniform { clip_from_world, world_from_ndc, size, scale, near, far, padding });
+    let judged =
+        layout!("Judged" = JudgedUniform { clip_from_world, world_from_ndc, size, scale, near, far, viewport });
     assert_same(&parse("truth", &shaders::overlay(&map, Overlay::Truth)), &judged);
     assert_same(&parse("error", &shaders::overlay(&map, Overlay::Error)), &judged);
     let rows = parse("mark rows", &shaders::mark_rows(1));

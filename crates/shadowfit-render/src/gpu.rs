@@ -143,6 +143,12 @@ impl Gpu {
     }
 }
 
+/// Whether a device is one of OpenGL, whose textures have no views of another format, and are not loaded from where they
+/// have several samples or hold depths; browsers' has no vertex streams of a single element.
+pub(crate) fn is_opengl(device: &wgpu::Device) -> bool {
+    device.adapter_info().backend == wgpu::Backend::Gl
+}
+
 /// Error scopes, dropped in this order: the last opened first.
 pub(crate) struct Unreported {
     _validation: wgpu::ErrorScopeGuard,

@@ -44,21 +44,27 @@ pub(crate) struct JudgedInput {
     uniform: wgpu::Buffer,
     /// Shown where there is no judged picture: a pixel that was not judged, and its depth.
     nothing: [wgpu::TextureView; 2],
+    nearest: wgpu::Sampler,
 }
+
+/// How shaders read depth buffers: OpenGL's cannot load from what is bound as depths.
+pub(crate) const DEPTHS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
 impl JudgedInput {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let textures = [wgpu::TextureSampleType::Uint, wgpu::TextureSampleType::Depth];
+        let textures = [wgpu::TextureSampleType::Uint, DEPTHS];
         let [classes, depth] = textures.map(|sampled| bindings::texture(sampled, false));
+        let nearest = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
         let nothing = [wgpu::TextureFormat::R32Uint, DEPTH_FORMAT].map(|format| {
             let usage = wgpu::TextureUsages::TEXTURE_BINDING;
             bindings::plain_texture(device, "nothing judged", [1, 1], format, usage).create_view(&Default::default())
         });
-        let types = [bindings::UNIFORM, classes, depth];
+        let types = [bindings::UNIFORM, classes, depth, nearest];
         Self {
             layout: bindings::layout(device, LABEL, wgpu::ShaderStages::FRAGMENT, &types),
             uniform: bindings::uniform_buffer::<JudgedUniform>(device, LABEL),
             nothing,
+            nearest: device.create_sampler(&wgpu::SamplerDescriptor { label: Some(LABEL), ..Default::default() }),
         }
     }
 
@@ -76,7 +82,14 @@ impl JudgedInput {
         let classes = judged.map_or(no_classes, |judged| judged.classes);
         let depth = judged.and_then(|judged| judged.depth).unwrap_or(no_depth);
         let [classes, depth] = [classes, depth].map(wgpu::BindingResource::TextureView);
-        bindings::group(&gpu.device, LABEL, &self.layout, &[self.uniform.as_entire_binding(), classes, depth])
+        let nearest = wgpu::BindingResource::Sampler(&self.nearest);
+        let resources = [self.uniform.as_entire_binding(), classes, depth, nearest];
+        bindings::group(&gpu.device, LABEL, &self.layout, &resources)
+    }
+
+    /// The depth of a picture that shows nothing.
+    pub(crate) fn no_depth(&self) -> &wgpu::TextureView {
+        &self.nothing[1]
     }
 }
 
@@ -99,7 +112,7 @@ impl JudgedUniform {
             // The same camera sees the same surfaces.
             near: if judged.depth.is_some() && !is_same { judged.camera.near } else { 0.0 },
             far: judged.camera.far,
-            padding: [0.0; 2],
+            viewport: viewport.map(|side| side as f32),
         }
     }
 }

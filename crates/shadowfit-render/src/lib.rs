@@ -9,6 +9,7 @@ pub mod attachment;
 pub mod bindings;
 pub mod camera;
 mod casters;
+mod encoded;
 mod frame;
 mod gpu;
 mod gpu_timer;

@@ -1,7 +1,8 @@
 //! Marks of wrong pixels over any view: a pass finds the nearest wrong pixel in each row, and a second one draws from
 //! these what lies within a few pixels of one.
 
-use crate::judged::JudgedInput;
+use crate::gpu::is_opengl;
+use crate::judged::{DEPTHS, JudgedInput};
 use crate::maker::{Maker, Shape};
 use crate::target::{COLOR_FORMAT, RenderTarget};
 use crate::uniform::MarksUniform;
@@ -12,7 +13,8 @@ use crate::{Gpu, bindings, shaders};
 ///
 /// Where the frame has the judged camera, its pixels are those of the judged picture. Where it has another, each pixel is
 /// looked up by its depth, so that marks stick to the surfaces; in a [part](crate::Frame::scissor) of a picture, what lies
-/// beyond its border is as it was drawn before.
+/// beyond its border is as it was drawn before. On OpenGL depths of several samples cannot be read: there only pictures of
+/// one sample have marks while the camera is another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marks {
     /// Whether areas of wrong pixels are outlined, three pixels away from them, so that a single one has a ring around
@@ -59,11 +61,15 @@ impl MarkPasses {
             let types = [bindings::UNIFORM, bindings::texture(sampled, multisampled)];
             bindings::layout(device, "marks", wgpu::ShaderStages::FRAGMENT, &types)
         };
-        let rows_layout = layout(wgpu::TextureSampleType::Depth, samples > 1);
+        let is_multisampled = samples > 1 && !is_opengl(device);
+        let rows_layout = match is_multisampled {
+            true => layout(wgpu::TextureSampleType::Depth, true),
+            false => layout(DEPTHS, false),
+        };
         let marks_layout = layout(wgpu::TextureSampleType::Uint, false);
         let maker = Maker { device, samples: 1 };
         let rows_groups = maker.layout(&[&judged.layout, &rows_layout]);
-        let rows_module = maker.module("mark rows", shaders::mark_rows(samples));
+        let rows_module = maker.module("mark rows", shaders::mark_rows(if is_multisampled { samples } else { 1 }));
         let rows = maker.pipeline(&Shape {
             targets: &[Some(ROWS_FORMAT.into())],
             ..Shape::new("mark rows", &rows_groups, &rows_module, ["vs_screen", "fs_mark_rows"])
@@ -78,13 +84,14 @@ impl MarkPasses {
         Self { rows_layout, marks_layout, rows, marks, uniform, nearest: None }
     }
 
-    /// Records the first pass, once the scene is drawn. `judged` is the frame's bind group.
+    /// Records the first pass, once the scene is drawn. `judged` is the frame's bind group, `no_depth` the depth of a
+    /// picture without surfaces.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         marks: &Marks,
-        judged: &wgpu::BindGroup,
+        (judged, no_depth): (&wgpu::BindGroup, &wgpu::TextureView),
         target: &RenderTarget,
     ) -> PreparedMarks {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&MarksUniform::new(marks)));
@@ -93,7 +100,7 @@ impl MarkPasses {
             let resources = [self.uniform.as_entire_binding(), wgpu::BindingResource::TextureView(view)];
             bindings::group(&gpu.device, "marks", layout, &resources)
         };
-        let rows = group(&self.rows_layout, &target.depth_view);
+        let rows = group(&self.rows_layout, target.readable_depth().unwrap_or(no_depth));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("mark rows"),
             color_attachments: &[Some(crate::attachment::cleared(&nearest, None, wgpu::Color::TRANSPARENT))],

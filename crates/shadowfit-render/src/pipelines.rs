@@ -5,6 +5,8 @@ mod of_map;
 
 use shadowfit_wgpu::ShadowMap;
 
+use crate::encoded::Encoding;
+use crate::gpu::is_opengl;
 use crate::maker::{BLENDED_COLOR, Maker, Shape, depth, instances, strips};
 use crate::material::material_layout;
 use crate::uniform::{LineVertex, QuadVertex};
@@ -31,6 +33,8 @@ pub(crate) struct Pipelines {
     sky_gray: wgpu::RenderPipeline,
     pub(crate) lines: wgpu::RenderPipeline,
     pub(crate) quads: wgpu::RenderPipeline,
+    /// Where display values are no view of the picture.
+    pub(crate) encoding: Option<Encoding>,
     /// Those that read or draw the shadow map.
     pub(crate) of_map: MapPipelines,
 }
@@ -64,6 +68,7 @@ impl Pipelines {
             sky_gray: maker.sky(layouts, &[("GRAY", 1.0)]),
             lines: maker.lines(layouts),
             quads: maker.quads(layouts),
+            encoding: is_opengl(device).then(|| Encoding::new(&maker)),
             of_map: MapPipelines::new(&maker, layouts, map),
         }
     }

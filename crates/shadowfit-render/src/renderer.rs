@@ -175,6 +175,9 @@ impl Renderer {
         self.resolve_edges(gpu, &mut encoder, scene, (frame, &plan), (target.size, self.samples));
         self.scene_pass(gpu, &mut encoder, scene, &plan, target);
         self.over_pass(gpu, &mut encoder, frame, &plan, target);
+        if let (Some(encoding), Some(encoded)) = (&self.pipelines.encoding, &target.encoded) {
+            encoding.record(&gpu.device, &mut encoder, &target.color_view, encoded);
+        }
         self.timer.resolve(&mut encoder);
         gpu.submit([encoder.finish()]);
         self.timer.end_frame(gpu);

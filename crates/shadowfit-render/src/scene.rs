@@ -13,6 +13,7 @@ use shadowfit_wgpu::Casters;
 
 use crate::Gpu;
 use crate::casters::{CasterDraw, Cluster, SceneCasters, clustered, transformed};
+use crate::gpu::is_opengl;
 use crate::maker::{INSTANCES, Streams};
 use crate::material::upload_materials;
 use crate::rays::{RayPart, SceneRays};
@@ -511,7 +512,7 @@ fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
 
 /// Which streams get an element for each vertex: all on OpenGL, where those of browsers have no single elements.
 fn streams(gpu: &Gpu, primitive: &Primitive) -> Streams {
-    let has_all = gpu.adapter.get_info().backend == wgpu::Backend::Gl;
+    let has_all = is_opengl(&gpu.device);
     Streams {
         tangents: has_all || !primitive.tangents.is_empty(),
         surface: has_all || !primitive.colors.is_empty() || !primitive.uvs.is_empty(),

@@ -27,6 +27,8 @@ pub const FRAME: &str = concat!(
 );
 /// Powers by squaring.
 pub const POWERS: &str = include_str!("shaders/powers.wgsl");
+/// The sRGB transfer function and its inverse.
+pub const SRGB: &str = include_str!("shaders/srgb.wgsl");
 /// The tone curve.
 pub const TONE_MAP: &str = include_str!("shaders/tone_map.wgsl");
 /// Reflectance of a surface; needs [`POWERS`].
@@ -80,6 +82,11 @@ pub fn surfaces(shadow_map: &ShadowMapDescriptor) -> String {
 /// What clears a part of a picture.
 pub fn clear() -> String {
     [SCREEN, include_str!("shaders/clear.wgsl")].concat()
+}
+
+/// What encodes a picture: its linear colours are group 0.
+pub fn encode() -> String {
+    [SCREEN, SRGB, include_str!("shaders/encode.wgsl")].concat()
 }
 
 /// Lines of the world.
@@ -148,9 +155,11 @@ fn octave_color() -> String {
 
 /// The first pass of marks: a judged picture is group 0, depth of as many samples per pixel and marks are group 1.
 pub fn mark_rows(samples: u32) -> String {
-    let texture = if samples > 1 { "texture_depth_multisampled_2d" } else { "texture_depth_2d" };
-    let alias = format!("alias SceneDepth = {texture};\n");
-    [&alias, SCREEN, &in_group(JUDGED, 0), &in_group(MARK, 1), include_str!("shaders/mark_rows.wgsl")].concat()
+    let depth = match samples {
+        1 => include_str!("shaders/mark_depth.wgsl"),
+        _ => include_str!("shaders/mark_depth_multisampled.wgsl"),
+    };
+    [SCREEN, &in_group(JUDGED, 0), &in_group(MARK, 1), depth, include_str!("shaders/mark_rows.wgsl")].concat()
 }
 
 /// The second pass of marks: marks and what the first pass found are group 0.
@@ -164,16 +173,16 @@ pub fn quads() -> String {
 }
 
 /// Depths of a block of texels: the block is group 0, the shadow map group 1.
-pub fn block(shadow_map: &ShadowMapDescriptor) -> String {
+pub fn block(shadow_map: &ShadowMapDescriptor, backend: wgpu::Backend) -> String {
     let options = WgslOptions::group(SHADOW_GROUP);
-    let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options));
+    let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options, backend));
     [SCREEN, &receiver, &stored, include_str!("shaders/block.wgsl")].concat()
 }
 
 /// The shadow map's insets: frame and shadow map are groups 0 and 1.
-pub fn inset(shadow_map: &ShadowMapDescriptor) -> String {
+pub fn inset(shadow_map: &ShadowMapDescriptor, backend: wgpu::Backend) -> String {
     let options = WgslOptions::group(SHADOW_GROUP);
-    let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options));
+    let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options, backend));
     [FRAME, &receiver, &stored, include_str!("shaders/inset.wgsl")].concat()
 }
 

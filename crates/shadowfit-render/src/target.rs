@@ -2,7 +2,13 @@
 
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
+<<<<<<< HEAD
 use crate::read_back::{ReadBack, ReadError};
+=======
+use crate::encoded::Encoded;
+use crate::gpu::is_opengl;
+use crate::wait::waiting;
+>>>>>>> 38a414e (WebGL2: maps are mended and of any number, and the renderer draws all its views)
 
 /// Colour format of render targets, as the renderer writes it.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -20,6 +26,8 @@ pub struct RenderTarget {
     pub(crate) color_view: wgpu::TextureView,
     pub(crate) multisampled: Option<wgpu::TextureView>,
     pub(crate) depth_view: wgpu::TextureView,
+    /// The display values, where they are no view of the colours.
+    pub(crate) encoded: Option<Encoded>,
 }
 
 impl RenderTarget {
@@ -32,13 +40,25 @@ impl RenderTarget {
             (samples > 1).then(|| attachment(device, size, COLOR_FORMAT, samples).create_view(&Default::default()));
         let depth_view = attachment(device, size, DEPTH_FORMAT, samples).create_view(&Default::default());
         let color_view = color.create_view(&Default::default());
-        Self { size, color, color_view, multisampled, depth_view }
+        let encoded = is_opengl(device).then(|| {
+            let texture = attachment(device, size, ENCODED_FORMAT, 1);
+            let several = (samples > 1).then(|| attachment(device, size, ENCODED_FORMAT, samples));
+            let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+            Encoded { view: view(&texture), multisampled: several.as_ref().map(view), texture }
+        });
+        Self { size, color, color_view, multisampled, depth_view, encoded }
     }
 
     /// The depth buffer of what was drawn last, of as many samples as the target: reversed, 0 where there is sky. Shaders
-    /// can load it.
+    /// can load it, but not those of OpenGL.
     pub fn depth_view(&self) -> &wgpu::TextureView {
         &self.depth_view
+    }
+
+    /// The depth buffer, where shaders can read it.
+    pub(crate) fn readable_depth(&self) -> Option<&wgpu::TextureView> {
+        let is_readable = self.depth_view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING);
+        is_readable.then_some(&self.depth_view)
     }
 
     /// The colours, which tell this target from others.
@@ -48,7 +68,8 @@ impl RenderTarget {
 
     /// A view of the encoded bytes, for user interfaces.
     pub fn encoded_view(&self) -> wgpu::TextureView {
-        self.color.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() })
+        let view = wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() };
+        self.encoded.as_ref().map_or_else(|| self.color.create_view(&view), |encoded| encoded.view.clone())
     }
 
     /// Begins a pass that writes display values as they are, over a `background` of them, with the camera's depth. Its
@@ -61,7 +82,10 @@ impl RenderTarget {
     ) -> wgpu::RenderPass<'a> {
         let resolved = self.encoded_view();
         let encoded = wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() };
-        let multisampled = self.multisampled.as_ref().map(|view| view.texture().create_view(&encoded));
+        let multisampled = match &self.encoded {
+            Some(encoded) => encoded.multisampled.clone(),
+            None => self.multisampled.as_ref().map(|view| view.texture().create_view(&encoded)),
+        };
         let background = wgpu::Color { r, g, b, a: 1.0 };
         let color = match &multisampled {
             Some(view) => cleared(view, Some(&resolved), background),
@@ -87,6 +111,9 @@ impl RenderTarget {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         encoder.copy_texture_to_texture(at(&from.color), at(&self.color), extent);
+        if let (Some(from), Some(to)) = (&from.encoded, &self.encoded) {
+            encoder.copy_texture_to_texture(at(&from.texture), at(&to.texture), extent);
+        }
         gpu.submit([encoder.finish()]);
     }
 
@@ -101,7 +128,11 @@ impl RenderTarget {
     ///
     /// [`ReadError`] if the device was lost or does not answer.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
+<<<<<<< HEAD
         self.read_back(gpu).wait(gpu)
+=======
+        read_texture(gpu, self.encoded.as_ref().map_or(&self.color, |encoded| &encoded.texture), self.size, 4)
+>>>>>>> 38a414e (WebGL2: maps are mended and of any number, and the renderer draws all its views)
     }
 }
 
@@ -109,11 +140,11 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
     // Of several samples nobody reads the colours before they are resolved.
     let readable = match (samples, format) {
         // Parts of pictures are copied into them.
-        (1, COLOR_FORMAT) => {
+        (1, COLOR_FORMAT | ENCODED_FORMAT) => {
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST
         }
         (1, _) => wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
-        (_, DEPTH_FORMAT) => wgpu::TextureUsages::TEXTURE_BINDING,
+        (_, DEPTH_FORMAT) if !is_opengl(device) => wgpu::TextureUsages::TEXTURE_BINDING,
         _ => wgpu::TextureUsages::empty(),
     };
     device.create_texture(&wgpu::TextureDescriptor {
@@ -124,6 +155,6 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
         dimension: wgpu::TextureDimension::D2,
         format,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | readable,
-        view_formats: if format == COLOR_FORMAT { &[ENCODED_FORMAT] } else { &[] },
+        view_formats: if format == COLOR_FORMAT && !is_opengl(device) { &[ENCODED_FORMAT] } else { &[] },
     })
 }

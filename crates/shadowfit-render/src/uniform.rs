@@ -214,8 +214,8 @@ pub struct JudgedUniform {
     pub near: f32,
     /// That of its far plane.
     pub far: f32,
-    /// Keeps the struct a multiple of 16 bytes.
-    pub padding: [f32; 2],
+    /// Width and height of the frame's picture, in pixels.
+    pub viewport: [f32; 2],
 }
 
 /// How wrong pixels are marked: `Marks` in WGSL.

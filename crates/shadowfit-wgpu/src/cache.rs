@@ -70,12 +70,9 @@ pub enum Culling {
 
 /// Settings of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 pub(crate) struct CacheSettings {
     /// Whether anything is kept.
     pub(crate) caching: bool,
-    /// Whether static casters can have separate layers.
-    pub(crate) can_mend: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
     /// Whether depth is clamped at the near plane.
@@ -181,7 +178,7 @@ impl MapCache {
     pub(crate) fn take(&mut self, frame: &CacheFrame<'_>) {
         let changes = self.known.update(frame.casters, frame.standing);
         self.change(&changes);
-        self.is_split |= self.settings.can_mend && self.settings.caching && !self.known.moving.is_empty();
+        self.is_split |= self.settings.caching && !self.known.moving.is_empty();
         self.frame += 1;
     }
 

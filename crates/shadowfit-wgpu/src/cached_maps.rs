@@ -280,7 +280,6 @@ impl CachedMaps {
         CacheSettings {
             // Colours are drawn with a depth buffer that is not stored.
             caching: self.caching && descriptor.format.is_depth(),
-            can_mend: Layers::can_mend(&self.device),
             culling: self.culling,
             depth_clamp: descriptor.depth_clamp,
             by_coverage: descriptor.selection.is_by_coverage(),

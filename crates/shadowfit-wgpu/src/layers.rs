@@ -9,7 +9,7 @@ use shadowfit::{Aabb, DepthConvention};
 use crate::bindings;
 use crate::cache::{FramePlan, Layer, PassPlan};
 use crate::caught::caught;
-use crate::{MapTexture, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
+use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
 
 /// Draws into parts of depth maps.
 #[derive(Debug)]
@@ -40,16 +40,24 @@ pub(crate) struct Opening<'a> {
 /// Vertices of a box.
 const BOX_VERTICES: u32 = 36;
 
+/// Name of the static casters' resources, for debuggers.
+const LABEL: &str = "shadowfit static casters";
+
+/// How shaders read the depths of static casters.
+const READ: [wgpu::BindingType; 2] = [
+    wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    },
+    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+];
+
 impl Layers {
     pub(crate) fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let [clear, _] = layers_wgsl(map.descriptor());
         let module = module(device, clear);
         Self { clear: pipeline(device, map, &Shape::new("shadowfit clear", &module, "vs_clear")), fixed: None }
-    }
-
-    /// Whether a device can read depth textures in shaders, as mending needs it: OpenGL cannot.
-    pub(crate) fn can_mend(device: &wgpu::Device) -> bool {
-        device.adapter_info().backend != wgpu::Backend::Gl
     }
 
     /// Makes the layers of static casters, unless they exist.
@@ -127,14 +135,13 @@ impl StaticLayers {
     fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let descriptor = map.descriptor();
         let format = map.depth_stencil_state().format;
-        let texture = crate::map::texture(device, descriptor, (format, descriptor.maps));
-        let texture = MapTexture { texture, base_layer: 0 };
-        let types = [bindings::depths(wgpu::TextureViewDimension::D2, false)];
-        let layout = bindings::layout(device, "shadowfit static casters", wgpu::ShaderStages::FRAGMENT, (0, &types));
-        let layer = |index: u32| {
-            let view = texture.view(wgpu::TextureViewDimension::D2, index, 1);
-            let resources = [wgpu::BindingResource::TextureView(&view)];
-            let group = bindings::group(device, "shadowfit static casters", &layout, (0, &resources));
+        let layout = bindings::layout(device, LABEL, wgpu::ShaderStages::FRAGMENT, (0, &READ));
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some(LABEL), ..Default::default() });
+        // A texture each: OpenGL's shaders read arrays as a whole alone.
+        let layer = || {
+            let view = crate::map::texture(device, descriptor, (format, 1)).create_view(&Default::default());
+            let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&sampler)];
+            let group = bindings::group(device, LABEL, &layout, (0, &resources));
             (view, group)
         };
         let [_, mend] = layers_wgsl(descriptor);
@@ -144,7 +151,7 @@ impl StaticLayers {
             Shape { fragment: Some("fs_mend"), layouts: &layouts, ..Shape::new("shadowfit mend", &module, "vs_clear") };
         let boxes = Shape { entry: "vs_mend_box", is_boxes: true, ..mend };
         Self {
-            layers: (0..descriptor.maps).map(layer).collect(),
+            layers: (0..descriptor.maps).map(|_| layer()).collect(),
             mend: pipeline(device, map, &mend),
             mend_boxes: pipeline(device, map, &boxes),
             boxes: box_buffer(device, 16),
@@ -194,7 +201,7 @@ impl<'a> Shape<'a> {
 }
 
 /// The WGSL that clears parts of depth maps, and that takes parts of them from the static casters' layers: for tests that
-/// validate it. The second part needs a device that can read depth textures in shaders.
+/// validate it.
 pub fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let far = if descriptor.depth == DepthConvention::Reversed { "0.0" } else { "1.0" };
     let clear = include_str!("shaders/clear.wgsl").replace("FAR", far);

@@ -9,6 +9,7 @@ use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
 
 use crate::bindings;
 use crate::caught::caught;
+use crate::map_texture::is_array;
 use crate::map_view::check;
 use crate::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
 use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
@@ -502,9 +503,12 @@ impl Textures {
             return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
         }
         let made = |of| MapTexture { texture: texture(device, descriptor, of), base_layer: 0 };
+        // Shaders read an array; one more layer makes it one where it would not be.
+        let layers = descriptor.layers();
+        let layers = layers + u32::from(!is_array(resolution, layers, device.adapter_info().backend));
         // Devices below WebGPU's level may lack more than these flags say.
         caught(device, || Self {
-            read: handed_in.cloned().unwrap_or_else(|| made((descriptor.texture_format(), descriptor.layers()))),
+            read: handed_in.cloned().unwrap_or_else(|| made((descriptor.texture_format(), layers))),
             beside: (!format.is_depth()).then(|| made((descriptor.depth_format(), maps))),
             is_handed_in: handed_in.is_some(),
         })

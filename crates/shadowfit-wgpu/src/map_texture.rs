@@ -66,6 +66,8 @@ pub enum MapTextureError {
     },
     /// OpenGL's shaders read textures from their first layer on only.
     BaseLayer(u32),
+    /// OpenGL has a texture of so many layers, which is given, that is no array: of a single one, or a cube.
+    NoArray(u32),
 }
 
 impl MapTexture {
@@ -86,7 +88,14 @@ impl MapTexture {
         let backend = device.adapter_info().backend;
         self.check_shape(descriptor)
             .and_then(|()| check_base_layer(self.base_layer, backend))
+            .and_then(|()| self.check_array(backend))
             .map_err(ShadowMapError::Texture)
+    }
+
+    fn check_array(&self, backend: wgpu::Backend) -> Result<(), MapTextureError> {
+        let layers = self.texture.depth_or_array_layers();
+        let is_array = is_array([self.texture.width(), self.texture.height()], layers, backend);
+        if is_array { Ok(()) } else { Err(MapTextureError::NoArray(layers)) }
     }
 
     fn check_shape(&self, descriptor: &ShadowMapDescriptor) -> Result<(), MapTextureError> {
@@ -114,6 +123,12 @@ impl MapTexture {
     }
 }
 
+/// Whether a texture of some layers is one that shaders read as an array. wgpu's OpenGL makes a plain texture of a single
+/// layer, and cubes of square ones in sixes.
+pub(crate) fn is_array([width, height]: [u32; 2], layers: u32, backend: wgpu::Backend) -> bool {
+    backend != wgpu::Backend::Gl || (layers > 1 && !(layers.is_multiple_of(6) && width == height))
+}
+
 /// Refuses layers that shaders cannot read.
 fn check_base_layer(base_layer: u32, backend: wgpu::Backend) -> Result<(), MapTextureError> {
     if backend == wgpu::Backend::Gl && base_layer > 0 { Err(MapTextureError::BaseLayer(base_layer)) } else { Ok(()) }
@@ -135,6 +150,12 @@ impl fmt::Display for MapTextureError {
             Self::BaseLayer(layer) => {
                 write!(f, "its first map is in layer {layer}: OpenGL's shaders read textures from layer 0 on only")
             }
+            Self::NoArray(layers) => {
+                write!(
+                    f,
+                    "on OpenGL one of {layers} layers is no array, but a plain texture or a cube: give it one more"
+                )
+            }
         }
     }
 }
@@ -144,6 +165,16 @@ impl core::error::Error for MapTextureError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn opengl_has_arrays_of_all_layers_but_one_and_the_sixes_of_cubes() {
+        for layers in 1..=16 {
+            let is_square_array = !matches!(layers, 1 | 6 | 12);
+            assert_eq!(is_array([512; 2], layers, wgpu::Backend::Gl), is_square_array, "{layers}");
+            assert_eq!(is_array([512, 256], layers, wgpu::Backend::Gl), layers > 1, "{layers}");
+            assert!(is_array([512; 2], layers, wgpu::Backend::Vulkan));
+        }
+    }
 
     #[test]
     fn opengl_reads_textures_from_their_first_layer_on_only() {

@@ -145,9 +145,9 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
 }
 
 /// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
-/// map, by its index (`i32`, as `shadowfit_map_index` gives it), holds at a texel (`vec2<i32>`). Depth formats need a device whose shaders can read depth textures as
-/// numbers, which OpenGL's cannot.
-pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
+/// map, by its index (`i32`, as `shadowfit_map_index` gives it), holds at a texel (`vec2<i32>`). Shaders of the backend
+/// [`wgpu::Backend::Gl`] cannot read depth textures as numbers: they find the depth by 31 comparisons, as exactly.
+pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>, backend: wgpu::Backend) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
     let wrap = |entry: u32| {
         let map = format!("shadowfit_receiver.maps[{entry}]");
@@ -164,7 +164,13 @@ fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
 ",
         (0..maps).map(wrap).collect::<String>()
     );
-    let load = if loads_texels(descriptor) { "" } else { texture(descriptor.format).1 };
+    let is_reversed = descriptor.depth == DepthConvention::Reversed;
+    let compared = include_str!("shaders/texel_compared.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
+    let load = match (loads_texels(descriptor), backend) {
+        (true, _) => "",
+        (false, wgpu::Backend::Gl) => &compared,
+        (false, _) => texture(descriptor.format).1,
+    };
     let one_set = [load, &wraps, include_str!("shaders/stored.wgsl")].concat();
     let text = if descriptor.cross_fades { fading::stored(&one_set) } else { one_set };
     options.fill(&text, descriptor.first_binding)

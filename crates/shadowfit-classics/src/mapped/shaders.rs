@@ -1,15 +1,12 @@
 //! The shader modules of mapped frames, put together from pieces: how a map is read, one shadow test, one shading.
 
 use shadowfit_render::passes::Numbering;
-use shadowfit_render::shaders::material;
+use shadowfit_render::shaders::{SRGB, material};
 
 use super::{SampleFormat, SampleFrame};
 
 const SAMPLE: &str = include_str!("sample.wgsl");
 const STORED: &str = include_str!("stored.wgsl");
-
-/// The sRGB transfer function and its inverse.
-pub(crate) const SRGB: &str = include_str!("srgb.wgsl");
 
 /// The pass that draws casters into a map; group 0 is the sample's uniform.
 pub fn caster() -> String {

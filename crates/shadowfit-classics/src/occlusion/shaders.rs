@@ -2,7 +2,7 @@
 
 use shadowfit_render::shaders::{FRAME, SCREEN, in_group, material};
 
-use crate::mapped::shaders::SRGB;
+use shadowfit_render::shaders::SRGB;
 
 const UNIFORM: &str = include_str!("uniform.wgsl");
 const BUFFERS: &str = include_str!("buffers.wgsl");

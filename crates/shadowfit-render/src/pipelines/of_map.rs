@@ -177,7 +177,7 @@ impl Maker<'_> {
 
     fn inset(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
         let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
-        let module = self.module("inset", shaders::inset(map.descriptor()));
+        let module = self.module("inset", shaders::inset(map.descriptor(), self.device.adapter_info().backend));
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Float32x3];
         self.pipeline(&Shape {
             buffers: &[Some(instances::<InsetVertex>(&attributes))],
@@ -188,7 +188,7 @@ impl Maker<'_> {
 
     fn block(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
         let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
-        let module = self.module("texels", shaders::block(map.descriptor()));
+        let module = self.module("texels", shaders::block(map.descriptor(), self.device.adapter_info().backend));
         self.pipeline(&Shape {
             targets: &[Some(BLOCK_FORMAT.into())],
             ..Shape::new("texels", &layout, &module, ["vs_screen", "fs_block"])

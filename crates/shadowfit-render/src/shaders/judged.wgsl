@@ -12,12 +12,15 @@ struct Judged {
     // View depths of its near and far plane, in metres; 0 where its depth is not looked at.
     near: f32,
     far: f32,
-    padding: vec2<f32>,
+    // Width and height of the frame's picture, in pixels.
+    viewport: vec2<f32>,
 }
 
 @group(GROUP) @binding(0) var<uniform> judged: Judged;
 @group(GROUP) @binding(1) var classes: texture_2d<u32>;
-@group(GROUP) @binding(2) var judged_depths: texture_depth_2d;
+@group(GROUP) @binding(2) var judged_depths: texture_2d<f32>;
+// Takes the nearest texel: OpenGL's shaders cannot load from depth textures.
+@group(GROUP) @binding(3) var nearest_texel: sampler;
 
 // The bits of `Class`, and that of light in truth. 0 is a pixel that was not judged; wrong ones follow the right ones.
 const CLASS: u32 = 7u;
@@ -30,12 +33,19 @@ fn judged_at(pixel: vec2<f32>) -> u32 {
     return select(0u, textureLoad(classes, vec2<i32>(pixel), 0).x, is_inside);
 }
 
+// The depth at a pixel of a depth buffer; 0 beside it.
+fn depth_at(depths: texture_2d<f32>, pixel: vec2<i32>) -> f32 {
+    let size = vec2<i32>(textureDimensions(depths));
+    let depth = textureSampleLevel(depths, nearest_texel, (vec2<f32>(pixel) + 0.5) / vec2<f32>(size), 0.0).x;
+    return select(0.0, depth, all(pixel >= vec2<i32>(0)) && all(pixel < size));
+}
+
 // Share by which view depths may differ that are of the same surface.
 const SAME_DEPTH: f32 = 0.01;
 
 // View depth of what the judged picture shows at a pixel, in metres.
 fn judged_view_depth(pixel: vec2<i32>) -> f32 {
-    let depth = textureLoad(judged_depths, pixel, 0);
+    let depth = depth_at(judged_depths, pixel);
     return judged.near * judged.far / (judged.near + depth * (judged.far - judged.near));
 }
 

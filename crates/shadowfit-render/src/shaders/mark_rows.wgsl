@@ -1,6 +1,5 @@
-// First pass of marks: the nearest wrong pixel in each pixel's row. Comes after screen.wgsl, judged.wgsl and mark.wgsl.
-
-@group(1) @binding(1) var depths: SceneDepth;
+// First pass of marks: the nearest wrong pixel in each pixel's row. Comes after screen.wgsl, judged.wgsl, mark.wgsl and
+// one of mark_depth*.wgsl.
 
 // The bits of a pixel of the frame.
 fn judged_pixel(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
@@ -8,7 +7,7 @@ fn judged_pixel(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     if is_same_camera(at) {
         return judged_at(at * judged.scale);
     }
-    let depth = textureLoad(depths, pixel, 0);
+    let depth = scene_depth(pixel);
     let ndc = at / vec2<f32>(size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
     let position = judged.world_from_ndc * vec4<f32>(ndc, depth, 1.0);
     let bits = judged_of(position.xyz / position.w, at);
@@ -29,7 +28,7 @@ fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
 @fragment
 fn fs_mark_rows(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
     let pixel = vec2<i32>(at.xy);
-    let size = vec2<i32>(textureDimensions(depths));
+    let size = vec2<i32>(judged.viewport);
     for (var step = 0; step <= REACH; step++) {
         let kind = max(
             marked_class(pixel - vec2<i32>(step, 0), size), marked_class(pixel + vec2<i32>(step, 0), size));

@@ -4,8 +4,21 @@ use shadowfit_render::Gpu;
 
 /// The software adapter, whatever GPU is present, with these features and limits.
 pub(crate) fn software_gpu(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
-    let instance = Gpu::instance();
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    opened(wgpu::Backends::PRIMARY, features, limits)
+}
+
+/// OpenGL with no more than WebGL2 has. The environment variable `MESA_GLES_VERSION_OVERRIDE` must be 3.0, or Mesa opens a
+/// later version, which can do more.
+#[cfg(feature = "gles")]
+pub(crate) fn webgl2_gpu() -> Gpu {
+    opened(wgpu::Backends::GL, wgpu::Features::empty(), wgpu::Limits::downlevel_webgl2_defaults())
+}
+
+fn opened(backends: wgpu::Backends, features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
     let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     let adapter = adapters.into_iter().find(is_software).expect("this test draws on the software adapter");
     let descriptor =

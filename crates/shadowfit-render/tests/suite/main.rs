@@ -5,3 +5,5 @@ mod devices;
 mod pictures;
 mod probe_gpu;
 mod sheets;
+#[cfg(feature = "gles")]
+mod webgl2_gpu;

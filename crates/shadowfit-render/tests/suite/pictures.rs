@@ -2,7 +2,10 @@
 
 use glam::{DVec3, Vec3};
 use shadowfit::{FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
-use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Probe, ProbeTargets, Renderer};
+use shadowfit_render::{
+    Atmosphere, Frame, Gpu, GpuScene, JudgedPicture, Marks, Overlay, Probe, ProbeTargets, RenderTarget, Renderer,
+    classes_texture,
+};
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -17,7 +20,8 @@ pub(crate) struct Pictures {
     pub(crate) gpu: Gpu,
     pub(crate) renderer: Renderer,
     pub(crate) scene: GpuScene,
-    camera: PerspectiveCamera,
+    pub(crate) camera: PerspectiveCamera,
+    target: Option<RenderTarget>,
     maps: FittedMaps,
 }
 
@@ -43,7 +47,7 @@ impl Pictures {
             ..FitInput::new(&views, SUNLIGHT.normalize())
         };
         let maps = *ShadowFitter::new(technique).fit(&input).expect("maps");
-        Self { gpu, renderer, scene: gpu_scene, camera, maps }
+        Self { gpu, renderer, scene: gpu_scene, camera, target: None, maps }
     }
 
     pub(crate) fn probe(&mut self) -> Probe {
@@ -51,5 +55,33 @@ impl Pictures {
         let frame = Frame::new(&self.camera, SUNLIGHT.normalize(), &self.maps, &atmosphere);
         let targets = ProbeTargets::new(&self.gpu.device, SIZE);
         self.renderer.probe(&self.gpu, &mut self.scene, &frame, &targets).expect("a probe")
+    }
+
+    /// The display values of a picture with marks, some metres beside the place where the present view was judged.
+    pub(crate) fn judged(&mut self, overlay: Overlay, step: DVec3) -> Vec<[u8; 4]> {
+        let atmosphere = Atmosphere::default();
+        let frame = Frame::new(&self.camera, SUNLIGHT.normalize(), &self.maps, &atmosphere);
+        let targets = ProbeTargets::new(&self.gpu.device, SIZE);
+        self.renderer.draw_probe(&self.gpu, &mut self.scene, &frame, &targets).expect("a probe");
+        let classes: Vec<u32> = (0..SIZE[0] * SIZE[1]).map(|pixel| pixel / 7 % 6 + 8 * (pixel / 50 % 2)).collect();
+        let classes = classes_texture(&self.gpu, &classes, SIZE);
+        let camera = PerspectiveCamera { eye: self.camera.eye + step, ..self.camera };
+        let judged =
+            JudgedPicture { classes: &classes, size: SIZE, camera: self.camera, depth: Some(targets.depth_view()) };
+        let marks = Some(Marks::default());
+        let frame = Frame { camera: &camera, overlay, judged: Some(judged), marks, ..frame };
+        let target = self.renderer.target(&self.gpu, SIZE);
+        self.renderer.draw(&self.gpu, &mut self.scene, &frame, &target).expect("a frame");
+        target.read(&self.gpu).expect("pixels").as_chunks().0.to_vec()
+    }
+
+    /// The display values of a frame with what `change` adds.
+    pub(crate) fn picture(&mut self, change: impl Fn(&mut Frame<'_>)) -> Vec<[u8; 4]> {
+        let atmosphere = Atmosphere::default();
+        let mut frame = Frame::new(&self.camera, SUNLIGHT.normalize(), &self.maps, &atmosphere);
+        change(&mut frame);
+        let target = self.target.get_or_insert_with(|| self.renderer.target(&self.gpu, SIZE));
+        self.renderer.draw(&self.gpu, &mut self.scene, &frame, target).expect("a frame");
+        target.read(&self.gpu).expect("pixels").as_chunks().0.to_vec()
     }
 }

@@ -504,9 +504,8 @@ fn covered(map: &FittedMap, aabb: &Aabb, origin: DVec3) -> TexelRect {
 
 fn settings() -> impl Strategy<Value = CacheSettings> {
     let culling = select(vec![Culling::Swept, Culling::WholeMap, Culling::Off]);
-    (proptest::bool::weighted(0.85), culling, 0..10_u32).prop_map(|(can_mend, culling, caching)| CacheSettings {
+    (culling, 0..10_u32).prop_map(|(culling, caching)| CacheSettings {
         caching: caching > 0,
-        can_mend,
         culling,
         depth_clamp: true,
         by_coverage: true,

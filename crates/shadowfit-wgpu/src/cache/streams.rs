@@ -43,7 +43,7 @@ impl Drawn {
     fn new(boxes: &[Aabb], keys: &[u64]) -> Self {
         let maps = fitted(LIGHT, 150.0, boxes);
         let layer = UVec2::splat(SIDE);
-        let settings = CacheSettings { caching: true, can_mend: true, by_coverage: true, layer, ..Default::default() };
+        let settings = CacheSettings { caching: true, by_coverage: true, layer, ..Default::default() };
         let mut drawn = Self { cache: MapCache { settings, ..MapCache::default() }, maps, plan: FramePlan::default() };
         drawn.draw(boxes, &[], keys);
         drawn

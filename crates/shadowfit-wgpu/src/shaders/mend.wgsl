@@ -1,7 +1,9 @@
 // Takes the static casters' depths back into the shown layer, where something that moves was drawn over them. Comes
 // after the caster's WGSL and after clear.wgsl, whose triangle mends rectangles.
 
-@group(0) @binding(0) var static_depth: texture_depth_2d;
+@group(0) @binding(0) var static_depth: texture_2d<f32>;
+// Takes the nearest texel: OpenGL's shaders cannot load from depth textures.
+@group(0) @binding(1) var nearest: sampler;
 
 // The sides of a box: its corners' bits, two triangles a side, counter-clockwise from outside.
 const CORNERS: array<u32, 36> = array<u32, 36>(
@@ -24,5 +26,5 @@ fn vs_mend_box(
 
 @fragment
 fn fs_mend(@builtin(position) at: vec4<f32>) -> @builtin(frag_depth) f32 {
-    return textureLoad(static_depth, vec2<i32>(at.xy), 0);
+    return textureSampleLevel(static_depth, nearest, at.xy / vec2<f32>(textureDimensions(static_depth)), 0.0).x;
 }
