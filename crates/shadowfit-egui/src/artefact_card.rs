@@ -3,7 +3,7 @@
 use egui::{Align, Button, Label, Layout, RichText, Ui};
 
 use crate::theme::{Palette, has_arrows};
-use crate::widgets::{Icon, KeyButton, caption, card, icon_button, main_button};
+use crate::widgets::{Icon, KeyButton, at_least, caption, card, icon_button, main_button};
 use crate::{Artefact, Command, ShownArtefact, keys_of};
 
 /// The buttons, and the card of the artefact that is shown.
@@ -23,8 +23,16 @@ pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, command: &mut
         }
     });
     if let Some(shown) = shown {
-        show_card(ui, shown, command);
+        *command = artefact_card(ui, shown).or(command.take());
     }
+}
+
+/// The card of the artefact that is shown, in the whole width of `ui`: what to look for, what it is, and the button that
+/// fixes it. The panel has it; a host shows it over the picture where the panel is closed.
+pub fn artefact_card(ui: &mut Ui, shown: &ShownArtefact<'_>) -> Option<Command> {
+    let mut command = None;
+    show_card(ui, shown, &mut command);
+    command
 }
 
 fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, command: &mut Option<Command>) {
@@ -52,7 +60,7 @@ fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, command: &mut Option<Comman
         ui.add_space(2.0);
         if fixed {
             changes(ui, changed);
-            if ui.add_sized([ui.available_width(), 28.0], Button::new("Show again")).clicked() {
+            if ui.add_sized([ui.available_width(), at_least(ui, 28.0)], Button::new("Show again")).clicked() {
                 *command = Some(Command::ShowArtefact(artefact));
             }
         } else if main_button(ui, "Fix", keys_of(&Command::FixArtefact), palette.success_fill)

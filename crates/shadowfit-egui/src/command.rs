@@ -100,6 +100,8 @@ pub enum Command {
     DeletePreset(String),
     /// Copy the technique as Rust code. A menu of the panel.
     CopyRust,
+    /// Copy a link to what is on show. A menu of the panel.
+    CopyLink,
     /// Copy the command line that starts with this scene and these settings. A menu of the panel.
     CopyCommandLine,
     /// Save the picture to a file, or to a new one if none is named. A button of the panel.

@@ -47,6 +47,7 @@ fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Optio
     if panel.has(Part::Copy) {
         let line = "Copies the command that starts with this scene and these settings.";
         let items = [
+            ("Copy a link", "Copies a link to what is on show: scene, settings and camera.", Command::CopyLink),
             ("Copy as Rust code", "Copies the technique as Rust code.", Command::CopyRust),
             ("Copy the command line", line, Command::CopyCommandLine),
         ];

@@ -1,12 +1,13 @@
 //! The table of keys, shown over the window.
 
-use egui::{Align2, Context, Grid, RichText, ScrollArea, Ui, Vec2, Window};
+use egui::{Align2, Context, Grid, InputState, RichText, ScrollArea, Ui, Vec2, Window};
 
+use crate::keys::TOUCH;
 use crate::widgets::caption;
 use crate::{KEYS, KeyGroup};
 
 /// Which groups of [`KEYS`] stand below each other, by their number in each column.
-const COLUMNS: [usize; 3] = [2, 3, 3];
+const COLUMNS: [usize; 3] = [2, 3, 4];
 
 /// Width of a column, in points.
 const COLUMN: f32 = 300.0;
@@ -18,7 +19,7 @@ const GAP: f32 = 24.0;
 const TITLE_HEIGHT: f32 = 80.0;
 
 /// Shows the table of keys over everything else while `open`, and clears `open` when it is closed. It has three
-/// columns where the window is wide enough, else one.
+/// columns where the window is wide enough, else one, in which fingers come first where there are any.
 pub fn help_overlay(ctx: &Context, open: &mut bool) {
     let room = ctx.content_rect().size();
     let width = COLUMN * COLUMNS.len() as f32 + GAP * (COLUMNS.len() as f32 - 1.0);
@@ -35,7 +36,7 @@ pub fn help_overlay(ctx: &Context, open: &mut bool) {
             ScrollArea::vertical()
                 .max_height(room.y - TITLE_HEIGHT)
                 .min_scrolled_height(room.y - TITLE_HEIGHT)
-                .show(ui, |ui| if is_wide { columns(ui) } else { column(ui, &KEYS) });
+                .show(ui, |ui| if is_wide { columns(ui) } else { one_column(ui) });
         });
 }
 
@@ -52,6 +53,14 @@ fn columns(ui: &mut Ui) {
             });
         }
     });
+}
+
+fn one_column(ui: &mut Ui) {
+    let mut groups = KEYS.clone();
+    if ui.input(InputState::has_touch_screen) {
+        groups.sort_by_key(|group| group.heading != TOUCH);
+    }
+    column(ui, &groups);
 }
 
 fn column(ui: &mut Ui, groups: &[KeyGroup]) {

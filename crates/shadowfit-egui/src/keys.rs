@@ -19,6 +19,8 @@ pub struct Chord {
     pub ctrl: bool,
     /// Whether Shift is held.
     pub shift: bool,
+    /// Whether Alt is held.
+    pub alt: bool,
 }
 
 /// Keys that belong together.
@@ -64,94 +66,153 @@ fn views() -> Vec<KeyHelp> {
     VIEW_KEYS.into_iter().zip(ViewMode::ALL).map(line).collect()
 }
 
+/// Where keys are pressed. Browsers keep some keys for themselves: in them, what these do has other keys, and nothing
+/// quits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyLayout {
+    /// A window of the system.
+    Window,
+    /// A page in a browser.
+    Browser,
+}
+
+impl KeyLayout {
+    /// The one that this program was built for: WebAssembly runs in pages.
+    pub const HERE: Self = if cfg!(target_family = "wasm") { Self::Browser } else { Self::Window };
+
+    const fn either(self, window: &'static str, browser: &'static str) -> &'static str {
+        match self {
+            Self::Window => window,
+            Self::Browser => browser,
+        }
+    }
+}
+
+/// The keys that a host of the panel answers [here](KeyLayout::HERE), in the order that they are shown.
+pub static KEYS: LazyLock<Vec<KeyGroup>> = LazyLock::new(|| key_table(KeyLayout::HERE));
+
 /// The keys that a host of the panel answers, in the order that they are shown.
-pub static KEYS: LazyLock<Vec<KeyGroup>> = LazyLock::new(|| {
-    vec![
-        group(
-            "Fly",
-            vec![
-                held("W A S D", "move"),
-                held("Q, E", "down, up"),
-                held("Arrow keys", "look around"),
-                held("Left mouse drag", "look around"),
-                held("Double click", "focus on what is there"),
-                held("Shift", "move fast"),
-                held("Wheel", "flying speed"),
-            ],
-        ),
+pub fn key_table(layout: KeyLayout) -> Vec<KeyGroup> {
+    let mut groups = vec![
+        group("Fly", fly()),
         group("Views", views()),
-        group(
-            "Artefacts",
-            vec![
-                key("Z", "show acne", Command::ShowArtefact(Artefact::Acne)),
-                key("X", "show aliasing", Command::ShowArtefact(Artefact::Aliasing)),
-                key("C", "show a clipping hole", Command::ShowArtefact(Artefact::ClippingHole)),
-                key("F", "fix what is shown", Command::FixArtefact),
-                key("T", "auto-tune", Command::StartTune),
-            ],
-        ),
-        group(
-            "Picture",
-            vec![
-                key("B", "compare A | B", Command::Compare(Toggle::Switch)),
-                key("M", "mark wrong pixels", Command::NextMarks),
-                key("I", "shadow map inset", Command::NextInset),
-                key("O", "outside view", Command::ToggleOutside),
-                key("G", "freeze the fit", Command::ToggleFreeze),
-                key("L", "animate the sun", Command::ToggleSun),
-                key("Space", "play or pause", Command::TogglePlay),
-            ],
-        ),
-        group(
-            "Bookmarks",
-            vec![
-                key("Ctrl+1 … 9", "go to a bookmark", Command::GoToBookmark(1)),
-                key("Ctrl+Shift+1 … 9", "set a bookmark", Command::SetBookmark(1)),
-            ],
-        ),
-        group(
-            "Settings and files",
-            vec![
-                key("Ctrl+Z", "undo", Command::Undo),
-                key("Ctrl+Shift+Z or Ctrl+Y", "redo", Command::Redo),
-                key("R", "reset", Command::Reset),
-                key("K", "copy as Rust code", Command::CopyRust),
-                key("P", "screenshot", Command::Screenshot(None)),
-                key("Ctrl+O", "open a scene", Command::ChooseFile),
-            ],
-        ),
-        group(
-            "Window",
-            vec![
-                key("Tab", "hide or show the panel", Command::TogglePanel),
-                key("H or F1", "this help", Command::ToggleHelp),
-                key("Esc", "close a menu or this help; else quit", Command::Escape),
-                key("Ctrl+Q", "quit", Command::Quit),
-            ],
-        ),
-        group(
-            "Gamepad",
-            vec![
-                held("Left stick", "move"),
-                held("Right stick", "look around, click: first view"),
-                held("Triggers", "down, up"),
-                held("Back", "quit"),
-            ],
-        ),
+        group("Artefacts", artefacts()),
+        group("Picture", picture()),
+        group("Bookmarks", bookmarks(layout)),
+        group("Settings and files", files(layout)),
+        group("Window", window(layout)),
+        group(TOUCH, touch()),
+        group("Gamepad", gamepad()),
+    ];
+    if layout == KeyLayout::Browser {
+        groups.iter_mut().for_each(|group| group.keys.retain(|line| line.does != QUIT));
+    }
+    groups
+}
+
+/// The heading of what fingers do.
+pub(crate) const TOUCH: &str = "Touch";
+
+/// What pages cannot do.
+const QUIT: &str = "quit";
+
+fn fly() -> Vec<KeyHelp> {
+    vec![
+        held("W A S D", "move"),
+        held("Q, E", "down, up"),
+        held("Arrow keys", "look around"),
+        held("Left mouse drag", "look around"),
+        held("Double click", "focus on what is there"),
+        held("Shift", "move fast"),
+        held("Wheel", "flying speed"),
     ]
-});
+}
+
+fn artefacts() -> Vec<KeyHelp> {
+    vec![
+        key("Z", "show acne", Command::ShowArtefact(Artefact::Acne)),
+        key("X", "show aliasing", Command::ShowArtefact(Artefact::Aliasing)),
+        key("C", "show a clipping hole", Command::ShowArtefact(Artefact::ClippingHole)),
+        key("F", "fix what is shown", Command::FixArtefact),
+        key("T", "auto-tune", Command::StartTune),
+    ]
+}
+
+fn picture() -> Vec<KeyHelp> {
+    vec![
+        key("B", "compare A | B", Command::Compare(Toggle::Switch)),
+        key("M", "mark wrong pixels", Command::NextMarks),
+        key("I", "shadow map inset", Command::NextInset),
+        key("O", "outside view", Command::ToggleOutside),
+        key("G", "freeze the fit", Command::ToggleFreeze),
+        key("L", "animate the sun", Command::ToggleSun),
+        key("Space", "play or pause", Command::TogglePlay),
+    ]
+}
+
+/// Browsers change tabs with Control and a digit.
+fn bookmarks(layout: KeyLayout) -> Vec<KeyHelp> {
+    let [go, set] = [("Ctrl+1 … 9", "Alt+1 … 9"), ("Ctrl+Shift+1 … 9", "Alt+Shift+1 … 9")];
+    vec![
+        key(layout.either(go.0, go.1), "go to a bookmark", Command::GoToBookmark(1)),
+        key(layout.either(set.0, set.1), "set a bookmark", Command::SetBookmark(1)),
+    ]
+}
+
+/// Browsers open a page with Ctrl+O.
+fn files(layout: KeyLayout) -> Vec<KeyHelp> {
+    vec![
+        key("Ctrl+Z", "undo", Command::Undo),
+        key("Ctrl+Shift+Z or Ctrl+Y", "redo", Command::Redo),
+        key("R", "reset", Command::Reset),
+        key("K", "copy as Rust code", Command::CopyRust),
+        key("U", "copy a link", Command::CopyLink),
+        key("P", "screenshot", Command::Screenshot(None)),
+        key(layout.either("Ctrl+O", "Alt+O"), "open a scene", Command::ChooseFile),
+    ]
+}
+
+/// Browsers show their own help with F1.
+fn window(layout: KeyLayout) -> Vec<KeyHelp> {
+    let escape = layout.either("close a menu or this help; else quit", "close a menu or this help");
+    vec![
+        key("Tab", "hide or show the panel", Command::TogglePanel),
+        key(layout.either("H or F1", "H"), "this help", Command::ToggleHelp),
+        key("Esc", escape, Command::Escape),
+        key("Ctrl+Q", QUIT, Command::Quit),
+    ]
+}
+
+fn touch() -> Vec<KeyHelp> {
+    vec![
+        held("Drag", "look around"),
+        held("Two fingers", "move"),
+        held("Pinch", "fly forward or back"),
+        held("Tap", "why this pixel is so"),
+        held("Double tap", "focus on what is there"),
+    ]
+}
+
+fn gamepad() -> Vec<KeyHelp> {
+    vec![
+        held("Left stick", "move"),
+        held("Right stick", "look around, click: first view"),
+        held("Triggers", "down, up"),
+        held("Back", QUIT),
+    ]
+}
 
 /// What ends the keys of a line that stands for all digits from 1.
 const DIGITS: &str = "1 … 9";
 
-/// The lines of [`KEYS`] that stand for a command, with that command.
-fn commands() -> impl Iterator<Item = (&'static KeyHelp, &'static Command)> {
-    KEYS.iter().flat_map(|group| &group.keys).filter_map(|line| Some((line, line.command.as_ref()?)))
+/// The lines that stand for a command, with that command.
+fn commands(groups: &[KeyGroup]) -> impl Iterator<Item = (&KeyHelp, &Command)> {
+    groups.iter().flat_map(|group| &group.keys).filter_map(|line| Some((line, line.command.as_ref()?)))
 }
 
 /// The keys of a command as they are printed on a keyboard; empty for a command without any.
 pub fn keys_of(command: &Command) -> &'static str {
-    commands().find(|(_, other)| *other == command).map_or("", |(line, _)| line.keys)
+    commands(&KEYS).find(|(_, other)| *other == command).map_or("", |(line, _)| line.keys)
 }
 
 /// A help text with the keys of a command behind it.
@@ -201,11 +262,12 @@ impl FromStr for Chord {
         let (modifiers, name) = text.rsplit_once('+').map_or(("", text), |(modifiers, name)| (modifiers, name));
         let is_it = |key: &&Key| key.name().eq_ignore_ascii_case(name);
         let found = Key::ALL.iter().find(is_it).copied().or_else(|| Key::from_name(name));
-        let mut chord = Self { key: found.ok_or(NoSuchKey)?, ctrl: false, shift: false };
+        let mut chord = Self { key: found.ok_or(NoSuchKey)?, ctrl: false, shift: false, alt: false };
         for modifier in modifiers.split('+').filter(|modifier| !modifier.is_empty()) {
             match modifier.to_ascii_lowercase().as_str() {
                 "ctrl" => chord.ctrl = true,
                 "shift" => chord.shift = true,
+                "alt" => chord.alt = true,
                 _ => return Err(NoSuchKey),
             }
         }
@@ -217,8 +279,12 @@ impl Chord {
     /// The command that the key stands for when it is pressed. Shift matters only where [`KEYS`] has the key both with
     /// and without it: a key works while Shift is held to fly fast.
     pub fn command(self) -> Option<Command> {
+        self.command_in(&KEYS)
+    }
+
+    fn command_in(self, groups: &[KeyGroup]) -> Option<Command> {
         let listed = |chord: Self| {
-            let mut all = commands().flat_map(|(line, _)| line.chords());
+            let mut all = commands(groups).flat_map(|(line, _)| line.chords());
             all.find(|(other, _)| *other == chord).map(|(_, command)| command)
         };
         listed(self).or_else(|| listed(Self { shift: false, ..self }))
@@ -250,7 +316,7 @@ mod tests {
         assert_eq!(command("ctrl+shift+z"), Some(Command::Redo));
         assert_eq!((command("escape"), command("Esc")), (Some(Command::Escape), Some(Command::Escape)));
         assert_eq!("W".parse::<Chord>().map(|chord| chord.key), Ok(Key::W));
-        for bad in ["", "+", "ctrl", "alt+a", "f99", "w+ctrl"] {
+        for bad in ["", "+", "ctrl", "meta+a", "f99", "w+ctrl"] {
             assert_eq!(bad.parse::<Chord>(), Err(NoSuchKey), "{bad:?}");
         }
     }
@@ -265,17 +331,39 @@ mod tests {
 
     #[test]
     fn every_line_with_a_command_names_keys_and_no_key_or_command_has_two_lines() {
-        let mut chords: Vec<Chord> = Vec::new();
-        let mut seen: Vec<&Command> = Vec::new();
-        for (line, command) in commands() {
-            assert!(
-                line.chords().next().is_some() && line.chords().all(|(chord, _)| !chords.contains(&chord)),
-                "{line:?}"
-            );
-            chords.extend(line.chords().map(|(chord, _)| chord));
-            assert!(!seen.contains(&command), "{line:?}");
-            seen.push(command);
-            assert_eq!(keys_of(command), line.keys);
+        for layout in [KeyLayout::Window, KeyLayout::Browser] {
+            let groups = key_table(layout);
+            let mut chords: Vec<Chord> = Vec::new();
+            let mut seen: Vec<&Command> = Vec::new();
+            for (line, command) in commands(&groups) {
+                let is_new = line.chords().all(|(chord, _)| !chords.contains(&chord));
+                assert!(line.chords().next().is_some() && is_new, "{line:?}");
+                chords.extend(line.chords().map(|(chord, _)| chord));
+                assert!(!seen.contains(&command), "{line:?}");
+                seen.push(command);
+            }
         }
+        assert!(commands(&KEYS).all(|(line, command)| keys_of(command) == line.keys));
+    }
+
+    #[test]
+    fn in_browsers_every_command_but_quitting_has_keys_that_they_leave_to_pages() {
+        let (window, browser) = (key_table(KeyLayout::Window), key_table(KeyLayout::Browser));
+        for (line, command) in commands(&window) {
+            let is_there = commands(&browser).any(|(_, other)| other == command);
+            assert_eq!(is_there, *command != Command::Quit, "{line:?}");
+        }
+        let letters = "WTNSORFPQLDJHUEG0123456789".chars();
+        let with_control = letters.flat_map(|key| [format!("Ctrl+{key}"), format!("Ctrl+Shift+{key}")]);
+        let zoom = ["Ctrl+Plus", "Ctrl+Minus", "F1", "F3", "F5", "F6", "F7", "F11", "F12"].map(str::to_owned);
+        for keys in with_control.chain(zoom) {
+            let owned = keys.parse::<Chord>().expect(&keys);
+            let all = commands(&browser).flat_map(|(line, _)| line.chords());
+            assert!(all.into_iter().all(|(chord, _)| chord != owned), "{keys}");
+        }
+        let bookmark = "Alt+Shift+7".parse::<Chord>().expect("a key");
+        assert_eq!(bookmark.command_in(&browser), Some(Command::SetBookmark(7)));
+        assert_eq!(bookmark.command_in(&window), None);
+        assert!(browser.iter().flat_map(|group| &group.keys).all(|line| !line.does.contains("quit")));
     }
 }

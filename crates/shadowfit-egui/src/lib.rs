@@ -77,6 +77,7 @@ use widgets::{Section, caption};
 
 pub use accessibility::rename;
 pub use artefact::Artefact;
+pub use artefact_card::artefact_card;
 pub use classes::PixelClass;
 pub use command::{Command, Toggle};
 pub use help::help_overlay;
@@ -84,12 +85,12 @@ pub use input::{
     Card, CardChoice, CardControl, CardFigure, CardRow, Changes, Compare, PanelInput, PanelOutput, Part, SceneLine,
     ShownArtefact, Tune, UserPreset,
 };
-pub use keys::{Chord, KEYS, KeyGroup, KeyHelp, NoSuchKey, keys_of, with_keys};
+pub use keys::{Chord, KEYS, KeyGroup, KeyHelp, KeyLayout, NoSuchKey, key_table, keys_of, with_keys};
 pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
-pub use theme::apply_theme;
-pub use views::view_bar;
+pub use theme::{apply_theme, size_for_fingers};
+pub use views::{view_bar, view_menu};
 pub use why::{WhyCard, why_card, why_overlay};
-pub use widgets::{Icon, icon_button};
+pub use widgets::{Icon, icon_button, named_icon_button};
 
 /// Width that the panel is laid out for, in points, margins included.
 pub const PANEL_WIDTH: f32 = 360.0;

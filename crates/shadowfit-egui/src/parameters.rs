@@ -1,6 +1,6 @@
 //! The controls of the settings: those that are used most, a search, and the groups.
 
-use egui::{Margin, TextEdit, Ui, Vec2};
+use egui::{Align2, Margin, TextEdit, Ui, Vec2};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{Group, Parameter, parameter};
 
@@ -30,7 +30,8 @@ impl Rows<'_> {
         ui.horizontal(|ui| {
             let margin = Margin { left: 26, ..Margin::from(ui.spacing().button_padding) };
             let width = ui.available_width() - 30.0;
-            let field = TextEdit::singleline(search).hint_text("Search all settings").margin(margin);
+            let field =
+                TextEdit::singleline(search).hint_text("Search all settings").margin(margin).align(Align2::LEFT_CENTER);
             let field = ui.add(field.desired_width(width));
             let at = field.rect.left_center() + Vec2::new(14.0, 0.0);
             paint_icon(ui, Icon::Search, at, ui.visuals().weak_text_color());

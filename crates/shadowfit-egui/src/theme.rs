@@ -22,6 +22,10 @@ const TYPE_SCALE: [(TextStyle, f32); 4] =
 /// Size of text in which digits are equally wide, in points.
 const MONOSPACE: f32 = 12.5;
 
+/// Height of what can be pressed with a mouse, and with a finger, in points.
+const ROW: f32 = 22.0;
+const FINGER: f32 = 36.0;
+
 /// Corner radius of buttons and fields, in points.
 const CONTROL_RADIUS: u8 = 5;
 
@@ -42,6 +46,13 @@ pub fn apply_theme(ctx: &Context, theme: impl Into<ThemePreference>) {
     add_arrows(ctx);
     add_icons(ctx);
     ctx.set_theme(theme);
+}
+
+/// Makes what can be pressed as high as a finger needs, or as low as it is for a mouse: for touch screens and narrow
+/// windows. It changes both themes; after [`apply_theme`] the sizes are those for a mouse.
+pub fn size_for_fingers(ctx: &Context, is_touched: bool) {
+    let height = if is_touched { FINGER } else { ROW };
+    ctx.all_styles_mut(|style| style.spacing.interact_size.y = height);
 }
 
 /// Lets text have arrows, as in "0 → 1 texel": egui's font for text has none, that for code has them.
@@ -69,7 +80,7 @@ fn measures(style: &mut Style) {
     let spacing = &mut style.spacing;
     spacing.item_spacing = Vec2::new(6.0, 5.0);
     spacing.button_padding = Vec2::new(8.0, 3.0);
-    spacing.interact_size = Vec2::new(40.0, 22.0);
+    spacing.interact_size = Vec2::new(40.0, ROW);
     spacing.slider_rail_height = 4.0;
     spacing.icon_width = 16.0;
     spacing.icon_width_inner = 9.0;

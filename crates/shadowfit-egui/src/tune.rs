@@ -5,7 +5,7 @@ use shadowfit_params::figures::JudgedFigures;
 
 use crate::theme::{Palette, has_arrows};
 use crate::units::percent;
-use crate::widgets::{caption, card, main_button, title};
+use crate::widgets::{at_least, caption, card, main_button, title};
 use crate::{Command, Tune};
 
 const HELP: &str = "Tries biases, filters and fits on this view, judges each against rays, and keeps what has the least \
@@ -112,6 +112,6 @@ fn close(ui: &mut Ui, text: &str, command: &mut Option<Command>) {
 }
 
 fn wide(ui: &mut Ui, text: &str) -> egui::Response {
-    let size = [ui.available_width(), 28.0];
+    let size = [ui.available_width(), at_least(ui, 28.0)];
     ui.add_sized(size, egui::Button::new(text))
 }

@@ -1,5 +1,6 @@
 //! The bar of views, for over the picture.
 
+use egui::containers::menu::MenuButton;
 use egui::{Button, Response, RichText, Ui};
 use shadowfit_params::tool::{ViewMode, ViewSettings};
 use shadowfit_params::{ChoiceOption, Kind, parameter};
@@ -31,6 +32,27 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
         bar.mark_changed();
     }
     bar
+}
+
+/// The views as a menu that shows the chosen one, for where [`view_bar`] takes too much room. Returns the response of its
+/// button, which is [changed](Response::changed) when another view was chosen.
+pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings) -> Response {
+    let before = view.mode;
+    let (mut response, _) = MenuButton::new(option(view.mode).label).ui(ui, |ui| {
+        for mode in ViewMode::ALL {
+            let chosen = Button::selectable(mode == view.mode, option(mode).label);
+            let response = ui.add(chosen).on_hover_text(option(mode).help);
+            rename(ui, &response, format!("View: {}", option(mode).label));
+            if response.clicked() {
+                view.mode = mode;
+            }
+        }
+    });
+    rename(ui, &response, "Views".to_owned());
+    if view.mode != before {
+        response.mark_changed();
+    }
+    response
 }
 
 fn button(ui: &mut Ui, option: &ChoiceOption, key: &str, is_selected: bool) -> Response {

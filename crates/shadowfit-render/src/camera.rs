@@ -13,6 +13,10 @@ pub const TURN_SPEED: f32 = 1.5;
 pub const FAST_FACTOR: f32 = 4.0;
 /// Turn per pixel of mouse drag, in radians.
 pub const DRAG_RADIANS_PER_PIXEL: f32 = 0.004;
+/// Flight for each point that two fingers move, in seconds at the camera's speed.
+pub const PAN_SECONDS_PER_POINT: f32 = 0.005;
+/// Flight while two fingers come e times as far apart, in seconds at the camera's speed.
+pub const PINCH_SECONDS: f32 = 2.0;
 /// Speed factor per notch of the wheel.
 pub const WHEEL_FACTOR: f32 = 1.2;
 
@@ -42,6 +46,10 @@ pub struct FlyInput {
     pub turn: Vec2,
     /// Mouse drag since the last frame, in pixels, x right, y down.
     pub drag: Vec2,
+    /// Movement of two fingers since the last frame, in points, x right, y down: the scene goes with them.
+    pub pan: Vec2,
+    /// Natural logarithm of the factor by which two fingers came apart since the last frame; apart flies forward.
+    pub pinch: f32,
     /// Wheel notches since the last frame; up is positive.
     pub wheel: f32,
     /// Flies [`FAST_FACTOR`] times as fast.
@@ -88,6 +96,8 @@ impl FlyCamera {
         self.yaw -= input.drag.x * DRAG_RADIANS_PER_PIXEL;
         self.pitch = (self.pitch - input.drag.y * DRAG_RADIANS_PER_PIXEL).clamp(-MAX_PITCH, MAX_PITCH);
         let speed = settings.speed * if input.fast { FAST_FACTOR } else { 1.0 };
+        let along = (self.right() * -input.pan.x + Vec3::Y * input.pan.y) * PAN_SECONDS_PER_POINT;
+        self.position += ((along + self.forward() * (input.pinch * PINCH_SECONDS)) * speed).as_dvec3();
         let seconds = seconds.clamp(0.0, MAX_FRAME);
         let steps = (seconds / MAX_STEP).ceil().max(1.0);
         for _ in 0..steps as u32 {
@@ -198,6 +208,22 @@ mod tests {
         let mut settings = CameraSettings { speed: 1.0, ..Default::default() };
         camera.update(&mut settings, &FlyInput { movement: Vec3::Z, ..Default::default() }, 60.0);
         assert!(camera.position.length() <= f64::from(MAX_FRAME) + 1e-6);
+    }
+
+    #[test]
+    fn the_scene_goes_with_two_fingers_and_comes_nearer_as_they_part() {
+        let moved = |pan: Vec2, pinch: f32| {
+            let mut camera = FlyCamera { position: DVec3::ZERO, yaw: 0.0, pitch: 0.0 };
+            let mut settings = CameraSettings { speed: 2.0, ..Default::default() };
+            camera.update(&mut settings, &FlyInput { pan, pinch, ..Default::default() }, 0.1);
+            camera.position.as_vec3()
+        };
+        assert!(
+            moved(Vec2::new(100.0, 0.0), 0.0).abs_diff_eq(Vec3::NEG_X, 1e-6),
+            "fingers to the right, eye to the left"
+        );
+        assert!(moved(Vec2::new(0.0, 100.0), 0.0).abs_diff_eq(Vec3::Y, 1e-6));
+        assert!(moved(Vec2::ZERO, 0.5).abs_diff_eq(Vec3::NEG_Z * 2.0, 1e-6));
     }
 
     #[test]

@@ -105,6 +105,15 @@ impl Search {
     }
 }
 
+impl Search {
+    /// What to look for in the present view with the present settings.
+    pub(crate) fn narrate(&self) -> String {
+        let search = ViewSearch::new(&self.scene, self.settings.inputs, self.settings.light.direction());
+        let camera = self.scene.camera_for_rays(&PerspectiveCamera { aspect: ASPECT, ..self.lens });
+        narration::tell(self.artefact, &search, &camera, &self.settings)
+    }
+}
+
 /// Applies the cure of an artefact on show; `before` is the technique from before it was shown.
 /// `seen` is the distance beyond which hardly anything is seen, in metres, from [`farthest_seen`].
 pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Technique, seen: Option<f32>) {

@@ -55,6 +55,11 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "ID=VALUE")]
     pub set: Vec<String>,
 
+    /// Opens what a link of a viewer shows: the URL, or its fragment from the `#` on. It wins over what was saved and over
+    /// other arguments.
+    #[arg(long, value_name = "URL|FRAGMENT")]
+    pub link: Option<String>,
+
     /// Prints every parameter with its range and default, and quits.
     #[arg(long)]
     pub parameters: bool,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use shadowfit_egui::KEYS;
+use shadowfit_egui::{KEYS, KeyGroup, KeyHelp, KeyLayout, key_table};
 
 use crate::script::ACTIONS;
 
@@ -25,6 +25,16 @@ fn the_docs_list_every_key() {
         format!("| {} | {} |\n", group.heading, keys.join(" · "))
     });
     assert_docs_hold(&format!("| | keys |\n|---|---|\n{}", lines.collect::<String>()));
+}
+
+#[test]
+fn the_docs_list_the_keys_that_are_others_in_browsers() {
+    let lines = |groups: Vec<KeyGroup>| groups.into_iter().flat_map(|group| group.keys).collect::<Vec<KeyHelp>>();
+    let window = lines(key_table(KeyLayout::Window));
+    let mut browser = lines(key_table(KeyLayout::Browser));
+    browser.retain(|line| !window.contains(line));
+    let keys: Vec<String> = browser.iter().map(|line| format!("**{}** {}", line.keys, line.does)).collect();
+    assert_docs_hold(&format!("nothing quits: {}.", keys.join(" · ")));
 }
 
 #[test]

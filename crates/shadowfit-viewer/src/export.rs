@@ -29,15 +29,9 @@ pub(crate) fn command_line(
     if animation > 0 {
         let _ = write!(line, " --animation {animation}");
     }
-    // Parameters that depend on a choice come after that choice in the table.
-    let mut reached = *own;
-    for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
-        if !parameter.is_equal(settings, &reached) {
-            let value = params::format_value(settings, parameter);
-            // Writing to a String cannot fail.
-            let _ = write!(line, " --set {}", quoted(&format!("{}={value}", parameter.id)));
-            parameter.copy(&mut reached, settings);
-        }
+    for (id, value) in differences(settings, own) {
+        // Writing to a String cannot fail.
+        let _ = write!(line, " --set {}", quoted(&format!("{id}={value}")));
     }
     for (option, value) in sample.into_iter().flat_map(|(sample, variant, values)| changed(sample, variant, values)) {
         let _ = write!(line, " --set {}", quoted(&format!("sample.{option}={value}")));
@@ -45,8 +39,23 @@ pub(crate) fn command_line(
     line
 }
 
+/// The parameters that differ between two settings, by id, with their values in the first: set in this order on the
+/// second, they make it the first.
+pub(crate) fn differences(settings: &Settings, own: &Settings) -> Vec<(String, String)> {
+    // Parameters that depend on a choice come after that choice in the table.
+    let mut reached = *own;
+    let mut differences = Vec::new();
+    for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
+        if !parameter.is_equal(settings, &reached) {
+            differences.push((parameter.id.to_owned(), params::format_value(settings, parameter)));
+            parameter.copy(&mut reached, settings);
+        }
+    }
+    differences
+}
+
 /// The options of a sample that differ from those of its name alone.
-fn changed(
+pub(crate) fn changed(
     sample: &Sample,
     variant: Option<&SampleVariant>,
     values: &SampleValues,

@@ -32,9 +32,9 @@ impl Input {
         *self = Self::default();
     }
 
-    /// The input of the camera; the caller adds drags and the wheel. Keys that are held with Control do not fly.
+    /// The input of the camera; the caller adds drags and the wheel. Keys that are held with Control or Alt do not fly.
     pub(crate) fn fly(&self) -> FlyInput {
-        let held = |key| f32::from(u8::from(self.held.iter().any(|held| held.key == key && !held.ctrl)));
+        let held = |key| f32::from(u8::from(self.held.iter().any(|held| held.key == key && !held.ctrl && !held.alt)));
         let axis = |positive, negative| held(positive) - held(negative);
         let movement = Vec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
         let turn = Vec2::new(axis(Key::ArrowRight, Key::ArrowLeft), axis(Key::ArrowUp, Key::ArrowDown));
@@ -70,9 +70,9 @@ mod tests {
     }
 
     #[test]
-    fn keys_with_control_do_not_fly() {
+    fn keys_with_control_or_alt_do_not_fly() {
         let mut input = Input::default();
-        assert!(input.key(chord("ctrl+q"), true));
+        assert!(input.key(chord("ctrl+q"), true) && input.key(chord("alt+e"), true));
         assert_eq!(input.fly(), FlyInput::default());
     }
 

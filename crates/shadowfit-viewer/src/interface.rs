@@ -1,6 +1,7 @@
 //! Picture, bars and panel laid out by egui, the same in the window and in headless pictures.
 
 mod bar;
+mod narrow;
 mod paint;
 mod picture;
 mod sample;
@@ -27,6 +28,10 @@ pub(crate) struct Interface {
     panel: Panel,
     pub(crate) pictures: Pictures,
     pub(crate) help_open: bool,
+    /// Whether the panel lies over the picture, in a narrow window.
+    pub(crate) drawer_open: bool,
+    /// Whether what can be pressed is as high as fingers need.
+    is_touched: bool,
     /// Whether bars and panel are hidden.
     pub(crate) bare: bool,
     /// Whether the panel edits the second of two techniques.
@@ -79,6 +84,9 @@ pub(crate) struct InterfaceOutput {
     pub(crate) commands: Vec<Command>,
     /// Mouse drag over the picture, in pixels.
     pub(crate) drag: Vec2,
+    /// How two fingers moved on the picture, in points, and the logarithm of the factor by which they came apart.
+    pub(crate) pan: Vec2,
+    pub(crate) pinch: f32,
     /// Wheel notches over the picture.
     pub(crate) wheel: f32,
     /// Where the pointer rests on the picture, as shares of its width and height from the top left.
@@ -98,6 +106,8 @@ impl Interface {
             panel: Panel::new(),
             pictures,
             help_open: false,
+            drawer_open: false,
+            is_touched: false,
             bare: false,
             edits_other: false,
             frame_ms: None,
@@ -133,6 +143,11 @@ impl Interface {
     ) -> (InterfaceOutput, Layout, egui::PlatformOutput) {
         let mut output = InterfaceOutput::default();
         let context = self.context.clone();
+        let is_narrow = raw_input.screen_rect.is_some_and(|screen| narrow::is_narrow(screen.size()));
+        let is_touched = is_narrow || context.input(egui::InputState::has_touch_screen);
+        if std::mem::replace(&mut self.is_touched, is_touched) != is_touched {
+            shadowfit_egui::size_for_fingers(&context, is_touched);
+        }
         let mut full = context.run_ui(raw_input, |ui| self.show(ui, stage, input, &mut output));
         self.pictures.fit_places(stage, &mut self.painter);
         self.painter.take(stage.gpu(), &mut full.textures_delta);
@@ -147,17 +162,32 @@ impl Interface {
 
     fn show(&mut self, ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
         self.figures = stage.figures(self.pictures.size(), self.frame_ms);
+        let is_narrow = narrow::is_narrow(ui.max_rect().size());
+        self.drawer_open &= is_narrow && !self.bare;
         if !self.bare {
-            bar::show(ui, stage, input, output);
+            if is_narrow || self.is_touched && ui.max_rect().width() < bar::ROOM_FOR_FINGERS {
+                self.drawer_open |= bar::show_narrow(ui, stage, input, output, is_narrow);
+            } else {
+                bar::show(ui, stage, input, output);
+            }
             timeline::show(ui, stage, self.frame_ms, output);
-            egui::Panel::right("tuning").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
-                self.show_panel(ui, stage, input, output);
-            });
+            if !is_narrow {
+                egui::Panel::right("tuning").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
+                    self.show_panel(ui, stage, input, output);
+                });
+            }
         }
-        let figures = &self.figures;
-        CentralPanel::default()
+        // The drawer hides it.
+        let has_legend = !self.drawer_open;
+        let figures = Some(&self.figures).filter(|_| has_legend);
+        let picture = CentralPanel::default()
             .frame(Frame::NONE)
             .show(ui, |ui| self.pictures.show(ui, stage, (input, figures), output));
+        if self.drawer_open {
+            self.show_drawer(ui, stage, input, output);
+        } else if is_narrow && !self.bare {
+            narrow::show_notes(ui, picture.response.rect, stage, input, output);
+        }
         let context = ui.ctx().clone();
         shadowfit_egui::help_overlay(&context, &mut self.help_open);
     }

@@ -17,6 +17,7 @@ mod gamepad;
 mod headless;
 mod input;
 mod interface;
+mod link;
 mod loading;
 mod monkey;
 mod narration;

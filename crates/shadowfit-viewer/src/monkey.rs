@@ -85,7 +85,7 @@ impl MonkeyRun {
         let unwanted =
             |chord: &Chord| matches!(chord.command(), Some(Command::Quit | Command::Escape | Command::ChooseFile));
         let modifiers = [(false, false), (true, false), (false, true), (true, true)];
-        let with_modifiers = |key: &Key| modifiers.map(|(ctrl, shift)| Chord { key: *key, ctrl, shift });
+        let with_modifiers = |key: &Key| modifiers.map(|(ctrl, shift)| Chord { key: *key, ctrl, shift, alt: false });
         Self {
             random: Random(monkey.seed),
             seconds: monkey.seconds,

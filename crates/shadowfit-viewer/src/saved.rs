@@ -33,9 +33,9 @@ const MOST_RECENT: usize = 8;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Theme {
-    #[default]
     Dark,
     Light,
+    #[default]
     System,
 }
 

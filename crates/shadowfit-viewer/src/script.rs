@@ -169,6 +169,7 @@ pub(crate) const ACTIONS: &[Action] = &[
     command("preset", "NAME", "saves the technique as a preset", |words| words.text().map(Command::SavePreset)),
     command("delete-preset", "NAME", "deletes a saved preset", |words| words.text().map(Command::DeletePreset)),
     plain("copy-rust", "copies the technique as Rust code", Command::CopyRust),
+    plain("copy-link", "copies a link to what is on show", Command::CopyLink),
     plain("copy-command-line", "copies the command line that starts with these settings", Command::CopyCommandLine),
     command("theme", "dark|light|system", "changes the colours", theme),
     plain("panel", "hides or shows the panel", Command::TogglePanel),

@@ -2,6 +2,7 @@
 //! call it once per frame.
 
 mod commands;
+mod following;
 mod opening;
 mod sample;
 mod saving;
@@ -24,6 +25,7 @@ use crate::artefact::Found;
 use crate::effect::{Activity, Effect};
 use crate::input::Input;
 use crate::interface::{Interface, InterfaceInput, InterfaceOutput, Layout};
+use crate::link::Link;
 use crate::loading::Loading;
 use crate::playback::Player;
 use crate::sample_figures::Measuring;
@@ -63,6 +65,11 @@ pub(crate) struct Viewer {
     history: History,
     saved: Saved,
     store: Option<Store>,
+    /// The link that is being followed, until its scene is there.
+    link: Option<Link>,
+    /// Address of the page in which the viewer runs, without a fragment; `None` in a window of its own, which alone can
+    /// be quit.
+    pub(crate) page: Option<String>,
     presets: Vec<UserPreset>,
     message: Option<Message>,
     /// Seconds since the start.
@@ -134,6 +141,8 @@ impl Viewer {
             history: History::default(),
             saved: Saved::default(),
             store,
+            link: None,
+            page: None,
             presets: Vec::new(),
             message: None,
             clock: 0.0,
@@ -164,7 +173,12 @@ impl Viewer {
         for event in raw_input.events.extract_if(.., is_taken) {
             let Event::Key { key, physical_key, pressed, modifiers, .. } = event else { continue };
             // The place of a key matters for flying, not the letter that a layout prints on it.
-            let chord = Chord { key: physical_key.unwrap_or(key), ctrl: modifiers.ctrl, shift: modifiers.shift };
+            let chord = Chord {
+                key: physical_key.unwrap_or(key),
+                ctrl: modifiers.ctrl,
+                shift: modifiers.shift,
+                alt: modifiers.alt,
+            };
             let is_new = self.input.key(chord, pressed);
             self.commands.extend(self.key_command(chord).filter(|_| is_new).map(Request::from));
         }
@@ -208,6 +222,7 @@ impl Viewer {
         }
         let mut fly = self.input.fly();
         (fly.drag, fly.wheel) = (asked.drag, asked.wheel);
+        (fly.pan, fly.pinch) = (asked.pan, asked.pinch);
         self.stage.update(&fly, seconds);
         self.commands.extend(asked.commands.into_iter().map(Request::from));
         while let Some(request) = self.commands.pop_front() {
@@ -225,6 +240,8 @@ impl Viewer {
     }
 
     fn lay_out(&mut self, raw_input: RawInput) -> (InterfaceOutput, Layout, egui::PlatformOutput) {
+        let request = self.link.as_ref().and_then(|link| link.scene.request());
+        let message = self.message.as_ref().map(|message| message.text.as_str());
         let loading = self.loading.as_ref().map(|loading| (loading.source.label(), loading.share()));
         let input = InterfaceInput {
             saved: &self.saved,
@@ -232,7 +249,7 @@ impl Viewer {
             tune: self.tuning.shown(),
             sample_figures: self.measuring.lines(),
             changes: Changes { undo: self.history.undo_name(), redo: self.history.redo_name() },
-            message: self.message.as_ref().map(|message| message.text.as_str()),
+            message: message.or(request.as_deref()),
             loading: loading.as_ref().map(|(name, share)| (name.as_str(), *share)),
             is_searching: self.searching.is_some(),
             has_scene: self.has_scene,
@@ -365,6 +382,12 @@ impl Viewer {
 
 /// A key press for the panel's focused widget.
 fn typed(chord: Chord) -> Event {
-    let modifiers = egui::Modifiers { ctrl: chord.ctrl, shift: chord.shift, command: chord.ctrl, ..Default::default() };
+    let modifiers = egui::Modifiers {
+        alt: chord.alt,
+        ctrl: chord.ctrl,
+        shift: chord.shift,
+        command: chord.ctrl,
+        ..Default::default()
+    };
     Event::Key { key: chord.key, physical_key: None, pressed: true, repeat: false, modifiers }
 }

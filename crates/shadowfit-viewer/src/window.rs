@@ -170,7 +170,7 @@ impl Running {
             egui::ViewportId::ROOT,
             &window,
             Some(window.scale_factor() as f32),
-            None,
+            window.theme(),
             Some(viewer.stage.gpu().device.limits().max_texture_dimension_2d as usize),
         );
         Ok(Self {

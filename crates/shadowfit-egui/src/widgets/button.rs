@@ -13,7 +13,8 @@ const ICON_BUTTON: f32 = 24.0;
 
 /// A button that shows an icon, has a name for screen readers, and help: for bars beside the panel that should look like it.
 pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(ICON_BUTTON), Sense::click());
+    let size = Vec2::new(ICON_BUTTON, at_least(ui, ICON_BUTTON));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
     if ui.is_rect_visible(rect) {
         let visuals = ui.style().interact(&response);
@@ -26,13 +27,37 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response 
     response.on_hover_text(help).on_disabled_hover_text(help)
 }
 
+/// A height in points, or the least that can be pressed where that is more.
+pub(crate) fn at_least(ui: &Ui, height: f32) -> f32 {
+    height.max(ui.spacing().interact_size.y)
+}
+
+/// A button that shows an icon before its name.
+pub fn named_icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
+    let text =
+        ui.painter().layout_no_wrap(name.to_owned(), TextStyle::Button.resolve(ui.style()), Color32::PLACEHOLDER);
+    let padding = ui.spacing().button_padding.x;
+    let size = Vec2::new(ICON_BUTTON + text.size().x + 2.0 * padding, at_least(ui, ICON_BUTTON));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
+    if ui.is_rect_visible(rect) {
+        let visuals = ui.style().interact(&response);
+        ui.painter().rect(rect, visuals.corner_radius, visuals.weak_bg_fill, visuals.bg_stroke, StrokeKind::Inside);
+        let left = rect.left_center() + Vec2::new(padding, 0.0);
+        paint_icon(ui, icon, left + Vec2::new(0.4 * ICON_BUTTON, 0.0), visuals.text_color());
+        let at = left + Vec2::new(ICON_BUTTON, -0.5 * text.size().y);
+        ui.painter().galley(at, text, visuals.text_color());
+    }
+    response.on_hover_text(help)
+}
+
 /// The main button of a card, over its whole width.
 pub(crate) fn main_button(ui: &mut Ui, text: &str, key: &str, fill: Color32) -> Response {
     let on_fill = Palette::of(ui).on_accent;
     let name = RichText::new(text).color(on_fill);
     let button =
         if key.is_empty() { Button::new(name) } else { Button::new((name, RichText::new(key).small().color(on_fill))) };
-    let size = Vec2::new(ui.available_width(), 28.0);
+    let size = Vec2::new(ui.available_width(), at_least(ui, 28.0));
     let response = ui.add_sized(size, button.fill(fill).stroke(Stroke::NONE));
     rename(ui, &response, text.to_owned());
     response

@@ -3,6 +3,8 @@
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{Align2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo};
 
+use super::button::at_least;
+
 /// Height of the heading of a section, in points.
 const HEIGHT: f32 = 27.0;
 
@@ -24,7 +26,7 @@ impl Section<'_> {
     pub(crate) fn show(&self, ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
         let id = ui.make_persistent_id(("section", self.title));
         let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, self.is_open);
-        let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), at_least(ui, HEIGHT)), Sense::hover());
         let response = ui.interact(rect, id, Sense::click());
         if response.clicked() {
             state.toggle(ui);

@@ -59,6 +59,7 @@ fn the_buttons_at_the_top_ask_their_host() {
     for (menu, label, command) in [
         ("Reset", "Reset everything", Command::Reset),
         ("Reset", "Reset the camera", Command::ResetCamera),
+        ("Copy", "Copy a link", Command::CopyLink),
         ("Copy", "Copy as Rust code", Command::CopyRust),
         ("Copy", "Copy the command line", Command::CopyCommandLine),
         ("Theme", "Dark", Command::SetTheme(ThemePreference::Dark)),

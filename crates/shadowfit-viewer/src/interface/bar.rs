@@ -1,8 +1,9 @@
 //! The bar above the picture: scenes, views, comparison, undo and the other buttons that are always there.
 
-use egui::{Button, Ui, containers::menu::MenuButton};
+use egui::{Align, Button, Layout, Ui, containers::menu::MenuButton};
 use shadowfit_classics::SAMPLES;
-use shadowfit_egui::{Command, Toggle, keys_of, with_keys};
+use shadowfit_egui::{Command, Icon, Toggle, keys_of, named_icon_button, with_keys};
+use shadowfit_params::tool::{ErrorMarks, InsetMaps};
 use shadowfit_scene::builtin::BuiltinScene;
 
 use super::{InterfaceInput, InterfaceOutput};
@@ -33,6 +34,63 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
             }
         });
         ui.add_space(2.0);
+    });
+}
+
+/// Least width at which the whole bar fits a line, as high as fingers need, in points.
+pub(super) const ROOM_FOR_FINGERS: f32 = 1200.0;
+
+/// The bar of a narrow window: the less used buttons are in a menu. Returns whether the panel is to be opened, by a
+/// button that is there if it `has_drawer`.
+pub(super) fn show_narrow(
+    ui: &mut Ui,
+    stage: &mut Stage,
+    input: &InterfaceInput<'_>,
+    output: &mut InterfaceOutput,
+    has_drawer: bool,
+) -> bool {
+    let mut opens = false;
+    egui::Panel::top("bar").show(ui, |ui| {
+        ui.add_space(2.0);
+        ui.horizontal(|ui| {
+            scenes(ui, input, output);
+            if !stage.draws_sample() {
+                shadowfit_egui::view_menu(ui, &mut stage.settings.view);
+            }
+            more(ui, stage, output);
+            if has_drawer {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let help = "Opens the panel: quality, technique and all settings";
+                    opens = named_icon_button(ui, Icon::SlidersHorizontal, "Tune", help).clicked();
+                });
+            }
+        });
+        ui.add_space(2.0);
+    });
+    opens
+}
+
+/// The buttons that a narrow bar has no room for.
+fn more(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
+    let view = &stage.settings.view;
+    let of_techniques = [
+        ("Compare A | B", stage.is_comparing(), Command::Compare(Toggle::Switch)),
+        ("Freeze", view.freeze_fit, Command::ToggleFreeze),
+        ("Mark wrong pixels", view.marks != ErrorMarks::Off, Command::NextMarks),
+        ("Shadow map inset", view.inset != InsetMaps::Off, Command::NextInset),
+    ];
+    let always = [
+        ("Screenshot", false, Command::Screenshot(None)),
+        ("Copy a link", false, Command::CopyLink),
+        ("Help", false, Command::ToggleHelp),
+    ];
+    MenuButton::new("More").ui(ui, |ui| {
+        let count = if stage.draws_sample() { 0 } else { of_techniques.len() };
+        for (name, is_on, command) in of_techniques.into_iter().take(count).chain(always) {
+            if ui.add(Button::selectable(is_on, name)).clicked() {
+                output.commands.push(command);
+            }
+        }
     });
 }
 

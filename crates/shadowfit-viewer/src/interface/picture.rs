@@ -20,8 +20,9 @@ const POINTS_PER_NOTCH: f32 = 50.0;
 const BESIDE: f32 = 0.36;
 /// Distance of overlays from the edge of the picture, in points.
 const MARGIN: f32 = 12.0;
-/// Width of the handle around the bar between two pictures, in points.
+/// Width of the handle around the bar between two pictures, for a mouse and for a finger, in points.
 const GRIP: f32 = 12.0;
+const FINGER_GRIP: f32 = 36.0;
 
 /// A picture of the stage, and its texture in egui.
 struct Shot {
@@ -50,12 +51,14 @@ impl Shot {
 pub(crate) struct Pictures {
     main: Shot,
     beside: Shot,
+    /// Where a finger has asked for the reasons of a pixel, as shares of the picture: it leaves no pointer there.
+    tapped: Option<[f32; 2]>,
 }
 
 impl Pictures {
     pub(super) fn new(stage: &Stage, painter: &mut Painter) -> Self {
         let mut shot = || Shot::new(stage, painter);
-        Self { main: shot(), beside: shot() }
+        Self { main: shot(), beside: shot(), tapped: None }
     }
 
     /// Size of the picture, in pixels.
@@ -85,18 +88,18 @@ impl Pictures {
         }
     }
 
-    /// Shows the pictures in the whole of `ui`.
+    /// Shows the pictures in the whole of `ui`, with a legend where there are figures for it.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         stage: &mut Stage,
-        (input, figures): (&InterfaceInput<'_>, &Figures),
+        (input, figures): (&InterfaceInput<'_>, Option<&Figures>),
         output: &mut InterfaceOutput,
     ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         self.main.wanted = pixels(ui, rect.size());
-        pointer(ui, &response, rect, output);
+        self.pointer(ui, &response, rect, output);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         ui.painter().image(self.main.texture, rect, whole, Color32::WHITE);
         if let Some(names) = halves(stage) {
@@ -113,9 +116,41 @@ impl Pictures {
             ui.painter().rect_filled(rect, CornerRadius::ZERO, ui.visuals().extreme_bg_color);
         }
         loading(ui, input, rect);
-        if let (Some(card), Some(at)) = (stage.why(), response.hover_pos()) {
-            shadowfit_egui::why_overlay(ui.ctx(), at, &card);
+        if let (Some(card), Some([x, y])) = (stage.why(), output.hover) {
+            shadowfit_egui::why_overlay(ui.ctx(), rect.lerp_inside(Vec2::new(x, y)), &card);
         }
+    }
+
+    /// Handles mouse and fingers on the picture.
+    fn pointer(&mut self, ui: &Ui, response: &Response, rect: Rect, output: &mut InterfaceOutput) {
+        let share = |at: Pos2| [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()];
+        let (fingers, is_touch, is_gone) =
+            ui.input(|input| (input.multi_touch(), input.any_touches(), input.pointer.latest_pos().is_none()));
+        if let Some(fingers) = fingers.filter(|_| response.is_pointer_button_down_on()) {
+            output.pan = glam::Vec2::new(fingers.translation_delta.x, fingers.translation_delta.y);
+            output.pinch = fingers.zoom_delta.max(f32::MIN_POSITIVE).ln();
+            self.tapped = None;
+        } else if response.dragged() {
+            // A finger takes the picture with it; a mouse turns the head.
+            let delta = response.drag_delta() * if is_touch { -1.0 } else { ui.pixels_per_point() };
+            output.drag = glam::Vec2::new(delta.x, delta.y);
+            self.tapped = None;
+        }
+        if response.clicked() {
+            ui.memory_mut(egui::Memory::stop_text_input);
+            self.tapped = response.interact_pointer_pos().filter(|_| is_gone).map(share);
+        }
+        if response.double_clicked()
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            output.commands.push(Command::Focus(share(at)));
+            self.tapped = None;
+        }
+        if response.contains_pointer() {
+            output.wheel = wheel_notches(ui);
+            output.hover = response.hover_pos().filter(|_| !response.dragged()).map(share);
+        }
+        output.hover = output.hover.or(self.tapped);
     }
 
     /// The view from outside, in the upper right corner.
@@ -149,7 +184,8 @@ fn halves(stage: &Stage) -> Option<[String; 2]> {
 /// The bar between both halves of the picture, which can be dragged, and their names.
 fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, output: &mut InterfaceOutput) {
     let x = rect.left() + rect.width() * stage.split;
-    let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
+    let width = if ui.input(egui::InputState::has_touch_screen) { FINGER_GRIP } else { GRIP };
+    let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(width, rect.height()));
     let bar =
         ui.interact(grip, ui.scope_id().with("split"), Sense::drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
     let name = "Bar between A and B";
@@ -173,28 +209,6 @@ fn pixels(ui: &Ui, size: Vec2) -> [u32; 2] {
     [size.x, size.y].map(|side| ((side * scale).round() as u32).max(1))
 }
 
-/// Handles the pointer on the picture.
-fn pointer(ui: &Ui, response: &Response, rect: Rect, output: &mut InterfaceOutput) {
-    let scale = ui.pixels_per_point();
-    let share = |at: Pos2| [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()];
-    if response.dragged() {
-        let delta = response.drag_delta() * scale;
-        output.drag = glam::Vec2::new(delta.x, delta.y);
-    }
-    if response.clicked() {
-        ui.memory_mut(egui::Memory::stop_text_input);
-    }
-    if response.double_clicked()
-        && let Some(at) = response.interact_pointer_pos()
-    {
-        output.commands.push(Command::Focus(share(at)));
-    }
-    if response.contains_pointer() {
-        output.wheel = wheel_notches(ui);
-        output.hover = response.hover_pos().filter(|_| !response.dragged()).map(share);
-    }
-}
-
 /// Notches that the wheel was turned in this frame.
 fn wheel_notches(ui: &Ui) -> f32 {
     ui.input(|input| {
@@ -209,9 +223,11 @@ fn wheel_notches(ui: &Ui) -> f32 {
 }
 
 /// Shows the legend of the view over the picture.
-fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
+fn over(ui: &Ui, stage: &Stage, figures: Option<&Figures>, rect: Rect) {
     let view = &stage.settings.view;
-    shadowfit_egui::legend_overlay(ui.ctx(), rect, view, figures);
+    if let Some(figures) = figures {
+        shadowfit_egui::legend_overlay(ui.ctx(), rect, view, figures);
+    }
     let note = match view.mode {
         ViewMode::Final if !view.shadows => "Shadows are off",
         // Other techniques place their maps without counting visible points.

@@ -4,15 +4,19 @@ use egui::{Button, DragValue, RichText, Slider, Ui};
 use shadowfit_egui::{Command, Icon, icon_button, rename, with_keys};
 use shadowfit_params::tool::DAY;
 
-use super::InterfaceOutput;
+use super::{InterfaceOutput, narrow};
 use crate::stage::Stage;
 
 /// Least change of the time that counts as one, in seconds.
 const SCRUB_STEP: f32 = 0.006;
 
 pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output: &mut InterfaceOutput) {
+    let is_narrow = narrow::is_narrow(ui.max_rect().size());
     egui::Panel::bottom("timeline").show(ui, |ui| {
         ui.add_space(2.0);
+        if is_narrow {
+            return rows(ui, stage, frame_ms, output);
+        }
         ui.horizontal_wrapped(|ui| {
             animation(ui, stage, output);
             ui.separator();
@@ -22,13 +26,35 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output
                 ui.separator();
             }
             speed(ui, stage);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let frame = frame_ms.map_or_else(String::new, |ms| format!("{ms:.0} ms"));
-                ui.label(RichText::new(frame).weak()).on_hover_text("Time of a whole frame");
-            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| frame_time(ui, frame_ms));
         });
         ui.add_space(2.0);
     });
+}
+
+/// The same in two rows, whose sliders take what the rest leaves.
+fn rows(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output: &mut InterfaceOutput) {
+    /// Widths of all but the slider of a row, in points.
+    const REST: [f32; 2] = [204.0, 208.0];
+    let sliders = REST.map(|rest| (ui.available_width() - rest).max(0.0));
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = sliders[0];
+        animation(ui, stage, output);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| speed(ui, stage));
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = sliders[1];
+        if !stage.draws_sample() {
+            day(ui, stage, output);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| frame_time(ui, frame_ms));
+    });
+    ui.add_space(2.0);
+}
+
+fn frame_time(ui: &mut Ui, frame_ms: Option<f32>) {
+    let frame = frame_ms.map_or_else(String::new, |ms| format!("{ms:.0} ms"));
+    ui.label(RichText::new(frame).weak()).on_hover_text("Time of a whole frame");
 }
 
 /// Play, pause, and the time of the animation.

@@ -29,6 +29,8 @@ pub(crate) struct ArtefactShow {
     before: Option<(Settings, FlyCamera)>,
     /// The technique that shows or fixes it, until the user takes another one.
     technique: Technique,
+    /// The technique that shows it.
+    ill: Technique,
     found: bool,
     narration: String,
     changes: Vec<String>,
@@ -49,7 +51,7 @@ impl Stage {
     /// A sentence that says what to look for in the view of the artefact; empty where there is none.
     pub fn narration(&self) -> &str {
         let artefact = &self.artefact;
-        if artefact.shown.is_some() && !artefact.found { NOT_FOUND } else { &artefact.narration }
+        if self.is_missed() { NOT_FOUND } else { &artefact.narration }
     }
 
     /// Changes by the cure of the artefact, a line each.
@@ -72,7 +74,7 @@ impl Stage {
 
     /// Settings and camera from before the artefact on show. Where the technique was changed since, that technique and
     /// the present camera are kept.
-    fn before_artefact(&self) -> (Settings, FlyCamera) {
+    pub(crate) fn before_artefact(&self) -> (Settings, FlyCamera) {
         let mut settings = self.settings;
         match self.artefact.before.filter(|_| self.settings.technique == self.artefact.technique) {
             Some((before, camera)) => {
@@ -94,6 +96,7 @@ impl Stage {
             shown: Some(Shown { artefact: found.artefact, fixed: false }),
             before: Some(before),
             technique: found.settings.technique,
+            ill: found.settings.technique,
             found: found.shows,
             narration: found.narration,
             changes: Vec::new(),
@@ -107,6 +110,7 @@ impl Stage {
         }
         let before = self.artefact.before.unwrap_or((self.settings, self.camera)).0.technique;
         let shown = self.settings;
+        self.artefact.ill = shown.technique;
         let camera = self.camera.perspective(&self.settings.camera, 1.0);
         let seen = artefact::farthest_seen(&self.scene, self.settings.light.direction(), &camera);
         artefact::fix(&mut self.settings.technique, artefact, &before, seen);
@@ -118,6 +122,38 @@ impl Stage {
     /// Stops showing an artefact; settings and camera stay.
     pub fn close_artefact(&mut self) {
         self.artefact = ArtefactShow::default();
+    }
+
+    /// Whether no view of the scene shows the artefact on show.
+    pub(crate) fn is_missed(&self) -> bool {
+        self.artefact.shown.is_some() && !self.artefact.found
+    }
+
+    /// The technique that shows the artefact on show, also when it is fixed.
+    pub(crate) fn ill_technique(&self) -> Technique {
+        self.artefact.ill
+    }
+
+    /// Shows an artefact as a link has it: settings and camera are there already, `before` are those from before it, and
+    /// `ill` is the technique that shows it.
+    pub(crate) fn resume_artefact(
+        &mut self,
+        (artefact, fixed): (Artefact, bool),
+        before: (Settings, FlyCamera),
+        ill: Technique,
+    ) {
+        let settings = self.settings.with_technique(ill);
+        let lens = self.camera.perspective(&settings.camera, 1.0);
+        let search = Search { artefact, scene: self.scene.snapshot(), settings, lens };
+        self.artefact = ArtefactShow {
+            shown: Some(Shown { artefact, fixed }),
+            before: Some(before),
+            technique: self.settings.technique,
+            ill,
+            found: true,
+            narration: search.narrate(),
+            changes: if fixed { changes(&settings, &self.settings) } else { Vec::new() },
+        };
     }
 
     /// All texts about the artefact on show.

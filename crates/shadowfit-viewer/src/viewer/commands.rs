@@ -64,7 +64,7 @@ impl Viewer {
                 self.interface.context.set_theme(theme);
             }
             Command::Escape => self.escape(),
-            Command::Quit => self.window_requests.quit = true,
+            Command::Quit => self.window_requests.quit = self.page.is_none(),
             // Everything else needs a scene.
             _ if !self.has_scene => {
                 if self.line.is_some() {
@@ -81,8 +81,10 @@ impl Viewer {
             egui::Popup::close_all(context);
         } else if self.interface.help_open {
             self.interface.help_open = false;
+        } else if self.interface.drawer_open {
+            self.interface.drawer_open = false;
         } else {
-            self.window_requests.quit = true;
+            self.run(Command::Quit);
         }
     }
 
@@ -147,6 +149,7 @@ impl Viewer {
                 let text = self.interface.panel().figures_csv();
                 self.save_text(path, &text)
             }
+            Command::CopyLink => Ok(self.copy_link()),
             Command::CopyRust => {
                 let code = params::to_rust(&self.edited_technique());
                 self.interface.context.copy_text(code);

@@ -8,6 +8,7 @@ use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 use super::Viewer;
 use crate::cli::check_animation;
 use crate::files::{self, settings_of_png};
+use crate::link::LinkedScene;
 use crate::loading::Loading;
 use crate::playback::Player;
 use crate::sample_figures::Measuring;
@@ -18,8 +19,21 @@ use crate::undo::History;
 impl Viewer {
     /// Starts loading a scene; the old one is shown until then.
     pub(super) fn open(&mut self, source: SceneSource) {
+        // Another scene than that of a link which is being followed ends that, unless the link waits for a person.
+        self.link.take_if(|link| link.scene.request().is_none());
+        let source = self.of_link(source);
         let line = self.line.clone();
         self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
+    }
+
+    /// The source, with the scene of the file that a link of that file asks for.
+    fn of_link(&self, source: SceneSource) -> SceneSource {
+        match self.link.as_ref().map(|link| &link.scene) {
+            Some(LinkedScene::File { name, index: Some(index) }) if *name == source.label() => {
+                source.clone().with_index(Some(*index)).unwrap_or(source)
+            }
+            _ => source,
+        }
     }
 
     /// Opens a file: a picture, a technique or a scene.
@@ -130,6 +144,7 @@ impl Viewer {
             self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));
         }
         self.interface.scene_changed(&self.stage);
+        self.follow_on();
     }
 }
 

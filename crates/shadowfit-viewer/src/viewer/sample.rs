@@ -12,6 +12,10 @@ impl Viewer {
         let variant = variant.and_then(|index| sample.variants.get(index));
         self.stage.set_sample(sample, variant);
         self.source = SceneSource::Sample { sample, variant };
+        // As it would open: what was set besides stays a difference.
+        let (own, now) = (&mut self.own_settings, &self.stage.settings);
+        (own.technique, own.light, own.camera) = (now.technique, now.light, now.camera);
+        (own.view.mode, own.view.shadows, own.view.play) = (now.view.mode, now.view.shadows, now.view.play);
         self.measuring = Measuring::default();
         self.window_requests.new_title = true;
     }

@@ -11,6 +11,7 @@ use shadowfit_study::NamedTechnique;
 
 use super::Viewer;
 use crate::cli::Arguments;
+use crate::link::Link;
 use crate::saved::{Saved, Store};
 use crate::script::Line;
 use crate::source::SceneSource;
@@ -22,6 +23,8 @@ pub(crate) struct Start {
     /// The scene that they name, if any.
     pub(crate) source: Option<SceneSource>,
     pub(crate) script: Vec<Line>,
+    /// The link to follow.
+    link: Option<Link>,
     /// Scene, settings and camera of the last time, until the scene of the start is there.
     pub(super) kept: Option<(SceneSource, Settings, Option<FlyCamera>)>,
     /// Whether the scene of the start is still being loaded.
@@ -42,7 +45,8 @@ impl Start {
         // Wrong arguments are reported at once, except for what depends on the settings of the last time.
         arguments.apply_what_is_there(&mut Settings::default())?;
         let script = arguments.lines()?;
-        Ok(Self { arguments: arguments.clone(), source, script, kept: None, is_pending: true, folder: None })
+        let link = arguments.link.as_deref().map(Link::parse).transpose().context("--link")?;
+        Ok(Self { arguments: arguments.clone(), source, script, link, kept: None, is_pending: true, folder: None })
     }
 
     /// Puts the files that a script saves into a folder.
@@ -72,14 +76,22 @@ impl Viewer {
             self.say(message);
         }
         let saved = saved.unwrap_or_default();
+        let link = self.start.link.take();
         let source = self.start.source.clone().unwrap_or_else(|| saved.scene.clone());
-        if self.store.is_some() {
+        // A link says all that it wants otherwise than the scene has it.
+        if self.store.is_some() && link.is_none() {
             self.start.kept = Some((saved.scene.clone(), saved.settings, saved.camera));
         }
         self.presets = saved.presets.iter().map(super::commands::preset).collect();
         self.saved = saved;
         self.run(Command::SetTheme(self.saved.theme.into()));
-        self.open(source);
+        if let Some(link) = link {
+            self.follow(link);
+        }
+        if self.loading.is_none() {
+            // No link, or one of a file that is asked for, and may be the one of the arguments.
+            self.open(source);
+        }
     }
 
     /// Sets up the scene of the start: its own settings, then those of the last time, then the arguments.

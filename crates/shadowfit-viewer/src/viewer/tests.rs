@@ -19,11 +19,14 @@ use crate::source::SceneSource;
 use crate::stage::Stage;
 
 mod bars;
+mod links;
+mod narrow;
 mod samples;
 mod scenes;
 mod scripts;
 mod sides;
 mod starts;
+mod touch;
 
 const SIZE: [u32; 2] = [640, 360];
 const FRAME: f32 = 1.0 / 30.0;

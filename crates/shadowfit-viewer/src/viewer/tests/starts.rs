@@ -19,6 +19,21 @@ fn saved(folder: &Path, scene: &str) -> std::path::PathBuf {
 }
 
 #[test]
+fn gpu_a_first_start_has_the_colours_that_the_system_prefers_until_a_person_chooses() {
+    let mut viewer = ready(&[], None);
+    let prefer = |viewer: &mut Viewer, theme| {
+        let input = RawInput { system_theme: Some(theme), ..Default::default() };
+        let _ = viewer.frame(input, FRAME);
+        viewer.interface.context.theme()
+    };
+    for theme in [egui::Theme::Light, egui::Theme::Dark, egui::Theme::Light] {
+        assert_eq!(prefer(&mut viewer, theme), theme);
+    }
+    run(&mut viewer, Command::SetTheme(egui::ThemePreference::Dark));
+    assert_eq!(prefer(&mut viewer, egui::Theme::Light), egui::Theme::Dark);
+}
+
+#[test]
 fn gpu_a_damaged_file_is_told_in_the_panel_once_the_scene_is_there() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("viewer.toml");

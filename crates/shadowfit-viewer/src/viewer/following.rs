@@ -1,0 +1,124 @@
+//! Links: what the viewer shows as a [`Link`], and back.
+
+use shadowfit_classics::SampleValues;
+use shadowfit_params::tool::Settings;
+
+use super::Viewer;
+use crate::export::{changed, differences};
+use crate::link::{Link, LinkedArtefact, LinkedScene, apply};
+use crate::undo::History;
+
+impl Viewer {
+    /// The link that brings back what is on show: scene, settings, camera, comparison and artefact.
+    pub(crate) fn link(&self) -> Link {
+        let stage = &self.stage;
+        let now = &stage.settings;
+        let other = stage.other_technique().map(|other| (differences(&now.with_technique(other), now), stage.split));
+        // A scene opens at this time, if not in the pose of its animation.
+        let stands = !now.view.play && stage.seconds() != 0.0;
+        let sample = stage.sample().map(|show| changed(show.sample, show.variant, &show.values).collect::<Vec<_>>());
+        Link {
+            scene: LinkedScene::of(&self.source),
+            animation: stage.animation,
+            camera: Some(stage.camera),
+            seconds: stands.then(|| stage.seconds()),
+            settings: differences(now, &self.own_settings),
+            sample: sample.into_iter().flatten().map(|(option, value)| (option.to_owned(), value)).collect(),
+            other,
+            artefact: self.linked_artefact(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// The artefact on show, unless it was not found.
+    fn linked_artefact(&self) -> Option<LinkedArtefact> {
+        let shown = self.stage.shown().filter(|_| !self.stage.is_missed())?;
+        let now = &self.stage.settings;
+        let (settings, camera) = self.stage.before_artefact();
+        let ill = now.with_technique(self.stage.ill_technique());
+        Some(LinkedArtefact {
+            artefact: shown.artefact,
+            fixed: shown.fixed,
+            before: (camera != self.stage.camera).then_some(camera),
+            was: differences(&settings, now),
+            ill: if shown.fixed { differences(&ill, now) } else { Vec::new() },
+        })
+    }
+
+    /// Opens the scene of a link, and brings back what it says once that is there. A file cannot be opened by itself: the
+    /// panel asks for it.
+    pub(crate) fn follow(&mut self, link: Link) {
+        if self.has_scene && self.loading.is_none() && link.is_of(&self.source) {
+            return self.bring_back(&link);
+        }
+        if let LinkedScene::Known(source) = &link.scene {
+            self.open(source.clone());
+        }
+        self.link = Some(link);
+    }
+
+    /// Brings back what the link says that waits for the scene that has just been opened.
+    pub(super) fn follow_on(&mut self) {
+        if let Some(link) = self.link.take_if(|link| link.is_of(&self.source)) {
+            self.bring_back(&link);
+        }
+    }
+
+    /// Brings back everything that a link of the scene on show says.
+    fn bring_back(&mut self, link: &Link) {
+        let mut notes = link.notes.clone();
+        let mut settings = self.own_settings;
+        apply(&link.settings, &mut settings);
+        if let Some(show) = self.stage.sample() {
+            let (sample, variant) = (show.sample, show.variant);
+            let own = SampleValues::of_variant(sample, variant).unwrap_or_else(|_| SampleValues::new(sample));
+            self.stage.set_sample_values(own);
+            for (option, value) in &link.sample {
+                notes.extend(self.stage.set_sample_text(option, value).err().map(|error| format!("{error:#}")));
+            }
+        }
+        self.searching = None;
+        self.interface.edits_other = false;
+        self.stage.settings = settings;
+        self.stage.animation = link.animation;
+        self.stage.compare_with(link.other.as_ref().map(|(other, _)| with(other, &settings).technique));
+        if let Some((_, split)) = &link.other {
+            self.stage.set_split(*split);
+        }
+        if let Some(camera) = link.camera {
+            self.stage.set_camera(camera);
+        }
+        let seconds = link.seconds.unwrap_or(0.0);
+        if seconds != self.stage.seconds() {
+            self.stage.set_time(seconds);
+        }
+        self.stage.close_artefact();
+        if let Some(linked) = &link.artefact {
+            let before = (with(&linked.was, &settings), linked.before.unwrap_or(self.stage.camera));
+            let ill = with(&linked.ill, &settings).technique;
+            self.stage.resume_artefact((linked.artefact, linked.fixed), before, ill);
+        }
+        self.history = History::default();
+        if !notes.is_empty() {
+            self.say(notes.join(" "));
+        }
+    }
+
+    /// Copies the link of what is on show: of the page in which the viewer runs, or the fragment alone.
+    pub(super) fn copy_link(&self) -> String {
+        let page = self.page.as_deref().unwrap_or_default();
+        self.interface.context.copy_text(format!("{page}{}", self.link().to_fragment()));
+        if self.page.is_some() {
+            "Copied a link to what is on show".to_owned()
+        } else {
+            "Copied what is on show, for `viewer --link`".to_owned()
+        }
+    }
+}
+
+/// Settings with some parameters changed.
+fn with(pairs: &crate::link::Pairs, settings: &Settings) -> Settings {
+    let mut changed = *settings;
+    apply(pairs, &mut changed);
+    changed
+}

@@ -1,0 +1,176 @@
+//! Links: another viewer that follows one shows the same.
+
+use glam::DVec3;
+
+use super::*;
+use crate::link::Link;
+use crate::stage::ArtefactShow;
+use crate::undo::State;
+
+/// A second viewer that has followed the link of the first one.
+fn follower(first: &Viewer, arguments: &[&str]) -> Viewer {
+    let fragment = first.link().to_fragment();
+    let mut second = ready(arguments, None);
+    second.follow(Link::parse(&fragment).expect(&fragment));
+    until(&mut second, "the scene of the link", |viewer| viewer.loading.is_none());
+    assert!(second.link.is_none(), "{fragment}");
+    second
+}
+
+fn assert_same(first: &Viewer, second: &Viewer) {
+    let fragment = first.link().to_fragment();
+    // Of the settings from before an artefact only those matter that it changed.
+    let state = |viewer: &Viewer| State { artefact: ArtefactShow::default(), ..viewer.state() };
+    assert_eq!(state(first), state(second), "{fragment}");
+    let [a, b] = [&first.stage, &second.stage];
+    assert_eq!((a.shown(), a.narration(), a.cure_changes()), (b.shown(), b.narration(), b.cure_changes()));
+    assert_eq!((a.before_artefact(), a.ill_technique()), (b.before_artefact(), b.ill_technique()), "{fragment}");
+    let place = |viewer: &Viewer| (viewer.stage.camera, viewer.stage.split, viewer.stage.seconds());
+    assert_eq!(place(first), place(second), "{fragment}");
+    assert_eq!(first.source, second.source);
+    assert_eq!(second.link().to_fragment(), fragment);
+}
+
+fn set(viewer: &mut Viewer, id: &str, value: &str) {
+    run(viewer, Command::Set(id.to_owned(), value.to_owned()));
+    assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains(" = ")), "{id}={value}");
+}
+
+#[test]
+fn gpu_who_follows_a_link_sees_the_same() {
+    let mut first = ready(&["forest"], None);
+    run(&mut first, Command::Technique("stable-4".to_owned()));
+    for (id, value) in [
+        ("splits.count", "3"),
+        ("splits.scheme", "practical"),
+        ("splits.lambda", "0.37"),
+        ("bias.slope", "1.3"),
+        ("map.filter", "point"),
+        ("light.hour", "8.25"),
+        ("camera.fov_y", "63.7"),
+        ("camera.near", "0.3"),
+        ("view.marks", "outline"),
+        ("view.inset", "all"),
+        ("view.inset_map", "2"),
+    ] {
+        set(&mut first, id, value);
+    }
+    run(&mut first, Command::View(ViewMode::Error));
+    run(&mut first, Command::Compare(Toggle::On));
+    first.interface.edits_other = true;
+    set(&mut first, "bias.constant", "0.123");
+    first.interface.edits_other = false;
+    run(&mut first, Command::Split(0.3));
+    run(&mut first, Command::Scrub(1.7));
+    let (eye, target) = ([3.1, 2.7, 1.0 / 3.0], [0.1, 0.2, -7.0]);
+    run(&mut first, Command::LookAt { eye, target });
+    let second = follower(&first, &["plain", "--technique", "xna-1"]);
+    assert_same(&first, &second);
+    assert!(second.message.is_none());
+}
+
+#[test]
+fn gpu_a_link_of_the_scene_on_show_undoes_all_else() {
+    let mut first = ready(&["plain"], None);
+    set(&mut first, "bias.slope", "1.3");
+    let mut second = ready(&["plain", "--technique", "xna-1"], None);
+    set(&mut second, "view.shadows", "off");
+    run(&mut second, Command::Compare(Toggle::On));
+    second.follow(first.link());
+    assert!(second.loading.is_none());
+    assert_same(&first, &second);
+}
+
+#[test]
+fn gpu_an_artefact_comes_back_with_its_card_shown_and_fixed() {
+    let mut first = ready(&[], None);
+    run(&mut first, Command::ShowArtefact(Artefact::Acne));
+    until(&mut first, "acne", |viewer| viewer.stage.shown().is_some());
+    run(&mut first, Command::NextMarks);
+    assert_same(&first, &follower(&first, &["plain"]));
+    run(&mut first, Command::FixArtefact);
+    let mut second = follower(&first, &["plain"]);
+    assert_same(&first, &second);
+    assert!(!second.stage.cure_changes().is_empty() && second.stage.narration().contains("texel"));
+    // What was before it is known, too.
+    for viewer in [&mut first, &mut second] {
+        run(viewer, Command::ShowArtefact(Artefact::Aliasing));
+        until(viewer, "aliasing", |viewer| viewer.stage.shown().is_some_and(|shown| !shown.fixed));
+    }
+    assert_same(&first, &second);
+}
+
+#[test]
+fn gpu_a_sample_comes_back_in_its_variant_with_its_options() {
+    let mut first = ready(&["--sample", "xna-shadow-mapping"], None);
+    set(&mut first, "view.inset_map", "3");
+    run(&mut first, Command::ShowSampleVariant(Some(0)));
+    set(&mut first, "sample.format", "r16f");
+    let second = follower(&first, &[]);
+    assert_same(&first, &second);
+    set(&mut first, "sample.shadows", "ours");
+    set(&mut first, "bias.slope", "1.3");
+    assert_same(&first, &follower(&first, &["--sample", "xna-shadow-mapping/acne"]));
+}
+
+/// A scene of a triangle as a file.
+fn write_scene(path: &Path) {
+    let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,0,1]}]}"#;
+    std::fs::write(path, gltf).expect("written");
+}
+
+#[test]
+fn gpu_a_link_of_a_file_asks_for_it_and_waits() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [here, there] = ["here", "there"].map(|name| folder.path().join(name));
+    for folder in [&here, &there] {
+        std::fs::create_dir(folder).expect("a folder");
+        write_scene(&folder.join("my town.gltf"));
+    }
+    let mut first = ready(&[&here.join("my town.gltf").display().to_string()], None);
+    set(&mut first, "bias.slope", "1.3");
+    run(&mut first, Command::LookAt { eye: [1.0, 2.0, 3.0], target: [0.0; 3] });
+    let fragment = first.link().to_fragment();
+    assert!(fragment.contains("file=my%20town.gltf&") && !fragment.contains("here"), "{fragment}");
+    let mut second = ready(&["--link", &format!("https://example.org/{fragment}")], None);
+    let request = |viewer: &Viewer| viewer.link.as_ref().and_then(|link| link.scene.request());
+    assert_eq!(request(&second).as_deref(), Some("This link is of my town.gltf: drop that file here"));
+    run(&mut second, Command::Open("plain".to_owned()));
+    until(&mut second, "another scene", |viewer| viewer.loading.is_none());
+    assert!(request(&second).is_some(), "it still waits");
+    run(&mut second, Command::OpenFile(there.join("my town.gltf")));
+    until(&mut second, "the file", |viewer| viewer.loading.is_none());
+    assert_eq!((request(&second), &second.stage.settings), (None, &first.stage.settings));
+    assert_eq!(second.stage.camera.position, DVec3::new(1.0, 2.0, 3.0));
+}
+
+#[test]
+fn gpu_the_link_of_the_start_wins_and_a_bad_one_ends_it() {
+    let link = "#scene=plain&bias.slope=1.5&new.thing=1";
+    let viewer = ready(&["arcade", "--set", "bias.slope=2", "--link", link], None);
+    assert_eq!((&viewer.source, viewer.stage.settings.technique.bias.slope), (&SceneSource::from_text("plain"), 1.5));
+    assert!(viewer.message.is_some_and(|message| message.text.contains("new.thing")));
+    let bad = Arguments::parse_from(["viewer", "--link", "#bias.slope=x"]);
+    let error = format!("{:#}", Start::new(&bad).expect_err("no number"));
+    assert!(error.contains("--link") && error.contains("bias.slope=x"), "{error}");
+}
+
+#[test]
+fn gpu_a_page_copies_links_and_cannot_be_quit() {
+    let mut viewer = ready(&["plain"], None);
+    viewer.page = Some("https://example.org/view/".to_owned());
+    for command in [Command::Quit, Command::Escape] {
+        run(&mut viewer, command);
+        assert!(!viewer.window_requests.quit);
+    }
+    viewer.ask(Command::CopyLink);
+    frame(&mut viewer);
+    let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(640.0, 360.0)));
+    let (_, output) = viewer.frame(RawInput { screen_rect, ..Default::default() }, FRAME);
+    let expected = format!("https://example.org/view/{}", viewer.link().to_fragment());
+    assert_eq!(output.commands, [egui::OutputCommand::CopyText(expected)]);
+}
