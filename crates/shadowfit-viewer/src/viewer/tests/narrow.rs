@@ -116,7 +116,7 @@ fn gpu_every_control_of_the_panel_is_reached_by_scrolling() {
         if size == UPRIGHT {
             click(&mut viewer, size, "Tune");
         }
-        let inside = Pos2::new(size[0] - 100.0, 0.5 * size[1]);
+        let inside = Pos2::new(size[0] - 100.0, 0.8 * size[1]);
         let wheel = |y: f32| Event::MouseWheel {
             unit: egui::MouseWheelUnit::Point,
             delta: vec2(0.0, y),
