@@ -23,53 +23,57 @@ pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, command: &mut
         }
     });
     if let Some(shown) = shown {
-        *command = artefact_card(ui, shown).or(command.take());
+        *command = card_of(ui, shown, false).or(command.take());
     }
 }
 
-/// The card of the artefact that is shown, in the whole width of `ui`: what to look for, what it is, and the button that
-/// fixes it. The panel has it; a host shows it over the picture where the panel is closed.
+/// What to look for in the picture of the artefact that is shown, what its cure changed, and the button that fixes it, in
+/// the whole width of `ui`: for over the picture, where the panel, which has more of it, is closed.
 pub fn artefact_card(ui: &mut Ui, shown: &ShownArtefact<'_>) -> Option<Command> {
-    let mut command = None;
-    show_card(ui, shown, &mut command);
-    command
+    card_of(ui, shown, true)
 }
 
-fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, command: &mut Option<Command>) {
+/// The card; a brief one does not explain the artefact where it is narrated.
+fn card_of(ui: &mut Ui, shown: &ShownArtefact<'_>, is_brief: bool) -> Option<Command> {
     let ShownArtefact { artefact, fixed, narration, changes: changed } = *shown;
     let palette = Palette::of(ui);
     let accent = if fixed { palette.success } else { palette.warning };
+    let mut command = None;
     card(ui, Some(accent), |ui| {
         ui.horizontal(|ui| {
             let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
             ui.label(RichText::new(title).color(accent));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if icon_button(ui, Icon::X, "Close the artefact", "Ends the demonstration.").clicked() {
-                    *command = Some(Command::CloseArtefact);
+                    command = Some(Command::CloseArtefact);
                 }
             });
         });
-        if !narration.is_empty() {
+        let is_to_be_seen = !(is_brief && fixed);
+        if is_to_be_seen && !narration.is_empty() {
             ui.add(Label::new(RichText::new(narration).strong()).wrap());
         }
-        let text = if fixed { artefact.cure() } else { artefact.explanation() };
-        ui.add(Label::new(text).wrap());
-        if !fixed {
+        if !is_brief || narration.is_empty() {
+            let text = if fixed { artefact.cure() } else { artefact.explanation() };
+            ui.add(Label::new(text).wrap());
+        }
+        if !fixed && !is_brief {
             caption(ui, &format!("{} marks the wrong pixels.", keys_of(&Command::NextMarks)));
         }
         ui.add_space(2.0);
         if fixed {
             changes(ui, changed);
             if ui.add_sized([ui.available_width(), at_least(ui, 28.0)], Button::new("Show again")).clicked() {
-                *command = Some(Command::ShowArtefact(artefact));
+                command = Some(Command::ShowArtefact(artefact));
             }
         } else if main_button(ui, "Fix", keys_of(&Command::FixArtefact), palette.success_fill)
             .on_hover_text(artefact.cure())
             .clicked()
         {
-            *command = Some(Command::FixArtefact);
+            command = Some(Command::FixArtefact);
         }
     });
+    command
 }
 
 /// What was changed, a line each.

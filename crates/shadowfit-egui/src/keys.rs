@@ -105,7 +105,9 @@ pub fn key_table(layout: KeyLayout) -> Vec<KeyGroup> {
         group("Gamepad", gamepad()),
     ];
     if layout == KeyLayout::Browser {
-        groups.iter_mut().for_each(|group| group.keys.retain(|line| line.does != QUIT));
+        for group in &mut groups {
+            group.keys.retain(|line| line.does != QUIT);
+        }
     }
     groups
 }

@@ -22,6 +22,7 @@ pub(crate) use paint::{Canvas, Layout, red_first};
 pub(crate) use picture::Pictures;
 
 /// egui, the panel, and the pictures between them.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of the window of its own")]
 pub(crate) struct Interface {
     pub(crate) context: egui::Context,
     painter: Painter,

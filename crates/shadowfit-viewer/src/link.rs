@@ -118,37 +118,31 @@ impl Link {
 
     /// All keys and values but the version.
     fn pairs(&self) -> Pairs {
-        let mut pairs = Pairs::new();
-        let mut put = |key: &str, value: String| pairs.push((key.to_owned(), value));
-        match &self.scene {
-            LinkedScene::Known(source) => put("scene", source.text()),
-            LinkedScene::File { name, index } => {
-                put("file", name.clone());
-                index.iter().for_each(|index| put("scene_index", index.to_string()));
-            }
-        }
-        if self.animation > 0 {
-            put("animation", self.animation.to_string());
-        }
-        self.camera.iter().for_each(|camera| put("camera", camera_text(camera)));
-        self.seconds.iter().for_each(|seconds| put("time", seconds.to_string()));
-        let mut put_all = |prefix: &str, from: &Pairs| {
-            from.iter().for_each(|(key, value)| put(&format!("{prefix}{key}"), value.clone()));
+        let (scene, file, index) = match &self.scene {
+            LinkedScene::Known(source) => (Some(source.text()), None, None),
+            LinkedScene::File { name, index } => (None, Some(name.clone()), index.map(|index| index.to_string())),
         };
-        put_all("", &self.settings);
-        put_all(OPTION_PREFIX, &self.sample);
+        let animation = (self.animation > 0).then(|| self.animation.to_string());
+        let mut pairs = given([
+            ("scene", scene),
+            ("file", file),
+            ("scene_index", index),
+            ("animation", animation),
+            ("camera", self.camera.as_ref().map(camera_text)),
+            ("time", self.seconds.map(|seconds| seconds.to_string())),
+        ]);
+        pairs.extend(self.settings.iter().cloned());
+        pairs.extend(with_prefix(OPTION_PREFIX, &self.sample));
         if let Some((other, split)) = &self.other {
-            put_all(OTHER, other);
-            pairs.push(("split".to_owned(), split.to_string()));
+            pairs.extend(given([("split", Some(split.to_string()))]));
+            pairs.extend(with_prefix(OTHER, other));
         }
         if let Some(shown) = &self.artefact {
             let name = ARTEFACTS.iter().find(|(_, artefact)| *artefact == shown.artefact).map_or("", |(name, _)| name);
             let fixed = if shown.fixed { ",fixed" } else { "" };
-            pairs.push(("artefact".to_owned(), format!("{name}{fixed}")));
-            pairs.extend(shown.before.iter().map(|camera| ("before".to_owned(), camera_text(camera))));
-            for (prefix, from) in [(WAS, &shown.was), (ILL, &shown.ill)] {
-                pairs.extend(from.iter().map(|(key, value)| (format!("{prefix}{key}"), value.clone())));
-            }
+            let before = shown.before.as_ref().map(camera_text);
+            pairs.extend(given([("artefact", Some(format!("{name}{fixed}"))), ("before", before)]));
+            pairs.extend(with_prefix(WAS, &shown.was).chain(with_prefix(ILL, &shown.ill)));
         }
         pairs
     }
@@ -175,6 +169,15 @@ impl Link {
     pub(crate) fn is_of(&self, source: &SceneSource) -> bool {
         self.scene == LinkedScene::of(source)
     }
+}
+
+/// The keys that have a value.
+fn given<const N: usize>(pairs: [(&str, Option<String>); N]) -> Pairs {
+    pairs.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect()
+}
+
+fn with_prefix(prefix: &str, pairs: &Pairs) -> impl Iterator<Item = (String, String)> {
+    pairs.iter().map(move |(key, value)| (format!("{prefix}{key}"), value.clone()))
 }
 
 /// A link that is being read.

@@ -45,6 +45,8 @@ pub(crate) struct Host {
     pub(crate) presets: Vec<UserPreset>,
     pub(crate) help: bool,
     pub(crate) commands: Vec<Command>,
+    /// Width of the panel, where it is not its own.
+    pub(crate) width: Option<f32>,
     /// What the panel takes, margins included.
     pub(crate) panel_rect: Option<Rect>,
     /// Right end of what the panel holds.
@@ -57,27 +59,30 @@ impl Host {
         let window = ui.ctx().content_rect();
         let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(window));
         ui.set_clip_rect(window);
-        let response = egui::Panel::right("tuning").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
-            let mut input = PanelInput::new(
-                &mut self.settings,
-                &self.figures,
-                SceneLine { name: "Courtyard", triangles: 262_144, notes: &self.notes },
-            );
-            input.artefact = self.shown.artefact.map(|artefact| ShownArtefact {
-                artefact,
-                fixed: self.shown.fixed,
-                narration: &self.shown.narration,
-                changes: &self.shown.changes,
+        let response = egui::Panel::right("tuning")
+            .exact_size(self.width.unwrap_or(PANEL_WIDTH))
+            .resizable(false)
+            .show(ui, |ui| {
+                let mut input = PanelInput::new(
+                    &mut self.settings,
+                    &self.figures,
+                    SceneLine { name: "Courtyard", triangles: 262_144, notes: &self.notes },
+                );
+                input.artefact = self.shown.artefact.map(|artefact| ShownArtefact {
+                    artefact,
+                    fixed: self.shown.fixed,
+                    narration: &self.shown.narration,
+                    changes: &self.shown.changes,
+                });
+                input.compare = self.compare.as_mut().map(|(other, edits_other)| Compare { other, edits_other });
+                input.tune = self.tune;
+                input.card = self.card;
+                input.changes = self.changes;
+                input.presets = &self.presets;
+                input.message = self.message;
+                self.commands.extend(self.panel.show(ui, input).command);
+                self.content_right = ui.min_rect().right();
             });
-            input.compare = self.compare.as_mut().map(|(other, edits_other)| Compare { other, edits_other });
-            input.tune = self.tune;
-            input.card = self.card;
-            input.changes = self.changes;
-            input.presets = &self.presets;
-            input.message = self.message;
-            self.commands.extend(self.panel.show(ui, input).command);
-            self.content_right = ui.min_rect().right();
-        });
         self.panel_rect = Some(response.response.rect);
         help_overlay(ui.ctx(), &mut self.help);
     }

@@ -6,7 +6,7 @@ use egui::{Rect, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use shadowfit::settings::SplitScheme;
-use shadowfit_egui::{Artefact, PANEL_WIDTH, Tune};
+use shadowfit_egui::{Artefact, PANEL_WIDTH, Tune, size_for_fingers};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{Kind, Number, PARAMETERS, Value};
 
@@ -138,6 +138,27 @@ fn no_text_is_clipped_in_any_state_theme_or_scale() {
             open_sections(&mut harness);
             assert_no_text_is_clipped(&harness, &format!("{name}, {theme:?}, scale {scale}"));
             assert_fits(&harness);
+        }
+    }
+}
+
+#[test]
+fn no_text_is_clipped_in_the_drawer_of_a_phone() {
+    /// Nine tenths of 390 points.
+    const WIDTH: f32 = 351.0;
+    for (name, mut host) in all_states() {
+        (host.settings, host.width) = (everything(SplitScheme::Practical(0.5)), Some(WIDTH));
+        let harness = builder(Vec2::new(WIDTH, 2.0 * HEIGHT), Theme::Dark, 1.0);
+        let mut harness = harness.build_ui_state(|ui, host: &mut Host| host.show(ui), host);
+        size_for_fingers(&harness.ctx, true);
+        harness.run();
+        open_sections(&mut harness);
+        assert_no_text_is_clipped(&harness, name);
+        let right = harness.state().content_right;
+        assert!(right <= WIDTH, "{name}: the content ends at {right}");
+        for role in [Role::Button, Role::ComboBox, Role::Slider, Role::CheckBox, Role::DisclosureTriangle] {
+            let low = harness.query_all_by_role(role).find(|node| node.rect().height() < 35.5);
+            assert!(low.is_none(), "{name}: {:?}", low.map(|node| (node.accesskit_node().label(), node.rect())));
         }
     }
 }

@@ -38,7 +38,7 @@ impl Interface {
         ui.set_clip_rect(window);
         let beside = ui.interact(window, Id::unique("beside the drawer"), Sense::click_and_drag());
         beside.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Beside the panel"));
-        ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(150));
+        ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(190));
         let width = PANEL_WIDTH.min(DRAWER * window.width());
         let place = Rect::from_min_max(window.right_top() - vec2(width, 0.0), window.max);
         // What lies in the drawer between its controls is not beside it.

@@ -139,7 +139,7 @@ impl Stage {
     pub(crate) fn resume_artefact(
         &mut self,
         (artefact, fixed): (Artefact, bool),
-        before: (Settings, FlyCamera),
+        before: &(Settings, FlyCamera),
         ill: Technique,
     ) {
         let settings = self.settings.with_technique(ill);
@@ -147,7 +147,7 @@ impl Stage {
         let search = Search { artefact, scene: self.scene.snapshot(), settings, lens };
         self.artefact = ArtefactShow {
             shown: Some(Shown { artefact, fixed }),
-            before: Some(before),
+            before: Some(*before),
             technique: self.settings.technique,
             ill,
             found: true,

@@ -96,7 +96,7 @@ impl Viewer {
         if let Some(linked) = &link.artefact {
             let before = (with(&linked.was, &settings), linked.before.unwrap_or(self.stage.camera));
             let ill = with(&linked.ill, &settings).technique;
-            self.stage.resume_artefact((linked.artefact, linked.fixed), before, ill);
+            self.stage.resume_artefact((linked.artefact, linked.fixed), &before, ill);
         }
         self.history = History::default();
         if !notes.is_empty() {

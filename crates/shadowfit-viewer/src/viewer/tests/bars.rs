@@ -37,8 +37,10 @@ fn click(viewer: &mut Viewer, name: &str, to_the_right: f32) {
 }
 
 fn with_names() -> Viewer {
-    let viewer = ready(&[], None);
+    let mut viewer = ready(&[], None);
     viewer.interface.context.enable_accesskit();
+    // The window was narrow until now, and had other bars.
+    (0..3).for_each(|_| drop(wide_frame(&mut viewer, Vec::new())));
     viewer
 }
 
