@@ -2,13 +2,9 @@
 
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
-<<<<<<< HEAD
-use crate::read_back::{ReadBack, ReadError};
-=======
 use crate::encoded::Encoded;
 use crate::gpu::is_opengl;
-use crate::wait::waiting;
->>>>>>> 38a414e (WebGL2: maps are mended and of any number, and the renderer draws all its views)
+use crate::read_back::{ReadBack, ReadError};
 
 /// Colour format of render targets, as the renderer writes it.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -119,7 +115,8 @@ impl RenderTarget {
 
     /// Begins to read the picture: sRGB pixels, four bytes each, rows from the top.
     pub fn read_back(&self, gpu: &Gpu) -> ReadBack {
-        ReadBack::new(gpu, &self.color, self.size, 4)
+        let texture = self.encoded.as_ref().map_or(&self.color, |encoded| &encoded.texture);
+        ReadBack::new(gpu, texture, self.size, 4)
     }
 
     /// Waits for the picture and returns its sRGB pixels, four bytes each, rows from the top.
@@ -128,11 +125,7 @@ impl RenderTarget {
     ///
     /// [`ReadError`] if the device was lost or does not answer.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
-<<<<<<< HEAD
         self.read_back(gpu).wait(gpu)
-=======
-        read_texture(gpu, self.encoded.as_ref().map_or(&self.color, |encoded| &encoded.texture), self.size, 4)
->>>>>>> 38a414e (WebGL2: maps are mended and of any number, and the renderer draws all its views)
     }
 }
 
