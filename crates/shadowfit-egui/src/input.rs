@@ -238,7 +238,7 @@ pub enum Part {
     UserPresets,
     /// Undo and redo.
     Undo,
-    /// Copying as Rust code or as a command line.
+    /// Copying as a link, as Rust code or as a command line.
     Copy,
     /// Saving the picture.
     Screenshot,

@@ -40,15 +40,15 @@ pub(crate) fn command_line(
 }
 
 /// The parameters that differ between two settings, by id, with their values in the first: set in this order on the
-/// second, they make it the first.
+/// second, they make it the first. What lies out of its range is written as the nearest value within, which can be read.
 pub(crate) fn differences(settings: &Settings, own: &Settings) -> Vec<(String, String)> {
     // Parameters that depend on a choice come after that choice in the table.
     let mut reached = *own;
     let mut differences = Vec::new();
     for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
         if !parameter.is_equal(settings, &reached) {
-            differences.push((parameter.id.to_owned(), params::format_value(settings, parameter)));
             parameter.copy(&mut reached, settings);
+            differences.push((parameter.id.to_owned(), params::format_value(&reached, parameter)));
         }
     }
     differences

@@ -7,7 +7,7 @@ use std::sync::mpsc::channel;
 
 use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
-use shadowfit_egui::{Artefact, Command, Toggle, UserPreset};
+use shadowfit_egui::{Artefact, Command, Toggle, UserPreset, keys_of};
 use shadowfit_params as params;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
@@ -246,12 +246,13 @@ impl Viewer {
         let bookmark = Bookmark::new(key, &self.source, self.stage.camera);
         self.saved.bookmarks.retain(|other| !other.is_of(key, &self.source));
         self.saved.bookmarks.push(bookmark);
-        self.say(format!("Bookmark {key}: Ctrl+{key} comes back here"));
+        self.say(format!("Bookmark {key}: {} comes back here", digit_keys(&Command::GoToBookmark(1), key)));
     }
 
     fn go_to_bookmark(&mut self, key: u8) -> Result<String> {
         let known = self.saved.bookmarks.iter().find(|bookmark| bookmark.is_of(key, &self.source));
-        let none = || format!("No bookmark {key} in this scene; Ctrl+Shift+{key} sets it");
+        let set = digit_keys(&Command::SetBookmark(1), key);
+        let none = || format!("No bookmark {key} in this scene; {set} sets it");
         self.stage.set_camera(known.and_then(Bookmark::camera).with_context(none)?);
         Ok(format!("Bookmark {key}"))
     }
@@ -400,6 +401,11 @@ pub(crate) fn compared_with(now: &Technique) -> Technique {
     let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));
     let mut suited = presets.map(|preset| preset.with_lengths_of(now).with_resolution(width, height));
     suited.find(|technique| technique != now).unwrap_or(*now)
+}
+
+/// The keys of a command that has one for each digit, which is listed for 1.
+fn digit_keys(command: &Command, digit: u8) -> String {
+    keys_of(command).replace("1 … 9", &digit.to_string())
 }
 
 /// A saved technique as the panel lists it.

@@ -149,6 +149,21 @@ fn gpu_a_link_of_a_file_asks_for_it_and_waits() {
 }
 
 #[test]
+fn gpu_a_link_that_makes_little_sense_is_followed_as_far_as_it_goes() {
+    let mut viewer = ready(&["plain"], None);
+    for text in [
+        "#scene=courtyard&animation=99&time=1e30&split=-7&camera=1e12,-1e12,0,1e9,900",
+        "#scene=courtyard&view.play=true&splits.lambda=0.5&was.map.filter=point&ill.bias.slope=1&b.light.hour=7",
+        "#scene=plain&artefact=hole,fixed&camera=0,1e9,0,0,90&sample.bias=1",
+    ] {
+        viewer.follow(Link::parse(text).expect(text));
+        until(&mut viewer, "the scene", |viewer| viewer.loading.is_none());
+        (0..5).for_each(|_| frame(&mut viewer));
+        assert!(viewer.failure.is_none() && !viewer.window_requests.quit, "{text}");
+    }
+}
+
+#[test]
 fn gpu_the_link_of_the_start_wins_and_a_bad_one_ends_it() {
     let link = "#scene=plain&bias.slope=1.5&new.thing=1";
     let viewer = ready(&["arcade", "--set", "bias.slope=2", "--link", link], None);
