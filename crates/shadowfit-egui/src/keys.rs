@@ -94,7 +94,7 @@ pub static KEYS: LazyLock<Vec<KeyGroup>> = LazyLock::new(|| key_table(KeyLayout:
 /// The keys that a host of the panel answers, in the order that they are shown.
 pub fn key_table(layout: KeyLayout) -> Vec<KeyGroup> {
     let mut groups = vec![
-        group("Fly", fly()),
+        group("Fly", fly(layout)),
         group("Views", views()),
         group("Artefacts", artefacts()),
         group("Picture", picture()),
@@ -118,8 +118,9 @@ pub(crate) const TOUCH: &str = "Touch";
 /// What pages cannot do.
 const QUIT: &str = "quit";
 
-fn fly() -> Vec<KeyHelp> {
-    vec![
+/// Pages can lock the pointer.
+fn fly(layout: KeyLayout) -> Vec<KeyHelp> {
+    let mut keys = vec![
         held("W A S D", "move"),
         held("Q, E", "down, up"),
         held("Arrow keys", "look around"),
@@ -127,7 +128,11 @@ fn fly() -> Vec<KeyHelp> {
         held("Double click", "focus on what is there"),
         held("Shift", "move fast"),
         held("Wheel", "flying speed"),
-    ]
+    ];
+    if layout == KeyLayout::Browser {
+        keys.insert(4, held("V", "look around with the mouse, until Esc"));
+    }
+    keys
 }
 
 fn artefacts() -> Vec<KeyHelp> {

@@ -49,8 +49,9 @@ pub fn in_background_async<F: Future<Output = ()> + 'static>(
     Ok(())
 }
 
-/// Lets a browser draw and take input before what follows.
-#[cfg(target_family = "wasm")]
+/// Lets a browser draw and take input before what follows; elsewhere nothing waits.
+#[cfg_attr(not(target_family = "wasm"), expect(clippy::unused_async, reason = "only browsers wait"))]
 pub async fn next_turn() {
+    #[cfg(target_family = "wasm")]
     gloo_timers::future::TimeoutFuture::new(0).await;
 }

@@ -29,9 +29,7 @@ mod view;
 mod why;
 
 pub use agreement::Agreement;
-#[cfg(target_family = "wasm")]
-pub use background::next_turn;
-pub use background::{in_background, in_background_async};
+pub use background::{in_background, in_background_async, next_turn};
 pub use background_judge::{BackgroundJudge, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;

@@ -11,6 +11,8 @@ pub(crate) struct Input {
     held: Vec<Chord>,
     /// Whether Shift is held.
     pub(crate) fast: bool,
+    /// Movement of a mouse that looks around without a button, in pixels, since the frame before.
+    pub(crate) look: Vec2,
     /// Sticks: movement and turn, each -1..=1, added to the keys.
     pub(crate) sticks: (Vec3, Vec2),
 }

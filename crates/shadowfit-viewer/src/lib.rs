@@ -3,6 +3,8 @@
 //! same views to files. `examples/viewer` is its thin main. In a browser it is the module of a page, whose files lie in
 //! `web`: see `src/web.rs`.
 
+#![cfg_attr(target_family = "wasm", allow(dead_code, reason = "a page has no command line and no headless mode"))]
+
 mod artefact;
 mod cli;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod progress;
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use web_time::Instant;
@@ -9,7 +10,7 @@ use web_time::Instant;
 use anyhow::{Context, Error, Result, anyhow};
 use shadowfit_render::Gpu;
 use shadowfit_scene::{LoadStep, SceneSize};
-use shadowfit_study::{PreparedScene, in_background};
+use shadowfit_study::{PreparedScene, in_background_async, next_turn};
 
 use crate::source::SceneSource;
 use progress::{Progress, READY};
@@ -21,6 +22,18 @@ pub(crate) struct Loading {
     pub(crate) line: Option<String>,
     progress: Arc<Mutex<Progress>>,
     result: Receiver<Result<PreparedScene>>,
+    _end: End,
+}
+
+/// Tells the work, when it is dropped, that nobody waits any more.
+struct End(Arc<AtomicBool>);
+
+impl Drop for End {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+        #[cfg(target_family = "wasm")]
+        crate::web::page::busy(None);
+    }
 }
 
 impl Loading {
@@ -28,17 +41,20 @@ impl Loading {
     pub(crate) fn start(source: SceneSource, line: Option<String>, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
         let (sender, result) = channel();
         let progress = Arc::new(Mutex::new(Progress::new(Instant::now())));
+        let is_given_up = Arc::new(AtomicBool::new(false));
         let work = {
             let (source, gpu, layout, progress) = (source.clone(), gpu.clone(), layout.clone(), Arc::clone(&progress));
-            move || {
-                let prepared = load(&source, &gpu, &layout, &progress);
-                // The receiver is gone where another scene was asked for.
-                let _ = sender.send(prepared);
+            let is_given_up = Arc::clone(&is_given_up);
+            move || async move {
+                if let Some(prepared) = load(&source, &gpu, &layout, (&progress, &is_given_up)).await {
+                    // The receiver is gone where another scene was asked for.
+                    let _ = sender.send(prepared);
+                }
             }
         };
         // Where no thread can be made, the channel is closed, which is reported as the end of the thread.
-        let _ = in_background("loading", work);
-        Self { source, line, progress, result }
+        let _ = in_background_async("loading", work);
+        Self { source, line, progress, result, _end: End(is_given_up) }
     }
 
     /// Share that is done, 0..=1.
@@ -59,16 +75,28 @@ impl Loading {
     }
 }
 
-fn load(
+/// Loads a scene; `None` where it was given up. A browser draws frames between the steps.
+async fn load(
     source: &SceneSource,
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
-    progress: &Mutex<Progress>,
-) -> Result<PreparedScene> {
+    (progress, is_given_up): (&Mutex<Progress>, &AtomicBool),
+) -> Option<Result<PreparedScene>> {
     let begin = |phase, size: Option<&SceneSize>| {
-        progress.lock().unwrap_or_else(PoisonError::into_inner).begin(phase, size, Instant::now());
+        let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.begin(phase, size, Instant::now());
+        #[cfg(target_family = "wasm")]
+        crate::web::page::busy(Some(progress.ahead(Instant::now())));
     };
-    let scene = source.load(&|step: LoadStep, size| begin(step as usize, Some(size)))?;
+    next_turn().await;
+    let scene = match source.load(&|step: LoadStep, size| begin(step as usize, Some(size))) {
+        Ok(scene) => scene,
+        Err(error) => return Some(Err(error)),
+    };
     begin(READY, None);
-    PreparedScene::new(gpu, layout, scene).map_err(Error::from).with_context(|| source.text())
+    next_turn().await;
+    if is_given_up.load(Ordering::Relaxed) {
+        return None;
+    }
+    Some(PreparedScene::new(gpu, layout, scene).map_err(Error::from).with_context(|| source.text()))
 }

@@ -86,6 +86,8 @@ pub(crate) struct Viewer {
     #[cfg(not(target_family = "wasm"))]
     litter: Option<TempDir>,
     pub(crate) window_requests: WindowRequests,
+    /// Whether the mouse drags the picture: pages lock the pointer then.
+    pub(crate) is_looking: bool,
     /// The error that the viewer ends with.
     pub(crate) failure: Option<anyhow::Error>,
 }
@@ -154,6 +156,7 @@ impl Viewer {
             #[cfg(not(target_family = "wasm"))]
             litter: None,
             window_requests: WindowRequests::default(),
+            is_looking: false,
             failure: None,
         };
         viewer.restore();
@@ -197,6 +200,11 @@ impl Viewer {
         self.commands.push_back(command.into());
     }
 
+    /// Whether a button of the mouse is held.
+    fn presses(&self) -> bool {
+        self.interface.context.input(|input| input.pointer.any_down())
+    }
+
     /// Whether keys go to a widget of the panel.
     fn types(&self) -> bool {
         self.interface.context.egui_wants_keyboard_input()
@@ -221,7 +229,8 @@ impl Viewer {
             self.interface.pictures.draw(&mut self.stage);
         }
         let mut fly = self.input.fly();
-        (fly.drag, fly.wheel) = (asked.drag, asked.wheel);
+        (fly.drag, fly.wheel) = (asked.drag + std::mem::take(&mut self.input.look), asked.wheel);
+        self.is_looking = asked.drag != glam::Vec2::ZERO || (self.is_looking && self.presses());
         (fly.pan, fly.pinch) = (asked.pan, asked.pinch);
         self.stage.update(&fly, seconds);
         self.commands.extend(asked.commands.into_iter().map(Request::from));
@@ -345,7 +354,7 @@ impl Viewer {
     }
 
     /// Shows a message for a while.
-    fn say(&mut self, text: impl Into<String>) {
+    pub(crate) fn say(&mut self, text: impl Into<String>) {
         self.message = Some(Message { text: text.into(), since: self.clock });
     }
 

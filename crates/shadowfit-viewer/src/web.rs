@@ -29,6 +29,7 @@ use web_sys::OffscreenCanvas;
 use web_time::Instant;
 
 use crate::cli::Arguments;
+use crate::link::Link;
 use crate::stage::Stage;
 use crate::viewer::{Start, Viewer};
 use input::Events;
@@ -67,27 +68,39 @@ struct Told {
     cursor: Option<egui::CursorIcon>,
     is_ready: bool,
     types: bool,
+    looks: bool,
 }
 
 #[wasm_bindgen]
 impl Page {
     /// Opens the graphics device and draws on a canvas of some pixels, `scale` of them a point. `kept` is the text of the
-    /// last visit.
+    /// last visit, `page` the address of the page without its fragment, which comes by itself.
     ///
     /// # Errors
     ///
     /// With a message for people if the browser gives no device.
-    pub async fn open(canvas: OffscreenCanvas, scale: f32, kept: Option<String>) -> Result<Page, JsError> {
+    pub async fn open(
+        canvas: OffscreenCanvas,
+        scale: f32,
+        kept: Option<String>,
+        page: String,
+        fragment: String,
+    ) -> Result<Page, JsError> {
         console_error_panic_hook::set_once();
         let hook = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
             page::tell("panic", &panic.to_string());
             hook(panic);
         }));
-        Self::new(canvas, scale, kept).await.map_err(|error| JsError::new(&format!("{error:#}")))
+        Self::new(canvas, scale, kept, (page, fragment)).await.map_err(|error| JsError::new(&format!("{error:#}")))
     }
 
-    async fn new(canvas: OffscreenCanvas, scale: f32, kept: Option<String>) -> Result<Self> {
+    async fn new(
+        canvas: OffscreenCanvas,
+        scale: f32,
+        kept: Option<String>,
+        (page, fragment): (String, String),
+    ) -> Result<Self> {
         let instance = Gpu::instance();
         let target = wgpu::SurfaceTarget::OffscreenCanvas(canvas.clone());
         let surface = instance.create_surface(target).context("the page cannot be drawn on")?;
@@ -102,8 +115,16 @@ impl Page {
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::empty(gpu, samples)?;
         stage.read_depths();
-        let start = Start::new(&Arguments::default())?;
-        let viewer = Viewer::new(stage, configuration.format, start, Some(Store::new(kept)));
+        let (start, problem) = match Start::new(&Arguments { link: link_of(fragment), ..Arguments::default() }) {
+            Ok(start) => (start, None),
+            // A link that makes no sense opens the viewer as if there were none, and is told.
+            Err(error) => (Start::new(&Arguments::default())?, Some(error)),
+        };
+        let mut viewer = Viewer::new(stage, configuration.format, start, Some(Store::new(kept)));
+        viewer.page = Some(page);
+        if let Some(problem) = problem {
+            viewer.say(format!("This link cannot be followed: {problem:#}"));
+        }
         viewer.interface.context.set_fonts(fonts());
         let now = Instant::now();
         Ok(Self {
@@ -220,6 +241,30 @@ impl Page {
         self.viewer.ask(Command::OpenFile(PathBuf::from(name)));
     }
 
+    /// The page's fragment is another one: a link of this viewer was followed.
+    pub fn follow(&mut self, fragment: String) {
+        let Some(text) = link_of(fragment) else { return };
+        match Link::parse(&text) {
+            Ok(link) => self.viewer.follow(link),
+            Err(error) => self.viewer.say(format!("This link cannot be followed: {error:#}")),
+        }
+    }
+
+    /// The mouse, which the page has locked, moved by so many points.
+    pub fn look(&mut self, x: f32, y: f32) {
+        self.viewer.input.look += glam::vec2(x, y) * self.scale;
+    }
+
+    /// The sticks of a gamepad: movement and turn, each -1..=1.
+    pub fn sticks(&mut self, right: f32, up: f32, forward: f32, turn: f32, tilt: f32) {
+        self.viewer.input.sticks = (glam::vec3(right, up, forward), glam::vec2(turn, tilt));
+    }
+
+    /// A button of a gamepad that resets the camera.
+    pub fn reset_camera(&mut self) {
+        self.viewer.ask(Command::ResetCamera);
+    }
+
     /// Saves the settings: the page is about to be hidden.
     pub fn save(&mut self) {
         self.viewer.save();
@@ -304,6 +349,10 @@ impl Page {
             self.told.types = output.ime.is_some();
             page::tell("types", if self.told.types { "yes" } else { "" });
         }
+        if self.told.looks != self.viewer.is_looking {
+            self.told.looks = self.viewer.is_looking;
+            page::tell("looks", if self.told.looks { "yes" } else { "" });
+        }
         let requests = std::mem::take(&mut self.viewer.window_requests);
         if requests.new_title {
             page::tell("title", &self.viewer.title());
@@ -316,6 +365,11 @@ impl Page {
             page::tell("failure", &format!("{failure:#}"));
         }
     }
+}
+
+/// A fragment as the link that it is; `None` without one.
+fn link_of(fragment: String) -> Option<String> {
+    (fragment.len() > 1).then_some(fragment)
 }
 
 /// egui's own fonts without those for emoji, which are larger than the others. That for code has arrows.

@@ -34,6 +34,9 @@ element('again').onclick = () => location.reload();
 const worker = new Worker(new URL('worker.js', import.meta.url), { type: 'module' });
 const tell = (...message) => worker.postMessage(message);
 const questions = [];
+let isTyping = false;
+/// Whether a button of the mouse is held.
+let isPressed = false;
 
 /// For tests, and for whoever is curious in the console.
 window.viewer = {
@@ -111,6 +114,7 @@ const told = {
     files.click();
   },
   types(whether) {
+    isTyping = Boolean(whether);
     (whether ? typing : canvas).focus({ preventScroll: true });
   },
   download(bytes, name) {
@@ -119,6 +123,22 @@ const told = {
     link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  },
+  looks(whether) {
+    if (whether && isPressed) {
+      lock();
+    }
+  },
+  busy(text) {
+    const bar = element('busy');
+    const [from, to, seconds] = text.split(' ').map(Number);
+    bar.style.transition = 'none';
+    bar.style.transform = `scaleX(${text ? from : 0})`;
+    if (text) {
+      bar.getBoundingClientRect();
+      bar.style.transition = `transform ${seconds}s linear`;
+      bar.style.transform = `scaleX(${to})`;
+    }
   },
   facts(text) {
     questions.shift()?.(JSON.parse(text));
@@ -166,12 +186,12 @@ function held(event) {
 }
 
 /// Whether a key is left to the browser: its own function keys, and what it does with Control or Command but for the
-/// letters that the viewer undoes, opens and saves with.
+/// letters that the viewer undoes with.
 function isOfBrowser({ key, ctrlKey, metaKey, altKey }) {
   if (/^F(5|6|7|11|12)$/.test(key)) {
     return true;
   }
-  return (ctrlKey || metaKey) && !altKey && !/^[zyos]$/i.test(key);
+  return (ctrlKey || metaKey) && !altKey && !/^[zy]$/i.test(key);
 }
 
 addEventListener('keydown', (event) => {
@@ -183,6 +203,10 @@ addEventListener('keydown', (event) => {
     return;
   }
   event.preventDefault();
+  if (event.code === 'KeyV' && bits === 0 && !isTyping) {
+    lock();
+    return;
+  }
   tell('key', event.code, event.key, true, event.repeat);
 });
 
@@ -213,7 +237,15 @@ addEventListener('paste', (event) => {
 
 // ---- pointers
 
+/// Where the mouse is, in points: beyond the page, too, while it is locked.
+let place = [0, 0];
 const at = ({ clientX, clientY }) => [clientX, clientY];
+const isLocked = () => document.pointerLockElement === canvas;
+
+/// Keeps the mouse on the page, unseen, so that it can turn the camera without end; Esc gives it back. Browsers may refuse.
+function lock() {
+  Promise.resolve(canvas.requestPointerLock?.()).catch(() => {});
+}
 
 function finger(event) {
   event.preventDefault();
@@ -229,7 +261,12 @@ canvas.addEventListener('pointerdown', (event) => {
   }
   canvas.focus();
   event.preventDefault();
-  tell('button', ...at(event), event.button, true);
+  if (isLocked()) {
+    return;
+  }
+  isPressed = true;
+  place = at(event);
+  tell('button', ...place, event.button, true);
 });
 
 canvas.addEventListener('pointermove', (event) => {
@@ -238,7 +275,13 @@ canvas.addEventListener('pointermove', (event) => {
     return;
   }
   held(event);
-  tell('moved', ...at(event), event.movementX, event.movementY);
+  const moved = [event.movementX, event.movementY];
+  if (isLocked() && !isPressed) {
+    tell('look', ...moved);
+    return;
+  }
+  place = isLocked() ? place.map((side, axis) => side + moved[axis]) : at(event);
+  tell('moved', ...place, ...moved);
 });
 
 for (const kind of ['pointerup', 'pointercancel']) {
@@ -246,7 +289,11 @@ for (const kind of ['pointerup', 'pointercancel']) {
     if (event.pointerType === 'touch') {
       finger(event);
     } else {
-      tell('button', ...at(event), Math.max(event.button, 0), false);
+      if (isPressed) {
+        isPressed = false;
+        tell('button', ...place, Math.max(event.button, 0), false);
+        document.exitPointerLock?.();
+      }
     }
   });
 }
@@ -262,6 +309,29 @@ canvas.addEventListener('wheel', (event) => {
   tell('wheel', event.deltaX, event.deltaY, event.deltaMode);
 }, { passive: false });
 canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+
+// ---- gamepads: the left stick moves, the right one turns, triggers go down and up
+
+const DEAD = 0.15;
+let wasPressed = false;
+
+function pads() {
+  const pad = navigator.getGamepads().find((found) => found?.mapping === 'standard');
+  if (!pad) {
+    tell('sticks', 0, 0, 0, 0, 0);
+    return;
+  }
+  const [right, back, turn, down] = pad.axes.map((axis) => (Math.abs(axis) < DEAD ? 0 : axis));
+  tell('sticks', right, pad.buttons[7].value - pad.buttons[6].value, -back, turn, -down);
+  const { pressed } = pad.buttons[11];
+  if (pressed && !wasPressed) {
+    tell('reset_camera');
+  }
+  wasPressed = pressed;
+  requestAnimationFrame(pads);
+}
+
+addEventListener('gamepadconnected', pads);
 
 // ---- files
 
@@ -289,6 +359,7 @@ addEventListener('drop', (event) => {
 
 // ---- the start
 
+addEventListener('hashchange', () => tell('follow', location.hash));
 document.addEventListener('visibilitychange', () => {
   if (document.hidden) {
     tell('save');
@@ -302,7 +373,17 @@ if (!canvas.transferControlToOffscreen) {
   const drawn = canvas.transferControlToOffscreen();
   const kept = asked.has('afresh') ? null : stored(STORED);
   worker.postMessage(
-    { canvas: drawn, width, height, scale: devicePixelRatio, kept, wanted: asked.get('api'), sizes },
+    {
+      canvas: drawn,
+      width,
+      height,
+      scale: devicePixelRatio,
+      kept,
+      page: location.href.split('#')[0],
+      fragment: location.hash,
+      wanted: asked.get('api'),
+      sizes,
+    },
     [drawn],
   );
   tell('dark', dark.matches);

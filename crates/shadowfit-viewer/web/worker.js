@@ -71,7 +71,7 @@ function frame() {
   requestAnimationFrame(frame);
 }
 
-async function start({ canvas, width, height, scale, kept, wanted, sizes }) {
+async function start({ canvas, width, height, scale, kept, page, fragment, wanted, sizes }) {
   const found = await api(wanted);
   if (!found) {
     postMessage(['none']);
@@ -84,7 +84,7 @@ async function start({ canvas, width, height, scale, kept, wanted, sizes }) {
   postMessage(['compiled']);
   canvas.width = width;
   canvas.height = height;
-  viewer = await module.Page.open(canvas, scale, kept ?? undefined);
+  viewer = await module.Page.open(canvas, scale, kept ?? undefined, page, fragment);
   waiting.splice(0).forEach(call);
   requestAnimationFrame(frame);
 }

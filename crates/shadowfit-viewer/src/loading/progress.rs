@@ -88,6 +88,16 @@ impl Progress {
         ((before + (after - before) * passed) as f32).max(self.least)
     }
 
+    /// The share now, that at which this phase ends, and the seconds until then.
+    #[cfg(target_family = "wasm")]
+    pub(super) fn ahead(&self, now: Instant) -> [f32; 3] {
+        let (share, end) = (self.share(now), self.end_of(Some(self.phase)) as f32);
+        let spent = (self.since - self.start).as_secs_f64();
+        let before = self.end_of(self.phase.checked_sub(1));
+        let slowness = (spent + TOO_SHORT) / (before * self.sum() + TOO_SHORT);
+        [share, end.max(share), (self.weights[self.phase] * slowness) as f32]
+    }
+
     /// Share at which a phase ends; 0 before the first.
     pub(super) fn end_of(&self, phase: Option<usize>) -> f64 {
         let done: f64 = phase.map_or(0.0, |phase| self.weights[..=phase].iter().sum());

@@ -25,3 +25,9 @@ pub(crate) fn download(name: &str, bytes: &[u8]) {
 pub(crate) fn choose_file() {
     tell("choose", "");
 }
+
+/// Shows a bar that goes from one share to another within some seconds, whatever this worker does meanwhile; `None` takes
+/// it away.
+pub(crate) fn busy(bar: Option<[f32; 3]>) {
+    tell("busy", &bar.map_or(String::new(), |[from, to, seconds]| format!("{from} {to} {seconds}")));
+}
