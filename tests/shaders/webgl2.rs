@@ -5,8 +5,8 @@ use naga::back::PipelineConstants;
 use naga::back::glsl;
 use naga::back::pipeline_constants::process_overrides;
 use naga::proc::BoundsCheckPolicies;
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{AddressSpace, EntryPoint, Module};
+use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
+use naga::{AddressSpace, EntryPoint, Expression, Function, Handle, Module, ScalarKind, TypeInner};
 
 use super::{modules, parse};
 
@@ -32,6 +32,17 @@ fn translated(module: &Module, info: &ModuleInfo, entry: &EntryPoint) -> Result<
     Ok(())
 }
 
+/// Whether a function chooses among whole numbers by several conditions at once, for which the language has no word: naga
+/// translates it all the same.
+fn mixes_integers(module: &Module, function: &Function, info: &FunctionInfo) -> bool {
+    function.expressions.iter().any(|(_, expression)| {
+        let Expression::Select { condition, accept, .. } = *expression else { return false };
+        let inner = |expression: Handle<Expression>| info[expression].ty.inner_with(&module.types);
+        let is_vector = matches!(inner(condition), TypeInner::Vector { .. });
+        is_vector && !matches!(inner(accept).scalar_kind(), Some(ScalarKind::Float))
+    })
+}
+
 #[test]
 fn what_draws_can_be_translated_for_webgl2_and_its_uniforms_are_whole_vectors() {
     let modules = modules();
@@ -42,6 +53,9 @@ fn what_draws_can_be_translated_for_webgl2_and_its_uniforms_are_whole_vectors() 
         let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).expect("it is valid");
         for entry in &module.entry_points {
             translated(&module, &info, entry).unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        for (handle, function) in module.functions.iter() {
+            assert!(!mixes_integers(&module, function, &info[handle]), "{name}: {:?}", function.name);
         }
         for (_, global) in module.global_variables.iter().filter(|(_, global)| global.space == AddressSpace::Uniform) {
             let size = module.types[global.ty].inner.size(module.to_ctx());

@@ -1,13 +1,13 @@
 //! Draws samples: what a sample's values ask for, by the renderer that can do it.
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use shadowfit::PerspectiveCamera;
 use shadowfit_render::{Gpu, Probe, ProbeTargets, RenderTarget};
 use shadowfit_scene::Scene;
 use shadowfit_study::PreparedScene;
 
 use crate::mapped::{FrameExtras, LightPlace, SampleFrame, SampleRenderer};
-use crate::occlusion::{OcclusionFrame, OcclusionPasses, Traced};
+use crate::occlusion::{OcclusionFrame, OcclusionPasses, Traced, missing_format};
 use crate::options::SampleValues;
 use crate::sample::{Sample, SampleDrawing};
 use crate::sky_box::SkyBox;
@@ -56,7 +56,7 @@ impl SampleDrawer {
     ///
     /// # Errors
     ///
-    /// Where the camera cannot be fitted to, or the map cannot be made.
+    /// Where the camera cannot be fitted to, the map cannot be made, or the adapter cannot draw to a format.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -80,6 +80,7 @@ impl SampleDrawer {
                 message
             }
             SampleDrawing::Occlusion { frame, is_traced } => {
+                check_formats(gpu)?;
                 self.draw_occlusion(gpu, scene, (&frame, is_traced, camera), target)
             }
         };
@@ -121,6 +122,7 @@ impl SampleDrawer {
         (frame, camera): (&OcclusionFrame, &PerspectiveCamera),
         size: [u32; 2],
     ) -> Result<Vec<f32>> {
+        check_formats(gpu)?;
         let target = RenderTarget::new(&gpu.device, size, self.samples);
         let passes = self.occlusion.get_or_insert_with(|| OcclusionPasses::new(gpu, self.samples));
         passes.draw(gpu, &mut scene.gpu_scene, (frame, camera), None, &target);
@@ -157,6 +159,14 @@ impl SampleDrawer {
     /// If the device was lost.
     pub fn read_map(&self, gpu: &Gpu) -> Result<Option<Vec<u8>>> {
         Ok(self.renderer.read_map(gpu)?)
+    }
+}
+
+/// Refuses an adapter that cannot draw to what ambient occlusion is found from.
+fn check_formats(gpu: &Gpu) -> Result<()> {
+    match missing_format(&gpu.adapter) {
+        Some(format) => bail!("this graphics adapter cannot draw to {format:?}, which ambient occlusion needs"),
+        None => Ok(()),
     }
 }
 

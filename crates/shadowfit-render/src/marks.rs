@@ -62,10 +62,8 @@ impl MarkPasses {
             bindings::layout(device, "marks", wgpu::ShaderStages::FRAGMENT, &types)
         };
         let is_multisampled = samples > 1 && !is_opengl(device);
-        let rows_layout = match is_multisampled {
-            true => layout(wgpu::TextureSampleType::Depth, true),
-            false => layout(DEPTHS, false),
-        };
+        let depths = if is_multisampled { wgpu::TextureSampleType::Depth } else { DEPTHS };
+        let rows_layout = layout(depths, is_multisampled);
         let marks_layout = layout(wgpu::TextureSampleType::Uint, false);
         let maker = Maker { device, samples: 1 };
         let rows_groups = maker.layout(&[&judged.layout, &rows_layout]);

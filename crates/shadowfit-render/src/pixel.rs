@@ -72,8 +72,8 @@ const FAILED: u8 = 2;
 /// Has been read.
 const TAKEN: u8 = 3;
 
-/// Format of the depths of a block of texels.
-pub(crate) const BLOCK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Format of the depths of a block of texels: the bits of floats, which not all devices can draw to.
+pub(crate) const BLOCK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 /// Bytes between rows of depths in the buffer, and before the first: the least that textures can be copied with.
 pub(crate) const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;

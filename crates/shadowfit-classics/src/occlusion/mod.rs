@@ -16,6 +16,7 @@ mod pipelines;
 mod targets;
 mod traced;
 
+pub(crate) use formats::missing_format;
 pub use frame::{OcclusionFrame, OcclusionLight, OcclusionMethod, OcclusionSettings, OcclusionUniform, OcclusionView};
 pub use passes::OcclusionPasses;
 pub(crate) use traced::{Traced, truth};

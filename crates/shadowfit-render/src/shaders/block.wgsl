@@ -1,4 +1,4 @@
-// Depths of a block of a map's texels, one a pixel. Comes after screen.wgsl and the shadow map's WGSL.
+// The bits of depths of a block of a map's texels, one a pixel. Comes after screen.wgsl and the shadow map's WGSL.
 
 struct Block {
     // Left top texel of the block.
@@ -14,7 +14,7 @@ struct Block {
 @group(0) @binding(0) var<uniform> block: Block;
 
 @fragment
-fn fs_block(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+fn fs_block(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
     let texel = clamp(block.first + vec2<i32>(at.xy), vec2<i32>(0), block.last);
-    return shadowfit_stored(i32(block.map), texel);
+    return bitcast<u32>(shadowfit_stored(i32(block.map), texel));
 }

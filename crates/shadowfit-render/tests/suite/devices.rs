@@ -7,11 +7,15 @@ pub(crate) fn software_gpu(features: wgpu::Features, limits: wgpu::Limits) -> Gp
     opened(wgpu::Backends::PRIMARY, features, limits)
 }
 
-/// OpenGL with no more than WebGL2 has. The environment variable `MESA_GLES_VERSION_OVERRIDE` must be 3.0, or Mesa opens a
-/// later version, which can do more.
+/// OpenGL ES 3.0 with the limits of WebGL2, by Mesa. wgpu prefers OpenGL, and Mesa later versions, unless both are told to
+/// be old by environment variables.
 #[cfg(feature = "gles")]
 pub(crate) fn webgl2_gpu() -> Gpu {
-    opened(wgpu::Backends::GL, wgpu::Features::empty(), wgpu::Limits::downlevel_webgl2_defaults())
+    let gpu = opened(wgpu::Backends::GL, wgpu::Features::empty(), wgpu::Limits::downlevel_webgl2_defaults());
+    let version = gpu.adapter.get_info().driver_info;
+    let advice = "set MESA_GL_VERSION_OVERRIDE to 3.2 and MESA_GLES_VERSION_OVERRIDE to 3.0";
+    assert!(version.contains("OpenGL ES 3.0"), "this test needs OpenGL ES 3.0, and has {version}: {advice}");
+    gpu
 }
 
 fn opened(backends: wgpu::Backends, features: wgpu::Features, limits: wgpu::Limits) -> Gpu {

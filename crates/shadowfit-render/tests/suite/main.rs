@@ -2,6 +2,7 @@
 //! `cargo xtask test` leaves them out where there is none.
 
 mod devices;
+mod limits_gpu;
 mod pictures;
 mod probe_gpu;
 mod sheets;

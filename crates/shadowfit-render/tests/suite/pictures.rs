@@ -3,8 +3,8 @@
 use glam::{DVec3, Vec3};
 use shadowfit::{FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_render::{
-    Atmosphere, Frame, Gpu, GpuScene, JudgedPicture, Marks, Overlay, Probe, ProbeTargets, RenderTarget, Renderer,
-    classes_texture,
+    Atmosphere, Frame, Gpu, GpuScene, JudgedPicture, Marks, Overlay, PixelFacts, PixelQuery, Probe, ProbeTargets,
+    RenderTarget, Renderer, classes_texture,
 };
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -55,6 +55,20 @@ impl Pictures {
         let frame = Frame::new(&self.camera, SUNLIGHT.normalize(), &self.maps, &atmosphere);
         let targets = ProbeTargets::new(&self.gpu.device, SIZE);
         self.renderer.probe(&self.gpu, &mut self.scene, &frame, &targets).expect("a probe")
+    }
+
+    /// The facts of a pixel, with the depths around a texel.
+    pub(crate) fn pixel(&mut self, query: &PixelQuery) -> PixelFacts {
+        let atmosphere = Atmosphere::default();
+        let frame = Frame::new(&self.camera, SUNLIGHT.normalize(), &self.maps, &atmosphere);
+        let mut read = self.renderer.probe_pixel(&self.gpu, &mut self.scene, &frame, query).expect("a question");
+        for _ in 0..10_000 {
+            if let Some(facts) = read.take(&self.gpu) {
+                return facts.expect("facts");
+            }
+            std::thread::sleep(core::time::Duration::from_millis(1));
+        }
+        panic!("no answer in ten seconds");
     }
 
     /// The display values of a picture with marks, some metres beside the place where the present view was judged.

@@ -1,11 +1,10 @@
-//! OpenGL with the limits of WebGL2 draws what Vulkan draws. To be run with
-//! `MESA_GLES_VERSION_OVERRIDE=3.0 cargo test -p shadowfit-render --features gles webgl2`: without the variable Mesa opens a
-//! later version, which can do more.
+//! OpenGL ES 3.0, which WebGL2 is, draws what Vulkan draws. To be run with
+//! `MESA_GL_VERSION_OVERRIDE=3.2 MESA_GLES_VERSION_OVERRIDE=3.0 cargo test -p shadowfit-render --features gles webgl2`.
 
 use glam::{DVec3, Vec3, Vec4};
-use shadowfit::Technique;
 use shadowfit::settings::{FilterKind, MapFormat};
-use shadowfit_render::{Frame, Inset, Line, Overlay, RenderTarget};
+use shadowfit::{DepthConvention, Technique};
+use shadowfit_render::{Frame, Inset, Line, Overlay, PixelQuery, RenderTarget, TexelBlock};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::devices::{software_gpu, webgl2_gpu};
@@ -105,6 +104,29 @@ fn probes_are_those_of_vulkan() {
     };
     let count = (0..vulkan.pixels.len()).filter(|pixel| seen(&vulkan, *pixel) != seen(&opengl, *pixel)).count();
     assert!(count < vulkan.pixels.len() / 200, "{count} pixels differ");
+}
+
+#[test]
+fn a_pixel_has_the_facts_that_vulkan_finds_and_the_depths_around_a_texel() {
+    for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+        let mut technique = technique();
+        technique.fit.depth = depth;
+        let query = PixelQuery {
+            size: SIZE,
+            pixel: [70, 50],
+            texels: Some(TexelBlock { map: 0, texel: [500, 500], radius: 31 }),
+        };
+        let [vulkan, opengl] = both(&technique, 1).map(|mut pictures| {
+            pictures.picture(|_| ());
+            pictures.pixel(&query)
+        });
+        assert_eq!(vulkan.seen.map(|pixel| pixel.triangle), opengl.seen.map(|pixel| pixel.triangle));
+        assert_eq!(vulkan.depths.len(), 63 * 63);
+        let differs = |(a, b): &(&f32, &f32)| (**a - **b).abs() > 1e-5;
+        let count = vulkan.depths.iter().zip(&opengl.depths).filter(differs).count();
+        assert!(count < 40, "{depth:?}: {count} depths differ");
+        assert!(vulkan.depths.iter().any(|depth| *depth != vulkan.depths[0]), "{depth:?}: nothing in the map");
+    }
 }
 
 #[test]

@@ -4,5 +4,5 @@
 fn shadowfit_stored(map: i32, texel: vec2<i32>) -> f32 {
     let size = vec2<i32>(textureDimensions(shadowfit_texture));
     let shifted = clamp(texel, vec2<i32>(0), size - vec2<i32>(1)) + vec2<i32>(shadowfit_wrap(u32(map)));
-    return shadowfit_load(u32(map), select(shifted, shifted - size, shifted >= size));
+    return shadowfit_load(u32(map), shifted % size);
 }
