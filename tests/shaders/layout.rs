@@ -126,7 +126,7 @@ fn what_overlays_marks_and_blocks_of_texels_read_lies_as_in_wgsl() {
     assert_same(&rows, &marks);
     assert_same(&parse("marks", &shaders::marks()), &marks);
     let block = layout!("Block" = BlockUniform { first, last, map, padding_0, padding_1, padding_2 });
-    assert_same(&parse("block", &shaders::block(&map)), &block);
+    assert_same(&parse("block", &shaders::block(&map, wgpu::Backend::Vulkan)), &block);
 }
 
 #[test]
@@ -383,7 +383,7 @@ fn the_two_ends_of_a_line_are_what_the_vertex_shader_reads() {
 
 #[test]
 fn insets_and_quadrilaterals_in_the_buffers_are_what_the_vertex_shaders_read() {
-    let inset = parse("inset", &shaders::inset(&ShadowMapDescriptor::default()));
+    let inset = parse("inset", &shaders::inset(&ShadowMapDescriptor::default(), wgpu::Backend::Vulkan));
     let rectangle = offset_of!(InsetVertex, rectangle);
     let [depth_range, map] = [offset_of!(InsetVertex, depth_range), offset_of!(InsetVertex, map)];
     let ends = [rectangle, depth_range, map, offset_of!(InsetVertex, border), size_of::<InsetVertex>()];

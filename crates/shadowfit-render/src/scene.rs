@@ -3,6 +3,7 @@
 //! tracers see exactly the same triangles.
 
 use core::sync::atomic::{AtomicU64, Ordering};
+use std::borrow::Cow;
 
 use bytemuck::cast_slice;
 use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
@@ -520,9 +521,9 @@ fn streams(gpu: &Gpu, primitive: &Primitive) -> Streams {
 }
 
 /// Tangents of each vertex, or of all.
-fn tangents(primitive: &Primitive, has: Streams) -> Vec<Vec4> {
+fn tangents(primitive: &Primitive, has: Streams) -> Cow<'_, [Vec4]> {
     let count = if has.tangents { primitive.positions.len() } else { 1 };
-    if primitive.tangents.is_empty() { vec![Vec4::ZERO; count] } else { primitive.tangents.clone() }
+    if primitive.tangents.is_empty() { vec![Vec4::ZERO; count].into() } else { (&primitive.tangents).into() }
 }
 
 /// Texture coordinates and colours of each vertex, or those of all.
