@@ -3,6 +3,7 @@
 
 mod formulas_gpu;
 mod occlusion_gpu;
+mod probe_gpu;
 mod scenes;
 mod shading_gpu;
 mod sky_box_gpu;

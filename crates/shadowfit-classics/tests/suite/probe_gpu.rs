@@ -1,0 +1,39 @@
+//! Probes of samples are the same whether fragments know their primitive or vertices number the triangles.
+
+use shadowfit_classics::mapped::{FrameExtras, SampleRenderer};
+use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues};
+use shadowfit_render::passes::material_layout;
+use shadowfit_render::{Gpu, GpuScene, Probe, ProbeTargets};
+
+use super::scenes::{SIZE, software_gpu};
+
+/// The software adapter without features.
+fn featureless_gpu() -> Gpu {
+    let adapter = software_gpu().adapter;
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
+    Gpu { adapter, device, queue }
+}
+
+#[test]
+fn probes_of_samples_without_the_primitive_index_are_those_with_it() {
+    let mut probed = 0;
+    for sample in &SAMPLES {
+        let camera = sample.lens(SIZE[0] as f32 / SIZE[1] as f32);
+        let drawing = sample.drawing(&SampleValues::new(sample), &camera).expect("a drawing");
+        let SampleDrawing::Mapped(frame) = drawing else { continue };
+        let scene = sample.scene();
+        let probe = |gpu: Gpu| -> Probe {
+            let layout = material_layout(&gpu.device);
+            let mut gpu_scene = GpuScene::new(&gpu, &layout, &scene, &scene.pose(None, 0.0));
+            let targets = ProbeTargets::new(&gpu.device, SIZE);
+            let extras = FrameExtras::default();
+            let probe = SampleRenderer::new(&gpu, 1).probe(&gpu, &mut gpu_scene, (&frame, extras), &targets);
+            probe.expect("a map").expect("a probe")
+        };
+        let [indexed, unrolled] = [software_gpu(), featureless_gpu()].map(probe);
+        assert!(indexed.pixels == unrolled.pixels, "{}", sample.id);
+        probed += usize::from(indexed.pixels.iter().flatten().count() > 1000);
+    }
+    assert!(probed >= 5, "{probed} samples show surfaces");
+}
