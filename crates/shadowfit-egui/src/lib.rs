@@ -27,7 +27,7 @@
 //!             None => {}
 //!         }
 //!     });
-//!     egui::Panel::top("views").show(ui, |ui| shadowfit_egui::view_bar(ui, &mut settings.view));
+//!     egui::Panel::top("views").show(ui, |ui| shadowfit_egui::view_bar(ui, &mut settings.view, None));
 //!     egui::CentralPanel::default().show(ui, |ui| {
 //!         let picture = ui.max_rect();
 //!         shadowfit_egui::legend_overlay(ui.ctx(), picture, &settings.view, figures);

@@ -13,16 +13,18 @@ use crate::theme::Palette;
 const MODE: &str = "view.mode";
 
 /// A button for each view, with its name and its key, 1..=9 and 0 in the order of [`ViewMode::ALL`]; the chosen one is
-/// filled. It wraps where the line is too narrow. Returns the response of the whole bar, which is
+/// filled. It wraps where the line is too narrow. `no_compute` is why the device has no compute shaders, if it has none:
+/// the views that take them are grey then, and say so. Returns the response of the whole bar, which is
 /// [changed](Response::changed) when another view was chosen.
-pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
+pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) -> Response {
     let before = view.mode;
     let mut bar = ui
         .horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::Vec2::splat(3.0);
             ui.spacing_mut().button_padding.x = 6.0;
             for (key, mode) in VIEW_KEYS.into_iter().zip(ViewMode::ALL) {
-                if button(ui, option(mode), key, mode == view.mode).clicked() {
+                let refused = no_compute.filter(|_| mode.needs_compute());
+                if button(ui, option(mode), (key, refused), mode == view.mode).clicked() {
                     view.mode = mode;
                 }
             }
@@ -34,14 +36,16 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
     bar
 }
 
-/// The views as a menu that shows the chosen one, for where [`view_bar`] takes too much room. Returns the response of its
-/// button, which is [changed](Response::changed) when another view was chosen.
-pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings) -> Response {
+/// The views as a menu that shows the chosen one, for where [`view_bar`] takes too much room; `no_compute` as there.
+/// Returns the response of its button, which is [changed](Response::changed) when another view was chosen.
+pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) -> Response {
     let before = view.mode;
     let (mut response, _) = MenuButton::new(option(view.mode).label).ui(ui, |ui| {
         for mode in ViewMode::ALL {
             let chosen = Button::selectable(mode == view.mode, option(mode).label);
-            let response = ui.add(chosen).on_hover_text(option(mode).help);
+            let refused = no_compute.filter(|_| mode.needs_compute());
+            let response = ui.add_enabled(refused.is_none(), chosen).on_hover_text(option(mode).help);
+            let response = response.on_disabled_hover_text(refused.unwrap_or_default());
             rename(ui, &response, format!("View: {}", option(mode).label));
             if response.clicked() {
                 view.mode = mode;
@@ -55,13 +59,14 @@ pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings) -> Response {
     response
 }
 
-fn button(ui: &mut Ui, option: &ChoiceOption, key: &str, is_selected: bool) -> Response {
+fn button(ui: &mut Ui, option: &ChoiceOption, (key, refused): (&str, Option<&str>), is_selected: bool) -> Response {
     let palette = Palette::of(ui);
     let weak = if is_selected { palette.on_accent } else { palette.weak };
     let name = RichText::new(option.label);
     let key_text = RichText::new(key).small().color(weak);
     let button = Button::selectable(is_selected, (name, key_text)).frame_when_inactive(true);
-    let response = ui.add(button).on_hover_text(format!("{} ({key})", option.help));
+    let response = ui.add_enabled(refused.is_none(), button).on_hover_text(format!("{} ({key})", option.help));
+    let response = response.on_disabled_hover_text(refused.unwrap_or_default());
     rename(ui, &response, format!("View: {}", option.label));
     response
 }

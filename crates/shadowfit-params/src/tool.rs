@@ -126,6 +126,11 @@ impl ViewMode {
         }
     }
 
+    /// Whether it takes compute shaders, which WebGL2 lacks.
+    pub const fn needs_compute(self) -> bool {
+        self.is_judged() || matches!(self, Self::Traced)
+    }
+
     /// Whether rays are needed to show it.
     pub const fn is_judged(self) -> bool {
         matches!(self, Self::Truth | Self::Error)

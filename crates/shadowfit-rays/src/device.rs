@@ -31,8 +31,12 @@ pub(crate) fn buffer_limit(device: &wgpu::Device) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
-/// Does work that may find the device out of memory, or unable to do it.
+/// Does work that may find the device out of memory, or unable to do it. WebGPU in browsers reports errors later, to the
+/// device's own handler.
 pub(crate) fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, RayError> {
+    if device.adapter_info().backend == wgpu::Backend::BrowserWebGpu {
+        return Ok(work());
+    }
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let result = work();
@@ -42,7 +46,7 @@ pub(crate) fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Resu
     }
 }
 
-/// The result of a future that is ready: errors are known at once except in browsers, where they are reported later.
+/// The result of a future that is ready, as those of errors are outside of browsers.
 fn now<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(result) => result,

@@ -137,6 +137,11 @@ impl Gpu {
         self.adapter.get_info().name
     }
 
+    /// Whether the device has compute shaders.
+    pub fn can_compute(&self) -> bool {
+        self.device.limits().max_compute_invocations_per_workgroup > 0
+    }
+
     /// Whether pictures are drawn by the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu

@@ -16,7 +16,9 @@ mod scene;
 
 pub use deform::Deformed;
 pub use error::SceneError;
-pub use import::{LoadStep, SceneSize, load_gltf, load_gltf_from_memory, load_gltf_scene, load_gltf_with_progress};
+pub use import::{DecodeImage, DecodedImage, LoadStep, SceneSize, gltf_images, load_gltf_from_memory};
+#[cfg(not(target_family = "wasm"))]
+pub use import::{decode_image, load_gltf, load_gltf_scene, load_gltf_with_progress};
 pub use pose::{Instance, Pose, Triangle};
 pub use scene::*;
 

@@ -9,6 +9,7 @@ use shadowfit_classics::{SAMPLES, SampleValues};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
 use shadowfit_render::AdapterChoice;
+#[cfg(not(target_family = "wasm"))]
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
 
@@ -121,6 +122,7 @@ impl Arguments {
     /// # Errors
     ///
     /// If the file cannot be loaded, or has no scene or animation of the index asked for.
+    #[cfg(not(target_family = "wasm"))]
     pub fn load_scene(&self) -> Result<Scene> {
         let scene = self.source()?.unwrap_or_default().load(&|_, _| ())?;
         check_animation(self.animation, scene.animations.len(), &scene.name)?;

@@ -89,7 +89,12 @@ async fn load(
         crate::web::page::busy(Some(progress.ahead(Instant::now())));
     };
     next_turn().await;
-    let scene = match source.load(&|step: LoadStep, size| begin(step as usize, Some(size))) {
+    let tell = |step: LoadStep, size: &SceneSize| begin(step as usize, Some(size));
+    #[cfg(target_family = "wasm")]
+    let loaded = source.load(&tell).await;
+    #[cfg(not(target_family = "wasm"))]
+    let loaded = source.load(&tell);
+    let scene = match loaded {
         Ok(scene) => scene,
         Err(error) => return Some(Err(error)),
     };

@@ -86,19 +86,34 @@ impl SceneSource {
         }
     }
 
+    /// The same for a page, whose browser decodes images.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be loaded, or has no such scene.
+    #[cfg(target_family = "wasm")]
+    pub(crate) async fn load(&self, progress: &dyn Fn(LoadStep, &SceneSize)) -> Result<Scene> {
+        Ok(match self {
+            Self::BuiltIn(scene) => scene.build(),
+            Self::Sample { sample, .. } => sample.scene(),
+            Self::File { path, index } => {
+                let images = crate::web::files::decode(path).await;
+                crate::web::files::load_gltf(path, *index, &images, progress)?
+            }
+        })
+    }
+
     /// Loads the scene, and tells the steps of loading a file.
     ///
     /// # Errors
     ///
     /// If the file cannot be loaded, or has no such scene.
+    #[cfg(not(target_family = "wasm"))]
     pub(crate) fn load(&self, progress: &dyn Fn(LoadStep, &SceneSize)) -> Result<Scene> {
         Ok(match self {
             Self::BuiltIn(scene) => scene.build(),
             Self::Sample { sample, .. } => sample.scene(),
-            #[cfg(not(target_family = "wasm"))]
             Self::File { path, index } => shadowfit_scene::load_gltf_with_progress(path, *index, progress)?,
-            #[cfg(target_family = "wasm")]
-            Self::File { path, index } => crate::web::files::load_gltf(path, *index, progress)?,
         })
     }
 }

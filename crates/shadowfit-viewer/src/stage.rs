@@ -221,6 +221,12 @@ impl Stage {
         self.side.problem.as_deref().or(other)
     }
 
+    /// Why the device has no compute shaders, if it has none.
+    pub(crate) fn no_compute(&self) -> Option<&'static str> {
+        let reason = "This takes compute shaders, which this browser draws without: it has WebGL2 and no WebGPU";
+        (!self.gpu.can_compute()).then_some(reason)
+    }
+
     /// The settings that the scene was opened with.
     pub fn home_settings(&self) -> Settings {
         self.home.0

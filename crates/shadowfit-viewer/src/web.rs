@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use anyhow::{Context, Result, anyhow};
 use egui::{FontData, FontDefinitions, FontFamily, OutputCommand, Pos2, RawInput, Rect, ViewportInfo};
-use epaint_default_fonts::{EGUI_ICONS, HACK_REGULAR, UBUNTU_LIGHT};
+use epaint_default_fonts::{EGUI_ICONS, UBUNTU_LIGHT};
 use shadowfit_egui::Command;
 use shadowfit_render::{AdapterChoice, Gpu};
 use wasm_bindgen::JsError;
@@ -271,8 +271,8 @@ impl Page {
     }
 
     /// Facts for tests of the page, as a line of JSON.
-    pub fn facts(&mut self) -> String {
-        facts::of(&mut self.viewer)
+    pub fn facts(&self) -> String {
+        facts::of(&self.viewer, [self.configuration.width, self.configuration.height])
     }
 }
 
@@ -372,10 +372,14 @@ fn link_of(fragment: String) -> Option<String> {
     (fragment.len() > 1).then_some(fragment)
 }
 
+/// The font for code: Hack, <https://sourcefoundry.org/hack> (MIT and Bitstream Vera), with its Latin and Greek letters, its
+/// arrows, signs of mathematics and shapes alone, by `pyftsubset` (fonttools).
+const CODE_FONT: &[u8] = include_bytes!("../fonts/code.ttf");
+
 /// egui's own fonts without those for emoji, which are larger than the others. That for code has arrows.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
-    let all = [("text", UBUNTU_LIGHT), ("code", HACK_REGULAR), ("icons", EGUI_ICONS)];
+    let all = [("text", UBUNTU_LIGHT), ("code", CODE_FONT), ("icons", EGUI_ICONS)];
     fonts.font_data.extend(all.map(|(name, bytes)| (name.to_owned(), Arc::new(FontData::from_static(bytes)))));
     for (family, names) in
         [(FontFamily::Proportional, ["text", "icons", "code"]), (FontFamily::Monospace, ["code", "icons", "text"])]

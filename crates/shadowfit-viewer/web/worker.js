@@ -8,6 +8,24 @@ self.tellPage = (kind, value, name) => {
   postMessage([kind, value, name], transferred);
 };
 
+/// Pixels of an encoded image: width, height, and four bytes each. A canvas would multiply them by their opacity, and lose
+/// the colours of what is cut out; textures do not.
+self.decodeImage = async (bytes) => {
+  const options = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' };
+  const picture = await createImageBitmap(new Blob([bytes]), options);
+  const { width, height } = picture;
+  const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
+  const rgba = new Uint8Array(width * height * 4);
+  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, gl.getParameter(gl.TEXTURE_BINDING_2D), 0);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  picture.close();
+  return [width, height, rgba];
+};
+
 /// The module's bytes, compiled while they arrive; the page is told how many have.
 async function fetched(url, bytes) {
   const answer = await fetch(url);

@@ -24,6 +24,12 @@ pub(crate) enum Part {
     Xdotool,
     /// `ImageMagick`'s screenshot tool, `import`.
     Import,
+    /// A browser of the Chromium family; the tests of the page run in it.
+    Chromium,
+    /// Node.js, which drives the browser.
+    Node,
+    /// npm, which fetches what Node.js drives it with.
+    Npm,
     /// `pkg-config`, and libudev's development files through it: what the gamepad feature is built with.
     Libudev,
 }
@@ -50,6 +56,10 @@ pub(crate) enum Display {
     /// On the desktop of a system that always has one.
     Desktop,
 }
+
+/// What the tests of the page need, with the Debian package of each.
+pub(crate) const PAGE_TOOLS: [(Part, &str); 3] =
+    [(Part::Chromium, "chromium"), (Part::Node, "nodejs"), (Part::Npm, "npm")];
 
 /// The shared libraries that winit opens at run time for a window on X11, with the Debian package of each.
 pub(crate) const WINDOW_LIBRARIES: [(&str, &str); 5] = [
@@ -81,6 +91,9 @@ impl Machine {
             Part::Xvfb => in_path("Xvfb"),
             Part::Xdotool => in_path("xdotool"),
             Part::Import => in_path("import"),
+            Part::Chromium => crate::web::BROWSERS.iter().any(|name| in_path(name)),
+            Part::Node => in_path("node"),
+            Part::Npm => in_path("npm"),
             Part::Libudev => process::succeeds(Command::new("pkg-config").args(["--exists", "libudev"])),
         };
         Self { parts: all_parts().filter(is_there).collect(), display }
@@ -99,6 +112,11 @@ impl Machine {
     /// Whether anything can be rendered at all.
     pub(crate) fn can_render(&self) -> bool {
         self.has(Part::VulkanLoader) && self.has(Part::VulkanDriver)
+    }
+
+    /// Whether the tests of the page have their tools.
+    pub(crate) fn can_test_page(&self) -> bool {
+        self.can_render() && PAGE_TOOLS.iter().all(|&(part, _)| self.has(part))
     }
 
     /// Whether the window test has its tools.
@@ -120,6 +138,9 @@ fn all_parts() -> impl Iterator<Item = Part> {
         Part::Xvfb,
         Part::Xdotool,
         Part::Import,
+        Part::Chromium,
+        Part::Node,
+        Part::Npm,
         Part::Libudev,
     ]
     .into_iter()
@@ -242,7 +263,8 @@ mod tests {
     #[test]
     fn a_window_test_needs_every_tool_and_library() {
         assert!(Machine::complete(Display::None).can_test_window());
-        for part in all_parts().filter(|part| !matches!(part, Part::SoftwareDriver | Part::Libudev)) {
+        let others = [Part::SoftwareDriver, Part::Libudev, Part::Chromium, Part::Node, Part::Npm];
+        for part in all_parts().filter(|part| !others.contains(part)) {
             let mut machine = Machine::complete(Display::None);
             machine.parts.remove(&part);
             assert!(!machine.can_test_window(), "{part:?}");

@@ -68,6 +68,12 @@ enum Task {
         /// Port to serve on; any free one if it is 0.
         #[arg(long, value_name = "PORT", default_value_t = 8080)]
         port: u16,
+        /// Tests the page in headless Chromium, on software WebGPU and WebGL2.
+        #[arg(long, conflicts_with = "build")]
+        test: bool,
+        /// The same with ten minutes of random actions instead of a fraction of one.
+        #[arg(long, requires = "test")]
+        long: bool,
     },
     /// Rewrite the golden images of the tests from what is rendered now; look at the diff before committing it.
     Golden,
@@ -81,7 +87,8 @@ fn main() -> ExitCode {
         Task::Gallery { samples } => gallery::gallery(&samples),
         Task::Maths => maths::maths(),
         Task::Bench { args } => bench::bench(&args),
-        Task::Web { build, port } => web::web(build.as_deref(), port),
+        Task::Web { test: true, long, .. } => web::test(long),
+        Task::Web { build, port, .. } => web::web(build.as_deref(), port),
         Task::Golden => test::golden(),
     };
     match result {

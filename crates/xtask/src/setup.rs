@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Result, bail};
 
-use crate::machine::{Display, Machine, Part, WINDOW_LIBRARIES};
+use crate::machine::{Display, Machine, PAGE_TOOLS, Part, WINDOW_LIBRARIES};
 use crate::process;
 
 /// What the machine is made ready for.
@@ -15,7 +15,10 @@ pub(crate) enum Purpose {
     Run,
     /// Rendering pictures that must be the same everywhere: the software driver.
     Pictures,
-    /// Running the tests: as for running, the software driver of the golden images, and the tools of the window test.
+    /// Testing the page: the software driver, and a browser with what drives it.
+    Page,
+    /// Running the tests: as for running, the software driver of the golden images, the tools of the window test, and
+    /// those of the tests of the page.
     Test,
 }
 
@@ -71,6 +74,9 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     }
     if testing {
         needs.extend([(Part::Xvfb, "xvfb"), (Part::Xdotool, "xdotool"), (Part::Import, "imagemagick")]);
+    }
+    if testing || purpose == Purpose::Page {
+        needs.extend(PAGE_TOOLS);
     }
     needs.extend([(Part::Libudev, "libudev-dev"), (Part::Libudev, "pkg-config")]);
     needs.into_iter().filter(|&(part, _)| !machine.has(part)).map(|(_, package)| package).collect()
@@ -153,7 +159,9 @@ mod tests {
     #[test]
     fn a_bare_machine_gets_the_window_test_tools_to_test() {
         let packages = missing_packages(Purpose::Test, &Machine::default());
-        for package in ["libvulkan1", "mesa-vulkan-drivers", "libxkbcommon-x11-0", "xvfb", "xdotool", "imagemagick"] {
+        for package in
+            ["libvulkan1", "mesa-vulkan-drivers", "libxkbcommon-x11-0", "xvfb", "xdotool", "imagemagick", "chromium"]
+        {
             assert!(packages.contains(&package), "{package} is not in {packages:?}");
         }
     }

@@ -9,6 +9,7 @@ use anyhow::{Result, bail};
 use crate::machine::{Machine, Part};
 use crate::process;
 use crate::setup::{self, Purpose};
+use crate::web;
 
 /// The environment variable with which the golden tests write what they would compare.
 const UPDATE_GOLDENS: &str = "SHADOWFIT_UPDATE_GOLDENS";
@@ -39,8 +40,13 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
     // The runner with the most tests comes last, so that its counts close the output.
     let doc_tests = timed(process::cargo("test").args(["--workspace", "--doc", "--no-fail-fast"]).args(features));
     let tests = timed(&mut runner(features, &left_out));
+    let page = machine.can_test_page().then(|| timed_by(|| web::run(&machine, false)));
     for LeftOut { name_part, reason } in &left_out {
         println!("SKIPPED: tests with `{name_part}` in their name: {reason}");
+    }
+    match &page {
+        Some((result, time)) => println!("{} ({:.0} s)", verdict("tests of the page", result), time.as_secs_f32()),
+        None => println!("SKIPPED: tests of the page: no Chromium, Node.js, npm or Vulkan driver here"),
     }
     println!(
         "{} ({:.0} s), {} ({:.0} s)",
@@ -49,7 +55,7 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
         verdict("all other tests", &tests.0),
         tests.1.as_secs_f32()
     );
-    doc_tests.0.and(tests.0)
+    doc_tests.0.and(tests.0).and(page.map_or(Ok(()), |(result, _)| result))
 }
 
 /// Runs the golden tests so that they write their pictures.
@@ -67,8 +73,12 @@ pub(crate) fn golden() -> Result<()> {
 }
 
 fn timed(command: &mut Command) -> (Result<()>, Duration) {
+    timed_by(|| process::run(command))
+}
+
+fn timed_by(work: impl FnOnce() -> Result<()>) -> (Result<()>, Duration) {
     let start = Instant::now();
-    let result = process::run(command);
+    let result = work();
     (result, start.elapsed())
 }
 

@@ -11,7 +11,10 @@ use image::imageops::FilterType;
 
 use crate::process;
 
+mod browser;
 mod serve;
+
+pub(crate) use browser::{BROWSERS, run, test};
 
 /// The target of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -27,7 +30,7 @@ const COVER: (&str, u32) = ("docs/images/scene-courtyard.png", 960);
 pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
     let is_served = folder.is_none();
     let folder = folder.map_or_else(|| process::root().join("out/web"), Path::to_owned);
-    build(&folder)?;
+    build(&folder, "web")?;
     if !is_served {
         return Ok(());
     }
@@ -38,13 +41,13 @@ pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
     })
 }
 
-/// Builds the page.
-fn build(folder: &Path) -> Result<()> {
+/// Builds the page with a profile.
+fn build(folder: &Path, profile: &str) -> Result<()> {
     need_target()?;
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut sizes = String::new();
     for (name, feature) in MODULES {
-        let bytes = module(&folder.join(name), feature)?;
+        let bytes = module(&folder.join(name), feature, profile)?;
         // Writing to a String cannot fail.
         let _ = write!(sizes, "{name}: {bytes}, ");
     }
@@ -60,19 +63,37 @@ fn build(folder: &Path) -> Result<()> {
 }
 
 /// Builds a module with its JavaScript, and returns its bytes.
-fn module(folder: &Path, feature: &str) -> Result<u64> {
+fn module(folder: &Path, feature: &str, profile: &str) -> Result<u64> {
     let mut compiler = process::cargo("rustc");
-    compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib", "--profile", "web"]);
+    compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib", "--profile", profile]);
     compiler.args(["--target", TARGET, "--no-default-features", "--features", feature]);
     process::run(&mut compiler)?;
-    let built = target_folder().join(TARGET).join("web/shadowfit_viewer.wasm");
+    // Cargo names the folder of its profile `dev` otherwise.
+    let profile = if profile == "dev" { "debug" } else { profile };
+    let built = target_folder().join(TARGET).join(profile).join("shadowfit_viewer.wasm");
     let mut bindgen = process::cargo("run");
     bindgen.args(["--quiet", "--package", "xtask", "--features", "bindgen", "--bin", "bindgen", "--"]);
     process::run(bindgen.arg(&built).arg(folder))?;
-    Ok(fs::metadata(folder.join("shadowfit_viewer_bg.wasm"))?.len())
+    let module = folder.join("shadowfit_viewer_bg.wasm");
+    if profile == "web" {
+        shrink(&module)?;
+    }
+    Ok(fs::metadata(module)?.len())
 }
 
-fn target_folder() -> PathBuf {
+/// Makes a module a tenth smaller with Binaryen's `wasm-opt`, where that is installed.
+fn shrink(module: &Path) -> Result<()> {
+    if !process::succeeds(Command::new("wasm-opt").arg("--version")) {
+        println!("the module stays a tenth larger: wasm-opt is not installed (on Debian: binaryen)");
+        return Ok(());
+    }
+    let mut optimizer = Command::new("wasm-opt");
+    optimizer.args(["-Oz", "--strip-debug", "--enable-bulk-memory", "--enable-reference-types"]);
+    optimizer.args(["--enable-mutable-globals", "--enable-nontrapping-float-to-int", "--enable-sign-ext"]);
+    process::run(optimizer.args(["--enable-multivalue", "--output"]).arg(module).arg(module))
+}
+
+pub(crate) fn target_folder() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| process::root().join("target"), PathBuf::from)
 }
 

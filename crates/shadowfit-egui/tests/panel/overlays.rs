@@ -22,7 +22,7 @@ fn small<State>(size: [f32; 2]) -> HarnessBuilder<State> {
 fn bar(width: f32) -> Harness<'static, ViewSettings> {
     small([width, 200.0]).build_ui_state(
         |ui, view: &mut ViewSettings| {
-            view_bar(ui, view);
+            view_bar(ui, view, None);
         },
         ViewSettings::default(),
     )

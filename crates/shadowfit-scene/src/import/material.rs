@@ -12,7 +12,6 @@ use gltf::json::{Index, Root, deserialize};
 use super::accessor::Reader;
 use super::image::Images;
 use super::notes::Notes;
-use super::uri::Folder;
 use crate::error::{Problem, entry};
 use crate::{AlphaMode, Image, Material, Texture, Wrap};
 
@@ -49,8 +48,7 @@ struct Use<'a> {
 
 impl<'a> Materials<'a> {
     /// Holds the default material only.
-    pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, folder: Folder<'a>) -> Self {
-        let images = Images::new(root, folder);
+    pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, images: Images<'a>) -> Self {
         Self { root, reader, images, looks: HashMap::new(), loaded: vec![Material::default()] }
     }
 

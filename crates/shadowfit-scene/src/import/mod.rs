@@ -7,6 +7,8 @@
 mod accessor;
 mod animation;
 mod container;
+#[cfg(not(target_family = "wasm"))]
+mod decode;
 mod image;
 mod influence;
 mod material;
@@ -30,13 +32,19 @@ use shadowfit::Aabb;
 
 use self::accessor::Reader;
 use self::animation::Animations;
-use self::container::{MAX_FILE_BYTES, Source};
+use self::container::Source;
+#[cfg(not(target_family = "wasm"))]
+pub use self::decode::decode_image;
+use self::image::Images;
+pub use self::image::{DecodeImage, DecodedImage};
 use self::material::Materials;
 use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
 pub use self::size::SceneSize;
-use self::uri::{Folder, file_size, read_file};
+use self::uri::Folder;
+#[cfg(not(target_family = "wasm"))]
+use self::uri::{file_size, read_file};
 use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
 
@@ -49,6 +57,7 @@ const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
 /// # Errors
 /// If the file cannot be read, is not valid glTF 2.0, requires an extension that is not supported, or draws nothing;
 /// see [`SceneError`].
+#[cfg(not(target_family = "wasm"))]
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     load_gltf_scene(path, None)
 }
@@ -57,6 +66,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 ///
 /// # Errors
 /// As [`load_gltf`], and if the file has no such scene.
+#[cfg(not(target_family = "wasm"))]
 pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
     load_gltf_with_progress(path, scene, &|_, _| ())
 }
@@ -76,6 +86,7 @@ pub enum LoadStep {
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
+#[cfg(not(target_family = "wasm"))]
 pub fn load_gltf_with_progress(
     path: &Path,
     scene: Option<usize>,
@@ -83,24 +94,26 @@ pub fn load_gltf_with_progress(
 ) -> Result<Scene, SceneError> {
     let size = SceneSize::of_file(file_size(path));
     progress(LoadStep::Read, &size);
-    let bytes = read_file(path, MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
+    let bytes = read_file(path, container::MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
         path: path.to_owned(),
         reason,
         hint: "Check the path and its permissions",
     })?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    load(path, (&bytes, Folder::Disk(folder)), scene, size, progress)
+    load(path, (&bytes, Folder::Disk(folder), &decode_image), scene, size, progress)
 }
 
 /// Loads scene number `scene` of the file `name` (`None`: its default one) without a file system, such as in a browser:
 /// `files` is the content of that file and of those that it refers to, by their paths relative to it. Files that were
-/// chosen one by one have no folders, so one of the same name alone is taken, too.
+/// chosen one by one have no folders, so one of the same name alone is taken, too. `decode` decodes the images: `decode_image`
+/// of this crate, or in a browser what it decoded of [`gltf_images`].
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
 pub fn load_gltf_from_memory(
     name: &str,
     files: &BTreeMap<String, Vec<u8>>,
+    decode: DecodeImage<'_>,
     scene: Option<usize>,
     progress: &dyn Fn(LoadStep, &SceneSize),
 ) -> Result<Scene, SceneError> {
@@ -112,12 +125,23 @@ pub fn load_gltf_from_memory(
     })?;
     let size = SceneSize::of_file(bytes.len() as u64);
     progress(LoadStep::Read, &size);
-    load(path, (bytes, Folder::Memory(files)), scene, size, progress)
+    load(path, (bytes, Folder::Memory(files), decode), scene, size, progress)
+}
+
+/// The encoded images of a file that [`load_gltf_from_memory`] would load, to be decoded before that: what is missing or
+/// broken is left out.
+pub fn gltf_images(name: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<Vec<u8>> {
+    let parsed = files.get(name).and_then(|bytes| container::parse(Path::new(name), bytes, |_| ()).ok());
+    let Some(mut source) = parsed else { return Vec::new() };
+    let (folder, binary) = (Folder::Memory(files), source.binary.take());
+    let reader = Reader::new(&source.root, binary, folder);
+    let images = source.root.images.iter().enumerate();
+    images.filter_map(|(index, json)| Some(image::encoded(json, index, folder, &reader).ok()?.into_owned())).collect()
 }
 
 fn load(
     path: &Path,
-    (bytes, folder): (&[u8], Folder<'_>),
+    (bytes, folder, decode): (&[u8], Folder<'_>, DecodeImage<'_>),
     scene: Option<usize>,
     mut size: SceneSize,
     progress: &dyn Fn(LoadStep, &SceneSize),
@@ -131,7 +155,8 @@ fn load(
     check_not_empty(&source.root, &tree, path)?;
     progress(LoadStep::Decode, &size.with_content(&source.root, &tree, folder));
     let reader = Reader::new(&source.root, binary, folder);
-    let mut imported = import(&source, &reader, tree, folder).map_err(|problem| problem.at(path))?;
+    let mut imported = import(&source, &reader, tree, Images::new(&source.root, folder, decode))
+        .map_err(|problem| problem.at(path))?;
     imported.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(imported)
 }
@@ -146,14 +171,19 @@ fn check_not_empty(root: &Root, tree: &Tree, path: &Path) -> Result<(), SceneErr
     Err(SceneError::Empty { path: path.to_owned(), reason: reason.to_owned(), hint })
 }
 
-fn import(source: &Source, reader: &Reader, mut tree: Tree, folder: Folder<'_>) -> Result<Scene, Problem> {
+fn import<'a>(
+    source: &'a Source,
+    reader: &'a Reader<'a>,
+    mut tree: Tree,
+    images: Images<'a>,
+) -> Result<Scene, Problem> {
     let root = &source.root;
     let mut notes = Notes::default();
     if !source.ignored_extensions.is_empty() {
         notes.add(format!("extensions ignored: {}", source.ignored_extensions.join(", ")));
     }
     let mut nodes = std::mem::take(&mut tree.nodes);
-    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, folder, &mut notes)?;
+    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, images, &mut notes)?;
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
     tree.nodes = nodes;
     let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
@@ -175,10 +205,10 @@ fn meshes<'a>(
     reader: &'a Reader<'a>,
     tree: &Tree,
     nodes: &mut [Node],
-    folder: Folder<'a>,
+    images: Images<'a>,
     notes: &mut Notes,
 ) -> Result<(Vec<Mesh>, Materials<'a>), Problem> {
-    let mut materials = Materials::new(root, reader, folder);
+    let mut materials = Materials::new(root, reader, images);
     let mut meshes = Vec::new();
     let mut loaded = HashMap::new();
     for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {

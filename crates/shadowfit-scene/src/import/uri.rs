@@ -22,7 +22,8 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 /// Where the files are that a glTF file refers to.
 #[derive(Clone, Copy)]
 pub(crate) enum Folder<'a> {
-    /// A folder of the file system.
+    /// A folder of the file system, which pages do not have.
+    #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "only files in memory are loaded there"))]
     Disk(&'a Path),
     /// Contents by their paths.
     Memory(&'a BTreeMap<String, Vec<u8>>),

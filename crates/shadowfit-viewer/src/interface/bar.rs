@@ -20,7 +20,8 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
                 // Views and comparison are those of techniques.
                 return;
             }
-            shadowfit_egui::view_bar(ui, &mut stage.settings.view);
+            let no_compute = stage.no_compute();
+            shadowfit_egui::view_bar(ui, &mut stage.settings.view, no_compute);
             ui.separator();
             let compare = Button::selectable(stage.is_comparing(), "A | B");
             let command = Command::Compare(Toggle::Switch);
@@ -55,7 +56,8 @@ pub(super) fn show_narrow(
         ui.horizontal(|ui| {
             scenes(ui, input, output);
             if !stage.draws_sample() {
-                shadowfit_egui::view_menu(ui, &mut stage.settings.view);
+                let no_compute = stage.no_compute();
+                shadowfit_egui::view_menu(ui, &mut stage.settings.view, no_compute);
             }
             more(ui, stage, output);
             if has_drawer {

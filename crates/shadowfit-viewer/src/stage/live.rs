@@ -73,6 +73,8 @@ pub(super) struct Live {
     pub(super) on_gpu: bool,
     /// Whether it is too slow to judge each frame.
     is_slow: bool,
+    /// Whether nothing can judge: a browser has no threads, and WebGL2 no compute shaders.
+    is_impossible: bool,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
     /// The picture that the thread judges, and its probe.
@@ -94,14 +96,15 @@ pub(super) struct Live {
 impl Live {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let is_slow = gpu.is_software();
-        Self { on_gpu: !is_slow || cfg!(target_family = "wasm"), is_slow, ..Self::default() }
+        let is_page = cfg!(target_family = "wasm");
+        Self { on_gpu: !is_slow || is_page, is_slow, is_impossible: is_page && !gpu.can_compute(), ..Self::default() }
     }
 
     /// Forgets all pictures, for another scene.
     pub(super) fn forget(&mut self) {
-        let Self { on_gpu, is_slow, waits, .. } = *self;
+        let Self { on_gpu, is_slow, is_impossible, waits, .. } = *self;
         // The thread stops judging.
-        *self = Self { on_gpu, is_slow, waits, ..Self::default() };
+        *self = Self { on_gpu, is_slow, is_impossible, waits, ..Self::default() };
     }
 
     /// The picture that was judged last.
@@ -153,6 +156,9 @@ impl Live {
         maps: &[FittedMap],
         size: [u32; 2],
     ) -> Result<bool> {
+        if self.is_impossible {
+            return Ok(false);
+        }
         let key = Key {
             camera: view.camera,
             technique: shot.settings.technique,

@@ -30,6 +30,14 @@ const FOCUS: f64 = 0.6;
 impl Viewer {
     /// Runs a command.
     pub(super) fn run(&mut self, command: Command) {
+        let takes_compute = match command {
+            Command::View(mode) => mode.needs_compute(),
+            Command::NextMarks => true,
+            _ => false,
+        };
+        if let Some(reason) = self.stage.no_compute().filter(|_| takes_compute) {
+            return self.say(reason);
+        }
         let view = &mut self.stage.settings.view;
         match command {
             Command::View(mode) => view.mode = mode,

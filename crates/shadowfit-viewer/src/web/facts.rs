@@ -4,7 +4,11 @@ use serde_json::json;
 
 use crate::viewer::Viewer;
 
-pub(super) fn of(viewer: &mut Viewer) -> String {
+/// Bytes of a page of memory, in WebAssembly's sense.
+const PAGE_BYTES: usize = 1 << 16;
+
+/// `size` is that of the canvas, in pixels.
+pub(super) fn of(viewer: &Viewer, size: [u32; 2]) -> String {
     let stage = &viewer.stage;
     let figures = stage.judged_figures();
     let camera = &stage.camera;
@@ -14,6 +18,9 @@ pub(super) fn of(viewer: &mut Viewer) -> String {
         "is_waiting": viewer.is_waiting(),
         "has_played": viewer.has_played(),
         "is_judged": stage.is_judged(),
+        "size": size,
+        "memory": core::arch::wasm32::memory_size(0) * PAGE_BYTES,
+        "drawer": viewer.interface.drawer_open,
         "frame_ms": viewer.interface.frame_ms,
         "position": camera.position.to_array(),
         "angles": [camera.yaw, camera.pitch],

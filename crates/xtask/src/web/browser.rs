@@ -1,0 +1,96 @@
+//! Tests of the page in headless Chromium: `tests/web/page.test.mjs`, driven by playwright-core.
+
+use std::path::Path;
+use std::process::Command;
+use std::{fs, thread};
+
+use anyhow::{Context, Result, bail};
+
+use super::{build, serve, target_folder};
+use crate::machine::Machine;
+use crate::process;
+use crate::setup::{self, Purpose};
+
+/// Names that Chromium and its kin go by.
+pub(crate) const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// Size of the window whose pictures the page's are compared with, in pixels: that of `page.test.mjs`.
+const SIZE: &str = "720x300";
+
+/// Builds the page without much optimisation, and tests it; `is_long` for ten minutes of random actions.
+///
+/// # Errors
+/// When something is missing or a test fails.
+pub(crate) fn test(is_long: bool) -> Result<()> {
+    let machine = setup::prepare(Purpose::Page)?;
+    if !machine.can_test_page() {
+        bail!("the page cannot be tested: Chromium, Node.js or npm is missing");
+    }
+    run(&machine, is_long)
+}
+
+/// The same on a machine that has everything.
+pub(crate) fn run(machine: &Machine, is_long: bool) -> Result<()> {
+    let folder = target_folder().join("web-test");
+    let page = folder.join("page");
+    build(&page, "dev")?;
+    let tests = process::root().join("tests/web");
+    let native = folder.join("native");
+    play(machine, &tests.join("tour.txt"), &native)?;
+    let modules = folder.join("tests");
+    copy(&tests, &modules)?;
+    process::run(Command::new("npm").args(["install", "--no-audit", "--no-fund", "--silent"]).current_dir(&modules))?;
+    let address = serve_beside(page);
+    let mut node = Command::new("node");
+    node.args(["--test", "--test-reporter=spec", "page.test.mjs"]).current_dir(&modules);
+    node.env("PAGE", address).env("NATIVE", &native).env("BROWSER", browser()?);
+    node.env("ASSETS", process::root().join("../shared/assets"));
+    if is_long {
+        node.env("LONG", "1");
+    }
+    process::run(&mut node)
+}
+
+/// Plays a script in the viewer of this machine, with the software driver, and keeps what it saves.
+fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
+    let mut viewer = process::cargo("run");
+    viewer.args(["--quiet", "--example", "viewer"]).args(setup::features(machine)).arg("--");
+    viewer.arg("--headless").arg(folder).args(["--no-state", "--software", "--size", SIZE]).arg("--script").arg(script);
+    process::run(&mut viewer)
+}
+
+/// Copies the files of a folder, so that what npm installs lies elsewhere.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
+    for entry in fs::read_dir(from)? {
+        let file = entry?.path();
+        if file.is_file() {
+            fs::copy(&file, to.join(file.file_name().unwrap_or_default()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Serves a folder on a thread that ends with the process, and returns its address.
+fn serve_beside(folder: std::path::PathBuf) -> String {
+    let (sender, address) = std::sync::mpsc::channel();
+    thread::spawn(move || {
+        let served = serve::serve(&folder, 0, |address| {
+            // The receiver waits for it.
+            let _ = sender.send(address.to_owned());
+        });
+        if let Err(error) = served {
+            eprintln!("{error:#}");
+        }
+    });
+    address.recv().unwrap_or_default()
+}
+
+/// The browser that is there.
+fn browser() -> Result<String> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path)
+        .flat_map(|folder| BROWSERS.map(|name| folder.join(name)))
+        .find(|program| program.is_file());
+    Ok(found.context("Chromium is missing")?.to_string_lossy().into_owned())
+}

@@ -1,0 +1,312 @@
+// The viewer as a page, in headless Chromium, on software WebGPU and on software WebGL2: what it shows is compared with
+// what the same viewer shows in a window of this machine.
+//
+// `cargo xtask web --test` runs it. Environment: PAGE is the address of the page, NATIVE the folder with the files that
+// `tour.txt` wrote on this machine, BROWSER the browser, ASSETS a folder of hostile files that may be absent; LONG=1 makes the random actions take ten minutes.
+
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync, existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { after, before, describe, test } from 'node:test';
+import { chromium } from 'playwright-core';
+
+const { PAGE, NATIVE, BROWSER, ASSETS, LONG } = process.env;
+const here = (name) => fileURLToPath(new URL(name, import.meta.url));
+
+const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync'];
+const API_FLAGS = {
+  // With fewer of them the frames run, and the page stays white.
+  webgpu: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan',
+    '--use-vulkan=swiftshader', '--use-angle=swiftshader'],
+  webgl2: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+};
+/// Milliseconds that a software GPU may take for anything at all.
+const PATIENCE = 120_000;
+/// The longest task of the page that nobody notices, in milliseconds.
+const LONGEST_TASK = 50;
+/// Console messages of the browser itself, which no page can help.
+const OF_BROWSER = /software WebGL|GPU stall due to ReadPixels|Automatic fallback to software|powerPreference/;
+
+/// An open page with what it said.
+class Viewer {
+  static async open(browser, { api, query = '', hash = '', width = 720, height = 300, scale = 1, isTouch = false }) {
+    const context = await browser.newContext({
+      viewport: { width, height }, deviceScaleFactor: scale, hasTouch: isTouch, acceptDownloads: true,
+      permissions: ['clipboard-read', 'clipboard-write'],
+    });
+    const page = await context.newPage();
+    const viewer = new Viewer();
+    Object.assign(viewer, { context, page, said: [], files: new Map() });
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type()) && !OF_BROWSER.test(message.text())) {
+        viewer.said.push(message.text());
+      }
+    });
+    page.on('pageerror', (error) => viewer.said.push(error.message));
+    page.on('download', async (download) => {
+      const stream = await download.createReadStream();
+      const parts = [];
+      for await (const part of stream) {
+        parts.push(part);
+      }
+      viewer.files.set(download.suggestedFilename(), Buffer.concat(parts));
+    });
+    await page.addInitScript(() => {
+      window.longTasks = [];
+      new PerformanceObserver((list) => {
+        window.longTasks.push(...list.getEntries().map(({ startTime, duration }) => ({ startTime, duration })));
+      }).observe({ entryTypes: ['longtask'] });
+    });
+    await page.goto(`${PAGE}?api=${api}${query}${hash}`);
+    await viewer.until(async () => page.evaluate(() => document.documentElement.dataset.ready), 'the first frame');
+    return viewer;
+  }
+
+  async close() {
+    await this.context.close();
+  }
+
+  async facts() {
+    return this.page.evaluate(() => window.viewer.facts());
+  }
+
+  /// Waits for something to be true, and returns it.
+  async until(what, name, patience = PATIENCE) {
+    const end = Date.now() + patience;
+    for (;;) {
+      const found = await what();
+      if (found) {
+        return found;
+      }
+      const state = await this.page.evaluate(() => document.querySelector('#cover.failed #state')?.textContent);
+      assert.equal(state, undefined, `${name}: the viewer has ended`);
+      assert.ok(Date.now() < end, `${name} did not come: ${JSON.stringify(await this.facts()).slice(0, 400)}; ${this.said}`);
+      await new Promise((resolve) => setTimeout(resolve, 200));
+    }
+  }
+
+  async untilFacts(check, name, patience) {
+    return this.until(async () => {
+      const facts = await this.facts();
+      return check(facts) && facts;
+    }, name, patience);
+  }
+
+  /// Gives the page files as its file button does.
+  async choose(...files) {
+    await this.page.setInputFiles('#files', files);
+  }
+
+  /// Number of colours of a picture, and its size.
+  async colours(png) {
+    return this.page.evaluate(async (bytes) => {
+      const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${bytes}`)).blob());
+      const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+      context.drawImage(picture, 0, 0);
+      const { data } = context.getImageData(0, 0, picture.width, picture.height);
+      const colours = new Set(new Uint32Array(data.buffer));
+      return { count: colours.size, size: [picture.width, picture.height] };
+    }, png.toString('base64'));
+  }
+
+  /// Share of the pixels of two pictures that differ by more than `least` in any channel, and the mean difference. Both are
+  /// made smaller before: windows and pages have other numbers of samples per pixel.
+  async difference(one, other, least = 16) {
+    return this.page.evaluate(async ([one, other, least]) => {
+      const pixels = async (bytes) => {
+        const blob = await (await fetch(`data:image/png;base64,${bytes}`)).blob();
+        const picture = await createImageBitmap(blob, { colorSpaceConversion: 'none' });
+        const [width, height] = [picture.width, picture.height].map((side) => Math.round(side / 3));
+        const context = new OffscreenCanvas(width, height).getContext('2d');
+        context.imageSmoothingQuality = 'high';
+        context.drawImage(picture, 0, 0, width, height);
+        return context.getImageData(0, 0, width, height);
+      };
+      const [a, b] = [await pixels(one), await pixels(other)];
+      if (a.width !== b.width || a.height !== b.height) {
+        return { share: 1, mean: 255, sizes: [a.width, a.height, b.width, b.height] };
+      }
+      let [far, sum] = [0, 0];
+      for (let at = 0; at < a.data.length; at += 4) {
+        const channels = [0, 1, 2].map((channel) => Math.abs(a.data[at + channel] - b.data[at + channel]));
+        far += Math.max(...channels) > least ? 1 : 0;
+        sum += channels[0] + channels[1] + channels[2];
+      }
+      return { share: far / (a.data.length / 4), mean: sum / (a.data.length / 4 * 3) };
+    }, [one.toString('base64'), other.toString('base64'), least]);
+  }
+
+  quiet() {
+    assert.deepEqual(this.said, [], 'the console is free of errors and warnings');
+  }
+}
+
+/// The last line of a table of figures, by the names of its columns.
+function figures(csv) {
+  const lines = csv.toString().trim().split('\n');
+  const [names, values] = [lines[0], lines.at(-1)].map((line) => line.split(','));
+  return Object.fromEntries(names.map((name, index) => [name, Number(values[index])]));
+}
+
+for (const api of ['webgpu', 'webgl2']) {
+  const judges = api === 'webgpu';
+
+  describe(api, { concurrency: 1, timeout: 30 * 60_000 }, () => {
+    let browser;
+    let viewer;
+
+    before(async () => {
+      browser = await chromium.launch({ executablePath: BROWSER, args: [...FLAGS, ...API_FLAGS[api]] });
+      viewer = await Viewer.open(browser, { api });
+    });
+    after(async () => browser?.close());
+
+    test('the page loads with its API and shows a picture', async () => {
+      assert.equal(await viewer.page.evaluate(() => document.documentElement.dataset.api), api);
+      const { count, size } = await viewer.colours(await viewer.page.screenshot());
+      assert.deepEqual(size, [720, 300]);
+      assert.ok(count > 1000, `${count} colours`);
+      viewer.quiet();
+    });
+
+    test('W moves the camera, a drag turns it, and the wheel flies faster', async () => {
+      const start = await viewer.facts();
+      await viewer.page.keyboard.down('w');
+      const moved = await viewer.untilFacts(({ position }) => `${position}` !== `${start.position}`, 'a movement');
+      await viewer.page.keyboard.up('w');
+      assert.ok(moved.position[2] < start.position[2], `forward: ${start.position} to ${moved.position}`);
+      await viewer.page.mouse.move(200, 200);
+      await viewer.page.mouse.down();
+      await viewer.page.mouse.move(260, 210, { steps: 4 });
+      await viewer.untilFacts(({ angles }) => `${angles}` !== `${start.angles}`, 'a turn');
+      await viewer.page.mouse.up();
+      viewer.quiet();
+    });
+
+    test('pictures and figures are those of a window, artefact by artefact', async () => {
+      const script = readFileSync(here('tour.txt'), 'utf8');
+      const played = judges ? script : script.replace(/^(await judged|figures .*)$/gm, '');
+      await viewer.choose({ name: 'tour.txt', mimeType: 'text/plain', buffer: Buffer.from(played) });
+      await viewer.until(() => viewer.files.has('hole.png'), 'the last picture', 8 * 60_000);
+      await viewer.untilFacts(({ has_played: done }) => done, 'the end of the script', 3 * 60_000);
+      for (const name of ['first', 'acne', 'aliasing', 'hole']) {
+        const native = readFileSync(`${NATIVE}/${name}.png`);
+        const { share, mean } = await viewer.difference(viewer.files.get(`${name}.png`), native);
+        assert.ok(share < 0.02 && mean < 2, `${name}: ${share * 100}% of the pixels differ, ${mean} in the mean`);
+      }
+      if (judges) {
+        for (const name of readdirSync(NATIVE).filter((file) => file.endsWith('.csv'))) {
+          const [here, there] = [viewer.files.get(name), readFileSync(`${NATIVE}/${name}`)].map(figures);
+          for (const column of ['wrong (%)', 'false shadow (%)', 'false light (%)', 'hole (%)', 'mean error (%)']) {
+            const off = Math.abs(here[column] - there[column]);
+            assert.ok(off <= 0.3 + 0.03 * there[column], `${name}, ${column}: ${here[column]}, not ${there[column]}`);
+          }
+        }
+      }
+      viewer.quiet();
+    });
+
+    test('views that need compute shaders are refused with the reason, or judged', async () => {
+      await viewer.page.keyboard.press('3');
+      if (judges) {
+        await viewer.untilFacts(({ view }) => view === 'Error', 'the view of errors');
+      } else {
+        const { view } = await viewer.untilFacts(({ message }) => /compute shaders/.test(message), 'the reason');
+        assert.equal(view, 'Final');
+      }
+      await viewer.page.keyboard.press('1');
+      viewer.quiet();
+    });
+
+    test('a link restores all of its state', async () => {
+      const script = ['open plain', 'await loaded', 'play', 'technique stable-4', 'set bias.constant 2.5', 'set map.resolution 1024',
+        'set light.azimuth 200', 'look 3 4 12 TO 0 1 0', 'view maps', 'compare on', 'frames 2', 'copy-link'].join('\n');
+      await viewer.choose({ name: 'state.txt', mimeType: 'text/plain', buffer: Buffer.from(script) });
+      const link = await viewer.until(async () => {
+        const text = await viewer.page.evaluate(() => navigator.clipboard.readText().catch(() => ''));
+        return text.startsWith(PAGE) && text;
+      }, 'the link');
+      const there = await viewer.untilFacts(({ has_played: done, is_waiting: busy }) => done && !busy, 'the state');
+      const other = await Viewer.open(browser, { api, hash: new URL(link).hash, query: '&afresh' });
+      const here = await other.untilFacts(({ title, is_waiting: busy }) => title === there.title && !busy, 'the same scene');
+      for (const fact of ['settings', 'position', 'angles', 'view', 'artefact']) {
+        assert.deepEqual(here[fact], there[fact], fact);
+      }
+      other.quiet();
+      await other.close();
+      viewer.quiet();
+    });
+
+    test('hostile files show an error, and the page lives on', async () => {
+      const hostile = [
+        { name: 'short.glb', buffer: Buffer.from('glTF\x02\0\0\0\xff\xff\xff\x7f', 'latin1') },
+        { name: 'empty.glb', buffer: Buffer.alloc(0) },
+        { name: 'noise.png', buffer: Buffer.from('not a picture') },
+        { name: 'deep.gltf', buffer: Buffer.from(`{"asset":${'['.repeat(5000)}`) },
+      ];
+      const folder = `${ASSETS}/hostile_shared`;
+      if (existsSync(folder)) {
+        for (const name of readdirSync(folder).filter((file) => file.endsWith('.glb')).slice(0, 6)) {
+          hostile.push({ name, buffer: readFileSync(`${folder}/${name}`) });
+        }
+      }
+      for (const file of hostile) {
+        await viewer.choose({ mimeType: 'application/octet-stream', ...file });
+        await viewer.untilFacts(({ message, is_waiting: busy }) => !busy && message?.includes(file.name), `an error about ${file.name}`);
+      }
+      const before = await viewer.facts();
+      await viewer.page.keyboard.down('s');
+      await viewer.untilFacts(({ position }) => `${position}` !== `${before.position}`, 'a movement after all of them');
+      await viewer.page.keyboard.up('s');
+      viewer.quiet();
+    });
+
+    test('the page fits other sizes, fine screens and phones', async () => {
+      await viewer.page.setViewportSize({ width: 800, height: 500 });
+      await viewer.untilFacts(({ size }) => `${size}` === '800,500', 'the new size');
+      const fine = await Viewer.open(browser, { api, query: '&afresh', width: 400, height: 240, scale: 2 });
+      await fine.untilFacts(({ size }) => `${size}` === '800,480', 'two pixels a point');
+      await fine.close();
+      const phone = await Viewer.open(browser, { api, query: '&afresh', width: 390, height: 844, isTouch: true });
+      const shut = await phone.page.screenshot();
+      const { x, y } = (await phone.untilFacts(({ drawer }) => drawer, 'the button of the drawer')).drawer;
+      await phone.page.touchscreen.tap(x, y);
+      await phone.until(async () => (await phone.difference(shut, await phone.page.screenshot())).share > 0.3, 'the drawer');
+      phone.quiet();
+      await phone.close();
+      viewer.quiet();
+    });
+
+    test('random actions leave the page alive and its memory flat', async () => {
+      await viewer.page.setViewportSize({ width: 640, height: 360 });
+      const seconds = LONG ? 600 : 20;
+      const script = ['open courtyard', 'await loaded', `monkey ${seconds} 7`].join('\n');
+      await viewer.choose({ name: 'monkey.txt', mimeType: 'text/plain', buffer: Buffer.from(script) });
+      await viewer.untilFacts(({ has_played: done }) => !done, 'the start of the script');
+      // Scenes, pictures and maps of all kinds are there after a while.
+      await new Promise((resolve) => setTimeout(resolve, seconds * 400));
+      const { memory } = await viewer.facts();
+      const end = await viewer.untilFacts(({ has_played: done }) => done, 'the end of the script', (seconds + 300) * 1000);
+      assert.ok(end.memory <= memory * (LONG ? 1.25 : 1.6), `${memory} bytes became ${end.memory}`);
+      viewer.quiet();
+    });
+
+    test('no task of the page takes longer than anybody notices', async () => {
+      const tasks = await viewer.page.evaluate(() => window.longTasks);
+      const longest = Math.max(0, ...tasks.map(({ duration }) => duration));
+      assert.ok(longest <= LONGEST_TASK, `a task of ${longest} ms: ${JSON.stringify(tasks)}`);
+    });
+  });
+}
+
+describe('without any API', () => {
+  test('the page says what to do', async () => {
+    const browser = await chromium.launch({ executablePath: BROWSER, args: FLAGS });
+    const page = await browser.newPage();
+    await page.goto(`${PAGE}?api=none`);
+    await page.waitForSelector('#cover.failed');
+    assert.match(await page.textContent('#advice'), /hardware acceleration/);
+    await browser.close();
+  });
+});
