@@ -25,6 +25,8 @@ const API_FLAGS = {
 const PATIENCE = 120_000;
 /// The longest task of the page that nobody notices, in milliseconds.
 const LONGEST_TASK = 50;
+/// Where the button of the panel is on a phone of 390 points.
+const DRAWER = [350, 22];
 /// Console messages of the browser itself, which no page can help.
 const OF_BROWSER = /software WebGL|GPU stall due to ReadPixels|Automatic fallback to software|powerPreference/;
 
@@ -37,7 +39,9 @@ class Viewer {
     });
     const page = await context.newPage();
     const viewer = new Viewer();
-    Object.assign(viewer, { context, page, said: [], files: new Map() });
+    // Pictures are compared in a page of their own: that takes longer than the tasks of the viewer's page may.
+    Object.assign(viewer, { context, page, desk: await context.newPage(), said: [], files: new Map() });
+    await page.bringToFront();
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type()) && !OF_BROWSER.test(message.text())) {
         viewer.said.push(message.text());
@@ -100,7 +104,7 @@ class Viewer {
 
   /// Number of colours of a picture, and its size.
   async colours(png) {
-    return this.page.evaluate(async (bytes) => {
+    return this.desk.evaluate(async (bytes) => {
       const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${bytes}`)).blob());
       const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
       context.drawImage(picture, 0, 0);
@@ -111,9 +115,9 @@ class Viewer {
   }
 
   /// Share of the pixels of two pictures that differ by more than `least` in any channel, and the mean difference. Both are
-  /// made smaller before: windows and pages have other numbers of samples per pixel.
-  async difference(one, other, least = 16) {
-    return this.page.evaluate(async ([one, other, least]) => {
+  /// made smaller before: this page has one sample per pixel, and pictures without a window have four.
+  async difference(one, other, least = 40) {
+    return this.desk.evaluate(async ([one, other, least]) => {
       const pixels = async (bytes) => {
         const blob = await (await fetch(`data:image/png;base64,${bytes}`)).blob();
         const picture = await createImageBitmap(blob, { colorSpaceConversion: 'none' });
@@ -193,7 +197,7 @@ for (const api of ['webgpu', 'webgl2']) {
       for (const name of ['first', 'acne', 'aliasing', 'hole']) {
         const native = readFileSync(`${NATIVE}/${name}.png`);
         const { share, mean } = await viewer.difference(viewer.files.get(`${name}.png`), native);
-        assert.ok(share < 0.02 && mean < 2, `${name}: ${share * 100}% of the pixels differ, ${mean} in the mean`);
+        assert.ok(share < 0.02 && mean < 4, `${name}: ${share * 100}% of the pixels differ, ${mean} in the mean`);
       }
       if (judges) {
         for (const name of readdirSync(NATIVE).filter((file) => file.endsWith('.csv'))) {
@@ -270,9 +274,10 @@ for (const api of ['webgpu', 'webgl2']) {
       await fine.close();
       const phone = await Viewer.open(browser, { api, query: '&afresh', width: 390, height: 844, isTouch: true });
       const shut = await phone.page.screenshot();
-      const { x, y } = (await phone.untilFacts(({ drawer }) => drawer, 'the button of the drawer')).drawer;
-      await phone.page.touchscreen.tap(x, y);
-      await phone.until(async () => (await phone.difference(shut, await phone.page.screenshot())).share > 0.3, 'the drawer');
+      await phone.page.touchscreen.tap(...DRAWER);
+      await phone.untilFacts(({ drawer }) => drawer, 'the drawer');
+      const { share } = await phone.difference(shut, await phone.page.screenshot());
+      assert.ok(share > 0.3, `the drawer covers ${share} of the picture`);
       phone.quiet();
       await phone.close();
       viewer.quiet();

@@ -166,7 +166,7 @@ impl Interface {
         let is_narrow = narrow::is_narrow(ui.max_rect().size());
         self.drawer_open &= is_narrow && !self.bare;
         if !self.bare {
-            if is_narrow || self.is_touched && ui.max_rect().width() < bar::ROOM_FOR_FINGERS {
+            if is_narrow || ui.max_rect().width() < bar::least_width(self.is_touched) {
                 self.drawer_open |= bar::show_narrow(ui, stage, input, output, is_narrow);
             } else {
                 bar::show(ui, stage, input, output);

@@ -162,8 +162,11 @@ function copyByHand(text) {
 const pixels = () => [innerWidth, innerHeight].map((side) => Math.max(1, Math.round(side * devicePixelRatio)));
 
 new ResizeObserver(([{ devicePixelContentBoxSize: box }]) => {
-  const [width, height] = box ? [box[0].inlineSize, box[0].blockSize] : pixels();
-  tell('resize', Math.max(width, 1), Math.max(height, 1), devicePixelRatio);
+  const rounded = pixels();
+  const exact = box ? [box[0].inlineSize, box[0].blockSize] : rounded;
+  // Browsers that pretend to have another screen tell the size on their own.
+  const isPlausible = exact.every((side, axis) => Math.abs(side - rounded[axis]) <= 2);
+  tell('resize', ...(isPlausible ? exact : rounded), devicePixelRatio);
 }).observe(canvas);
 
 const dark = matchMedia('(prefers-color-scheme: dark)');

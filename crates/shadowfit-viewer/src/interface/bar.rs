@@ -38,8 +38,10 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
     });
 }
 
-/// Least width at which the whole bar fits a line, as high as fingers need, in points.
-pub(super) const ROOM_FOR_FINGERS: f32 = 1200.0;
+/// Least width at which the whole bar fits a line, in points; fingers need more.
+pub(super) const fn least_width(is_touched: bool) -> f32 {
+    if is_touched { 1200.0 } else { 1000.0 }
+}
 
 /// The bar of a narrow window: the less used buttons are in a menu. Returns whether the panel is to be opened, by a
 /// button that is there if it `has_drawer`.

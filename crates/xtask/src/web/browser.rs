@@ -56,6 +56,10 @@ fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
     let mut viewer = process::cargo("run");
     viewer.args(["--quiet", "--example", "viewer"]).args(setup::features(machine)).arg("--");
     viewer.arg("--headless").arg(folder).args(["--no-state", "--software", "--size", SIZE]).arg("--script").arg(script);
+    // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        viewer.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
     process::run(&mut viewer)
 }
 
