@@ -150,6 +150,8 @@ impl Page {
     ///
     /// With a message for people where nothing can be drawn any more.
     pub fn frame(&mut self) -> Result<(), JsError> {
+        // WebGL2 tells only then what is finished; WebGPU does so by itself. A device that was lost says so on its own.
+        let _ = self.viewer.stage.gpu().device.poll(wgpu::PollType::Poll);
         if self.ahead.load(Ordering::Relaxed) >= MOST_AHEAD {
             return Ok(());
         }
