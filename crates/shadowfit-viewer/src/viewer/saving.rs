@@ -60,6 +60,10 @@ impl Viewer {
                 }
                 write_png(&path, size, &pixels, Some(&settings))
             });
+            // A script's next picture of the window would show that its last one was saved.
+            if saved.is_ok() && line.is_some() {
+                continue;
+            }
             let before = std::mem::replace(&mut self.line, line);
             self.tell(saved.map(|()| format!("Saved {}", path.display())));
             self.line = before;
