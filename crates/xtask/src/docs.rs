@@ -23,10 +23,12 @@ fn the_docs_show_every_picture_of_theirs_and_none_that_is_missing() {
     let text: String = pages.iter().map(|page| fs::read_to_string(process::root().join(page)).unwrap()).collect();
     // What stands between the folder's name and the bracket that closes the link.
     let links = text.split("images/").skip(1).filter_map(|rest| rest.split_once(')'));
-    let is_picture = |name: &str| Path::new(name).extension().is_some_and(|ending| ending == "png" || ending == "svg");
+    let endings = ["png", "svg", "webp"];
+    let is_picture =
+        |name: &str| Path::new(name).extension().is_some_and(|ending| endings.iter().any(|&e| e == ending));
     let shown: BTreeSet<String> =
         links.filter(|(name, _)| is_picture(name)).map(|(name, _)| format!("docs/images/{name}")).collect();
     let folders = ["docs/images", "docs/images/benchmarks", "docs/images/maths", "docs/images/samples"];
-    let there = &files(&folders, ".png") | &files(&folders, ".svg");
+    let there: BTreeSet<String> = endings.iter().flat_map(|ending| files(&folders, &format!(".{ending}"))).collect();
     assert_eq!(shown, there, "shown, and there");
 }

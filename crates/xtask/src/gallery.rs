@@ -1,6 +1,8 @@
 //! `cargo xtask gallery`: renders the pictures that the README and the docs show, on the software driver, so that they
 //! change with the code and not with the machine.
 
+mod film;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -95,18 +97,25 @@ const SHADOW: (Part, u32) = ([446, 206, 192, 108], 5);
 /// The corner of that shadow, and how many times it is enlarged for five of it to be as wide.
 const CORNER: (Part, u32) = ([458, 246, 47, 47], 4);
 
+/// The word that asks for the film alone.
+const FILM: &str = "film";
+
 /// Between pictures of a strip, in pixels.
 const GAP: u32 = 5;
 
-/// Renders the docs' pictures, or those of some samples alone.
+/// Renders the docs' pictures, or those of some samples or the film alone.
 ///
 /// # Errors
 /// When the viewer or the report cannot be built, or ends with an error.
-pub(crate) fn gallery(samples: &[String]) -> Result<()> {
+pub(crate) fn gallery(only: &[String]) -> Result<()> {
     let machine = setup::prepare(Purpose::Pictures)?;
     let images = process::root().join(IMAGES);
-    if !samples.is_empty() {
-        sample_pages(&machine, &images.join(SAMPLE_IMAGES), |sample| samples.iter().any(|wanted| wanted == sample))?;
+    let is_wanted = |name: &str| only.iter().any(|wanted| wanted == name);
+    if !only.is_empty() {
+        sample_pages(&machine, &images.join(SAMPLE_IMAGES), is_wanted)?;
+        if is_wanted(FILM) {
+            film::film(&machine, &images)?;
+        }
         run::say_where(&images);
         return Ok(());
     }
@@ -116,6 +125,7 @@ pub(crate) fn gallery(samples: &[String]) -> Result<()> {
     errors(&images)?;
     shadows(&images)?;
     edges(&images)?;
+    film::film(&machine, &images)?;
     run::say_where(&images);
     Ok(())
 }

@@ -46,8 +46,9 @@ enum Task {
     Ci,
     /// Render the pictures of the README and the docs again.
     Gallery {
-        /// Samples whose pictures alone are rendered, for example `xna-shadow-mapping`.
-        samples: Vec<String>,
+        /// What alone is rendered: samples by their names, for example `xna-shadow-mapping`, or `film` for the film of
+        /// the README.
+        only: Vec<String>,
     },
     /// Draw those pictures of docs/MATHS.md again that show what the core crate's fits give.
     Maths,
@@ -84,7 +85,7 @@ fn main() -> ExitCode {
         Task::Run { args } => run::run(&args),
         Task::Test { args } => test::test(&args),
         Task::Ci => ci::ci(),
-        Task::Gallery { samples } => gallery::gallery(&samples),
+        Task::Gallery { only } => gallery::gallery(&only),
         Task::Maths => maths::maths(),
         Task::Bench { args } => bench::bench(&args),
         Task::Web { test: true, long, .. } => web::test(long),
