@@ -27,6 +27,8 @@ pub struct PanelInput<'a> {
     pub changes: Changes<'a>,
     /// Techniques that a person saved, in the order that they are offered.
     pub presets: &'a [UserPreset],
+    /// Why no picture can be judged against rays, where that is so.
+    pub unjudged: Option<&'a str>,
     /// A readable message, such as the outcome of the last command.
     pub message: Option<&'a str>,
 }
@@ -44,6 +46,7 @@ impl<'a> PanelInput<'a> {
             tune: Tune::Idle,
             changes: Changes::default(),
             presets: &[],
+            unjudged: None,
             message: None,
         }
     }

@@ -180,7 +180,7 @@ impl Panel {
             artefact_card::show(ui, input.artefact.as_ref(), command);
         }
         if self.has(Part::Quality) {
-            quality::show(ui, input.figures, input.compare.is_some());
+            quality::show(ui, input.figures, input.compare.is_some(), input.unjudged);
         }
         if self.has(Part::Tune) {
             tune::show(ui, &input.tune, command);

@@ -43,8 +43,8 @@ const FIGURES: [Figure; 3] = [
     ),
 ];
 
-/// The card.
-pub(crate) fn show(ui: &mut Ui, figures: &Figures, is_compared: bool) {
+/// The card; `unjudged` is why it can have no figures.
+pub(crate) fn show(ui: &mut Ui, figures: &Figures, is_compared: bool, unjudged: Option<&str>) {
     card(ui, None, |ui| {
         ui.horizontal(|ui| {
             title(ui, "Quality").on_hover_text("The picture against rays, which find every shadow exactly.");
@@ -52,7 +52,7 @@ pub(crate) fn show(ui: &mut Ui, figures: &Figures, is_compared: bool) {
         });
         match (&figures.judged, &figures.judged_other) {
             (None, _) => {
-                caption(ui, "No picture has been judged against rays yet.");
+                caption(ui, unjudged.unwrap_or("No picture has been judged against rays yet."));
             }
             (Some(a), b) if is_compared => two(ui, a, b.as_ref()),
             (Some(judged), _) => one(ui, judged),

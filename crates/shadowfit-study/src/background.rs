@@ -50,7 +50,6 @@ pub fn in_background_async<F: Future<Output = ()> + 'static>(
 }
 
 /// Lets a browser draw and take input before what follows; elsewhere nothing waits.
-#[cfg_attr(not(target_family = "wasm"), expect(clippy::unused_async, reason = "only browsers wait"))]
 pub async fn next_turn() {
     #[cfg(target_family = "wasm")]
     gloo_timers::future::TimeoutFuture::new(0).await;

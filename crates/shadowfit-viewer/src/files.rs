@@ -27,6 +27,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Hands a file to the browser, which saves it.
 #[cfg(target_family = "wasm")]
+#[expect(clippy::unnecessary_wraps, reason = "files of other systems may not be writable")]
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     crate::web::page::download(&path.file_name().unwrap_or_default().to_string_lossy(), bytes);
     Ok(())

@@ -206,6 +206,7 @@ impl Interface {
             narration: &narration,
             changes: &changes,
         });
+        let unjudged = stage.no_compute();
         let sample = stage.sample().map(sample::Parts::new);
         let (settings, other) = stage.settings_and_other();
         let compare = other.map(|other| Compare { other, edits_other: &mut self.edits_other });
@@ -216,6 +217,7 @@ impl Interface {
             tune: input.tune,
             changes: input.changes,
             presets: input.presets,
+            unjudged,
             message: message.as_deref(),
             ..PanelInput::new(settings, &figures, scene)
         };

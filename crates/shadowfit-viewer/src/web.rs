@@ -27,6 +27,7 @@ use wasm_bindgen::JsError;
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_sys::OffscreenCanvas;
 use web_time::Instant;
+use wgpu::CurrentSurfaceTexture as Current;
 
 use crate::cli::Arguments;
 use crate::link::Link;
@@ -229,11 +230,13 @@ impl Page {
     }
 
     /// Other files were chosen: those before are forgotten.
+    #[expect(clippy::unused_self, reason = "the page calls what it opened")]
     pub fn files(&mut self) {
         files::clear();
     }
 
     /// One of the files that were chosen together.
+    #[expect(clippy::unused_self, reason = "the page calls what it opened")]
     pub fn file(&mut self, name: String, bytes: Vec<u8>) {
         files::keep(name, bytes);
     }
@@ -294,7 +297,6 @@ impl Page {
             self.viewer.frame(raw_input, seconds)
         };
         self.handle(&output);
-        use wgpu::CurrentSurfaceTexture as Current;
         let texture = match self.surface.get_current_texture() {
             Current::Success(texture) => texture,
             Current::Suboptimal(texture) => {

@@ -11,6 +11,7 @@ use anyhow::{Context, Result, bail};
 use crate::machine::Machine;
 use crate::process;
 use crate::setup::{self, Purpose};
+use crate::web;
 
 /// One named check.
 struct Step {
@@ -78,7 +79,21 @@ fn lints(machine: &Machine) -> Result<()> {
     let features = setup::features(machine);
     process::run(
         process::cargo("clippy").args(["--workspace", "--all-targets"]).args(features).args(["--", "-D", "warnings"]),
-    )
+    )?;
+    if !process::has_target(web::TARGET) {
+        println!("what is built for browsers alone was not looked at: rustup has no {}", web::TARGET);
+        return Ok(());
+    }
+    process::run(process::cargo("clippy").args([
+        "--package",
+        "shadowfit-viewer",
+        "--lib",
+        "--target",
+        web::TARGET,
+        "--",
+        "-D",
+        "warnings",
+    ]))
 }
 
 fn docs(machine: &Machine) -> Result<()> {

@@ -88,6 +88,16 @@ pub(crate) fn output_of(command: &mut Command) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
+/// Whether Rust can build for a target, once rustup was asked to bring it.
+pub(crate) fn has_target(target: &str) -> bool {
+    succeeds(Command::new("rustup").args(["target", "add", target]))
+}
+
+/// Where cargo puts what it builds.
+pub(crate) fn target_folder() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
 /// The command as a person would type it: the program's name without its folder, then the arguments.
 fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program());

@@ -3,13 +3,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 use image::imageops::FilterType;
 
-use crate::process;
+use crate::process::{self, has_target, target_folder};
 
 mod browser;
 mod serve;
@@ -17,7 +17,7 @@ mod serve;
 pub(crate) use browser::{BROWSERS, run, test};
 
 /// The target of browsers.
-const TARGET: &str = "wasm32-unknown-unknown";
+pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The modules: a folder, and the feature of the viewer that it is built with.
 const MODULES: [(&str, &str); 2] = [("webgpu", "webgpu"), ("webgl2", "webgl")];
 /// The picture that is shown while the module is loaded, and its width in pixels.
@@ -43,7 +43,9 @@ pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
 
 /// Builds the page with a profile.
 fn build(folder: &Path, profile: &str) -> Result<()> {
-    need_target()?;
+    if !has_target(TARGET) {
+        bail!("the page needs Rust's target {TARGET}: `rustup target add {TARGET}` brings it");
+    }
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut sizes = String::new();
     for (name, feature) in MODULES {
@@ -91,23 +93,6 @@ fn shrink(module: &Path) -> Result<()> {
     optimizer.args(["-Oz", "--strip-debug", "--enable-bulk-memory", "--enable-reference-types"]);
     optimizer.args(["--enable-mutable-globals", "--enable-nontrapping-float-to-int", "--enable-sign-ext"]);
     process::run(optimizer.args(["--enable-multivalue", "--output"]).arg(module).arg(module))
-}
-
-pub(crate) fn target_folder() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| process::root().join("target"), PathBuf::from)
-}
-
-/// Makes sure that the compiler can build for browsers.
-fn need_target() -> Result<()> {
-    let installed = process::output_of(Command::new("rustup").args(["target", "list", "--installed"]));
-    if installed.is_some_and(|targets| targets.lines().any(|target| target == TARGET)) {
-        return Ok(());
-    }
-    let added = process::run(Command::new("rustup").args(["target", "add", TARGET]));
-    if added.is_err() {
-        bail!("the page needs Rust's target {TARGET}: `rustup target add {TARGET}` brings it");
-    }
-    Ok(())
 }
 
 /// Writes the picture that is shown first.

@@ -28,8 +28,9 @@ fn probes_of_samples_without_the_primitive_index_are_those_with_it() {
             let mut gpu_scene = GpuScene::new(&gpu, &layout, &scene, &scene.pose(None, 0.0));
             let targets = ProbeTargets::new(&gpu.device, SIZE);
             let extras = FrameExtras::default();
-            let probe = SampleRenderer::new(&gpu, 1).probe(&gpu, &mut gpu_scene, (&frame, extras), &targets);
-            probe.expect("a map").expect("a probe")
+            let mut renderer = SampleRenderer::new(&gpu, 1);
+            let probe = renderer.probe(&gpu, &mut gpu_scene, (&frame, extras), &targets);
+            pollster::block_on(probe).expect("a map").expect("a probe")
         };
         let [indexed, unrolled] = [software_gpu(), featureless_gpu()].map(probe);
         assert!(indexed.pixels == unrolled.pixels, "{}", sample.id);

@@ -66,15 +66,25 @@ struct Sums {
     gpu_ms: Option<f32>,
 }
 
+/// Who judges pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum JudgedBy {
+    /// Threads, with rays of the CPU.
+    #[default]
+    Threads,
+    /// A graphics card, each picture.
+    Gpu,
+    /// What a browser takes for one, as rarely as a thread would.
+    SlowGpu,
+    /// Nobody: a browser has no threads, and WebGL2 no compute shaders.
+    Nobody,
+}
+
 /// The judge of a side's pictures.
 #[derive(Debug, Default)]
 pub(super) struct Live {
-    /// Whether the GPU judges.
-    pub(super) on_gpu: bool,
-    /// Whether it is too slow to judge each frame.
-    is_slow: bool,
-    /// Whether nothing can judge: a browser has no threads, and WebGL2 no compute shaders.
-    is_impossible: bool,
+    /// Who judges.
+    pub(super) by: JudgedBy,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
     /// The picture that the thread judges, and its probe.
@@ -95,16 +105,21 @@ pub(super) struct Live {
 
 impl Live {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let is_slow = gpu.is_software();
-        let is_page = cfg!(target_family = "wasm");
-        Self { on_gpu: !is_slow || is_page, is_slow, is_impossible: is_page && !gpu.can_compute(), ..Self::default() }
+        let has_threads = !cfg!(target_family = "wasm");
+        let by = match (gpu.is_software(), has_threads, gpu.can_compute()) {
+            (true, true, _) | (_, true, false) => JudgedBy::Threads,
+            (false, _, true) => JudgedBy::Gpu,
+            (true, false, true) => JudgedBy::SlowGpu,
+            (_, false, false) => JudgedBy::Nobody,
+        };
+        Self { by, ..Self::default() }
     }
 
     /// Forgets all pictures, for another scene.
     pub(super) fn forget(&mut self) {
-        let Self { on_gpu, is_slow, is_impossible, waits, .. } = *self;
+        let Self { by, waits, .. } = *self;
         // The thread stops judging.
-        *self = Self { on_gpu, is_slow, is_impossible, waits, ..Self::default() };
+        *self = Self { by, waits, ..Self::default() };
     }
 
     /// The picture that was judged last.
@@ -156,7 +171,7 @@ impl Live {
         maps: &[FittedMap],
         size: [u32; 2],
     ) -> Result<bool> {
-        if self.is_impossible {
+        if self.by == JudgedBy::Nobody {
             return Ok(false);
         }
         let key = Key {
@@ -175,7 +190,7 @@ impl Live {
         if shot.scene.ready_rays().is_none() && !self.pose_rays(shot) {
             return Ok(false);
         }
-        if self.on_gpu && !self.is_slow {
+        if self.by == JudgedBy::Gpu {
             return self.judge_on_gpu(evaluator, shot, (view, key), maps, size);
         }
         let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
@@ -188,7 +203,7 @@ impl Live {
         }
         self.begun = Some(shot.clock);
         let size = if self.waits { size } else { background_size(size) };
-        if !self.on_gpu {
+        if self.by == JudgedBy::Threads {
             return self.start(evaluator, shot, (view, key), maps, size);
         }
         let maps_stay = self.judge_on_gpu(evaluator, shot, (view, key), maps, size)?;

@@ -5,6 +5,7 @@ use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{AdapterChoice, FlyInput, Gpu, MapUpdate, RenderTarget, UpdateContent};
 use shadowfit_scene::builtin::default_scene;
 
+use super::live::JudgedBy;
 use super::*;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -17,7 +18,7 @@ fn stage(on_gpu: bool) -> (Stage, RenderTarget) {
     stage.read_depths();
     stage.settings.technique = stage.settings.technique.with_resolution(256, 256);
     stage.settings.view.play = false;
-    stage.side.live.on_gpu = on_gpu;
+    stage.side.live.by = if on_gpu { JudgedBy::Gpu } else { JudgedBy::Threads };
     let target = stage.target(SIZE);
     (stage, target)
 }

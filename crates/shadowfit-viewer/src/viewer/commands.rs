@@ -142,6 +142,9 @@ impl Viewer {
         let outcome = match command {
             Command::Open(name) => return self.open(SceneSource::from_text(&name)),
             Command::OpenFile(path) => return self.open_file(&path),
+            #[cfg(target_family = "wasm")]
+            Command::ChooseFile => return crate::web::page::choose_file(),
+            #[cfg(not(target_family = "wasm"))]
             Command::ChooseFile => return self.choose_file(),
             Command::SaveWindow(path) => return self.shots.push((self.start.place(path), self.line.clone())),
             Command::GoToBookmark(key) => self.go_to_bookmark(key),
@@ -340,6 +343,10 @@ impl Viewer {
     }
 
     /// The path of a file to save, with a new name if none is given.
+    #[cfg_attr(
+        target_family = "wasm",
+        expect(clippy::unnecessary_wraps, reason = "temporary folders may fail elsewhere")
+    )]
     fn place(&mut self, path: Option<PathBuf>, extension: &str) -> Result<PathBuf> {
         if let Some(path) = path {
             return Ok(self.start.place(path));
@@ -393,10 +400,8 @@ impl Viewer {
     }
 
     /// Lets the user choose a file, with the system's dialog on a thread.
+    #[cfg(not(target_family = "wasm"))]
     fn choose_file(&mut self) {
-        #[cfg(target_family = "wasm")]
-        crate::web::page::choose_file();
-        #[cfg(not(target_family = "wasm"))]
         if self.chooser.is_none() {
             self.chooser = dialog();
         }

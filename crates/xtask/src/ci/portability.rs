@@ -4,14 +4,14 @@
 //! Where a target, a toolchain or a runtime cannot be had, the check says what it did not do.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
 use super::{is_release, rust_version};
 use crate::machine::Machine;
-use crate::process;
+use crate::process::{self, has_target, target_folder};
 
 /// A microcontroller that has no standard library at all, which is the proof that the core needs none.
 const BARE_TARGET: &str = "thumbv7em-none-eabi";
@@ -121,15 +121,6 @@ pub(super) fn msrv(_: &Machine) -> Result<()> {
             .current_dir(process::root())
             .env("CARGO_TARGET_DIR", target_folder().join("msrv")),
     )
-}
-
-/// Whether rustup has a target for the Rust in use, or can add it.
-fn has_target(target: &str) -> bool {
-    process::succeeds(Command::new("rustup").args(["target", "add", target]))
-}
-
-fn target_folder() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| process::root().join("target"), PathBuf::from)
 }
 
 /// Whether a toolchain, as rustup lists it, is of a release.

@@ -6,9 +6,9 @@ use std::{fs, thread};
 
 use anyhow::{Context, Result, bail};
 
-use super::{build, serve, target_folder};
+use super::{build, serve};
 use crate::machine::Machine;
-use crate::process;
+use crate::process::{self, target_folder};
 use crate::setup::{self, Purpose};
 
 /// Names that Chromium and its kin go by.
