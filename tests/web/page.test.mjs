@@ -242,6 +242,29 @@ for (const api of ['webgpu', 'webgl2']) {
       viewer.quiet();
     });
 
+    test('settings are kept from one visit to the next', async () => {
+      const start = await viewer.facts();
+      await viewer.page.evaluate(() => window.viewer.tell('save'));
+      await viewer.until(async () => viewer.page.evaluate(() => localStorage.getItem('shadowfit viewer')), 'what is kept');
+      await viewer.page.reload();
+      const again = await viewer.untilFacts(({ is_ready: ready }) => ready, 'the first frame');
+      // The file has angles in degrees.
+      const near = (one, other) => one.every((value, index) => Math.abs(value - other[index]) < 1e-5);
+      assert.ok(near(again.position, start.position) && near(again.angles, start.angles), `${again.position}, ${again.angles}`);
+      assert.equal(again.view, start.view);
+      viewer.quiet();
+    });
+
+    test('auto-tune goes on beside frames, and is cancelled', async () => {
+      await viewer.page.keyboard.press('t');
+      await viewer.untilFacts(({ is_waiting: busy }) => busy, 'the search');
+      await viewer.untilFacts(({ tried }) => tried > 0, 'its first figures');
+      const cancel = { name: 'cancel.txt', mimeType: 'text/plain', buffer: Buffer.from('cancel') };
+      await viewer.choose(cancel);
+      await viewer.untilFacts(({ is_waiting: busy }) => !busy, 'its end');
+      viewer.quiet();
+    });
+
     test('hostile files show an error, and the page lives on', async () => {
       const hostile = [
         { name: 'short.glb', buffer: Buffer.from('glTF\x02\0\0\0\xff\xff\xff\x7f', 'latin1') },

@@ -16,6 +16,8 @@ use std::sync::mpsc::Receiver;
 
 use anyhow::Result;
 use egui::{Event, RawInput};
+#[cfg(target_family = "wasm")]
+use shadowfit_egui::Tune;
 use shadowfit_egui::{Changes, Chord, Command, UserPreset};
 use shadowfit_params::tool::Settings;
 #[cfg(not(target_family = "wasm"))]
@@ -362,6 +364,13 @@ impl Viewer {
     #[cfg(target_family = "wasm")]
     pub(crate) fn message(&self) -> Option<&str> {
         self.message.as_ref().map(|message| message.text.as_str())
+    }
+
+    /// How many techniques the search has tried; `None` while none is searched.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn tried(&self) -> Option<u32> {
+        let Tune::Running { tried, .. } = self.tuning.shown() else { return None };
+        Some(tried)
     }
 
     /// Title of the window.

@@ -17,6 +17,7 @@ pub(super) fn of(viewer: &Viewer, size: [u32; 2]) -> String {
         "is_ready": viewer.is_ready(),
         "is_waiting": viewer.is_waiting(),
         "has_played": viewer.has_played(),
+        "tried": viewer.tried(),
         "is_judged": stage.is_judged(),
         "size": size,
         "memory": core::arch::wasm32::memory_size(0) * PAGE_BYTES,
