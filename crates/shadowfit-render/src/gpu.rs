@@ -56,6 +56,15 @@ impl Gpu {
     /// [`GpuError`] if there is no such adapter or it cannot be opened.
     pub async fn headless(choice: AdapterChoice) -> Result<Self, GpuError> {
         let instance = Self::instance();
+        #[cfg(all(target_family = "wasm", feature = "webgl"))]
+        {
+            // WebGL2 is the context of a canvas, here one that nobody sees.
+            let canvas = web_sys::OffscreenCanvas::new(1, 1).ok();
+            let surface = canvas.map(|canvas| instance.create_surface(wgpu::SurfaceTarget::OffscreenCanvas(canvas)));
+            if let Some(Ok(surface)) = surface {
+                return Self::for_surface(choice, &instance, &surface).await;
+            }
+        }
         let adapter = match choice {
             AdapterChoice::Any => any_adapter(&instance, None).await?,
             AdapterChoice::Software => software_adapter(&instance, None).await?,
