@@ -4,7 +4,7 @@
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 
 use crate::machine::{Machine, Part};
 use crate::process;
@@ -13,6 +13,9 @@ use crate::web;
 
 /// The environment variable with which the golden tests write what they would compare.
 const UPDATE_GOLDENS: &str = "SHADOWFIT_UPDATE_GOLDENS";
+
+/// Why the page is not tested, where it is not.
+const NO_PAGE: &str = "no Chromium, Node.js, npm, Vulkan driver or target of Rust for browsers here";
 
 /// Tests that are left out, and why.
 struct LeftOut {
@@ -40,13 +43,14 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
     // The runner with the most tests comes last, so that its counts close the output.
     let doc_tests = timed(process::cargo("test").args(["--workspace", "--doc", "--no-fail-fast"]).args(features));
     let tests = timed(&mut runner(features, &left_out));
-    let page = machine.can_test_page().then(|| timed_by(|| web::run(&machine, false)));
+    let can_test_page = machine.can_test_page() && process::has_target(web::TARGET);
+    let page = can_test_page.then(|| timed_by(|| web::run(&machine, false)));
     for LeftOut { name_part, reason } in &left_out {
         println!("SKIPPED: tests with `{name_part}` in their name: {reason}");
     }
     match &page {
         Some((result, time)) => println!("{} ({:.0} s)", verdict("tests of the page", result), time.as_secs_f32()),
-        None => println!("SKIPPED: tests of the page: no Chromium, Node.js, npm or Vulkan driver here"),
+        None => println!("SKIPPED: tests of the page: {NO_PAGE}"),
     }
     println!(
         "{} ({:.0} s), {} ({:.0} s)",
@@ -55,7 +59,12 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
         verdict("all other tests", &tests.0),
         tests.1.as_secs_f32()
     );
-    doc_tests.0.and(tests.0).and(page.map_or(Ok(()), |(result, _)| result))
+    let page = match page {
+        Some((result, _)) => result,
+        None if setup::gpu_is_required() => Err(anyhow!("{} is set, and {NO_PAGE}", setup::REQUIRE_GPU)),
+        None => Ok(()),
+    };
+    doc_tests.0.and(tests.0).and(page)
 }
 
 /// Runs the golden tests so that they write their pictures.
