@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use anyhow::{Context, Result, anyhow};
 use egui::{FontData, FontDefinitions, FontFamily, OutputCommand, Pos2, RawInput, Rect, ViewportInfo};
-use epaint_default_fonts::{EGUI_ICONS, UBUNTU_LIGHT};
+use epaint_default_fonts::EGUI_ICONS;
 use shadowfit_egui::Command;
 use shadowfit_render::{AdapterChoice, Gpu};
 use wasm_bindgen::JsError;
@@ -376,14 +376,14 @@ fn link_of(fragment: String) -> Option<String> {
     (fragment.len() > 1).then_some(fragment)
 }
 
-/// The font for code: Hack, <https://sourcefoundry.org/hack> (MIT and Bitstream Vera), with its Latin and Greek letters, its
-/// arrows, signs of mathematics and shapes alone, by `pyftsubset` (fonttools).
+/// The font for text and that for code, which has arrows: see `fonts/README.md`.
+const TEXT_FONT: &[u8] = include_bytes!("../fonts/text.ttf");
 const CODE_FONT: &[u8] = include_bytes!("../fonts/code.ttf");
 
-/// egui's own fonts without those for emoji, which are larger than the others. That for code has arrows.
+/// egui's own fonts in part: those for emoji are larger than all others.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
-    let all = [("text", UBUNTU_LIGHT), ("code", CODE_FONT), ("icons", EGUI_ICONS)];
+    let all = [("text", TEXT_FONT), ("code", CODE_FONT), ("icons", EGUI_ICONS)];
     fonts.font_data.extend(all.map(|(name, bytes)| (name.to_owned(), Arc::new(FontData::from_static(bytes)))));
     for (family, names) in
         [(FontFamily::Proportional, ["text", "icons", "code"]), (FontFamily::Monospace, ["code", "icons", "text"])]

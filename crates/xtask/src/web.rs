@@ -4,7 +4,6 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 use image::imageops::FilterType;
@@ -76,23 +75,7 @@ fn module(folder: &Path, feature: &str, profile: &str) -> Result<u64> {
     let mut bindgen = process::cargo("run");
     bindgen.args(["--quiet", "--package", "xtask", "--features", "bindgen", "--bin", "bindgen", "--"]);
     process::run(bindgen.arg(&built).arg(folder))?;
-    let module = folder.join("shadowfit_viewer_bg.wasm");
-    if profile == "web" {
-        shrink(&module)?;
-    }
-    Ok(fs::metadata(module)?.len())
-}
-
-/// Makes a module a tenth smaller with Binaryen's `wasm-opt`, where that is installed.
-fn shrink(module: &Path) -> Result<()> {
-    if !process::succeeds(Command::new("wasm-opt").arg("--version")) {
-        println!("the module stays a tenth larger: wasm-opt is not installed (on Debian: binaryen)");
-        return Ok(());
-    }
-    let mut optimizer = Command::new("wasm-opt");
-    optimizer.args(["-Oz", "--strip-debug", "--enable-bulk-memory", "--enable-reference-types"]);
-    optimizer.args(["--enable-mutable-globals", "--enable-nontrapping-float-to-int", "--enable-sign-ext"]);
-    process::run(optimizer.args(["--enable-multivalue", "--output"]).arg(module).arg(module))
+    Ok(fs::metadata(folder.join("shadowfit_viewer_bg.wasm"))?.len())
 }
 
 /// Writes the picture that is shown first.

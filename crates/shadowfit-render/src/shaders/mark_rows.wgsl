@@ -21,7 +21,7 @@ fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
         return 0u;
     }
     let kind = judged_pixel(pixel, size) & CLASS;
-    return select(0u, kind, (marks.classes >> kind & 1u) != 0u);
+    return select(0u, kind, ((marks.classes >> kind) & 1u) != 0u);
 }
 
 // The class, shifted by four bits, plus the distance in pixels; 0 where none is near.
@@ -33,7 +33,7 @@ fn fs_mark_rows(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
         let kind = max(
             marked_class(pixel - vec2<i32>(step, 0), size), marked_class(pixel + vec2<i32>(step, 0), size));
         if kind != 0u {
-            return kind << 4u | u32(step);
+            return (kind << 4u) | u32(step);
         }
     }
     return 0u;
