@@ -44,10 +44,10 @@ async function fetched(url, bytes) {
   return new Response(answer.body.pipeThrough(counted), { headers });
 }
 
-/// Which graphics API the browser has: `wanted` if it is given.
+/// Which graphics API the browser has: `wanted` if it is given, where `none` stands for a browser without any.
 async function api(wanted) {
   if (wanted) {
-    return wanted;
+    return wanted === 'none' ? null : wanted;
   }
   const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
   if (adapter) {
