@@ -8,7 +8,7 @@ use super::Stage;
 impl Stage {
     /// Draws the present view's shadow decisions at the given size and judges them against rays.
     /// With `subject_only`, only pixels of the scene's subject count in the sums. `None` where the
-    /// GPU cannot tell triangles apart, with the reason as [`Self::problem`].
+    /// view cannot be drawn, with the reason as [`Self::problem`].
     pub fn judge(&mut self, size: [u32; 2], subject_only: bool) -> Option<Judged> {
         Some(self.judge_with_truth(size, subject_only)?.1)
     }

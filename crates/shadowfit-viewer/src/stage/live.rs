@@ -162,7 +162,7 @@ impl Live {
     ///
     /// # Errors
     ///
-    /// When the adapter cannot tell triangles apart, or the scene is too large for it.
+    /// When the view cannot be drawn, or the scene is too large for the adapter.
     pub(super) fn judge(
         &mut self,
         evaluator: &mut Evaluator,
