@@ -40,7 +40,8 @@ class Viewer {
     const page = await context.newPage();
     const viewer = new Viewer();
     // Pictures are compared in a page of their own: that takes longer than the tasks of the viewer's page may.
-    Object.assign(viewer, { context, page, desk: await context.newPage(), said: [], files: new Map() });
+    const address = `${PAGE}?api=${api}${query}${hash}`;
+    Object.assign(viewer, { context, page, address, desk: await context.newPage(), said: [], files: new Map(), tasks: [] });
     await page.bringToFront();
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type()) && !OF_BROWSER.test(message.text())) {
@@ -62,9 +63,29 @@ class Viewer {
         window.longTasks.push(...list.getEntries().map(({ startTime, duration }) => ({ startTime, duration })));
       }).observe({ entryTypes: ['longtask'] });
     });
-    await page.goto(`${PAGE}?api=${api}${query}${hash}`);
-    await viewer.until(async () => page.evaluate(() => document.documentElement.dataset.ready), 'the first frame');
+    await viewer.wake();
     return viewer;
+  }
+
+  /// Loads the page and waits for its first frame.
+  async wake() {
+    await this.page.goto(this.address);
+    await this.untilReady();
+  }
+
+  async untilReady() {
+    await this.until(() => this.page.evaluate(() => document.documentElement.dataset.ready), 'the first frame');
+  }
+
+  /// Leaves the page until [`wake`], so that another one has the software GPU for itself.
+  async rest() {
+    await this.keepTasks();
+    await this.page.goto('about:blank');
+  }
+
+  /// Keeps the long tasks of the page that is about to be left.
+  async keepTasks() {
+    this.tasks.push(...await this.page.evaluate(() => window.longTasks.splice(0)));
   }
 
   async close() {
@@ -85,7 +106,9 @@ class Viewer {
       }
       const state = await this.page.evaluate(() => document.querySelector('#cover.failed #state')?.textContent);
       assert.equal(state, undefined, `${name}: the viewer has ended`);
-      assert.ok(Date.now() < end, `${name} did not come: ${JSON.stringify(await this.facts()).slice(0, 400)}; ${this.said}`);
+      if (Date.now() > end) {
+        assert.fail(`${name} did not come: ${JSON.stringify(await this.facts()).slice(0, 400)}; ${this.said}`);
+      }
       await new Promise((resolve) => setTimeout(resolve, 200));
     }
   }
@@ -246,6 +269,7 @@ for (const api of ['webgpu', 'webgl2']) {
         return text.startsWith(PAGE) && text;
       }, 'the link');
       const there = await viewer.untilFacts(({ has_played: done, is_waiting: busy }) => done && !busy, 'the state');
+      await viewer.rest();
       const other = await Viewer.open(browser, { api, hash: new URL(link).hash, query: '&afresh' });
       const here = await other.untilFacts(({ title, is_waiting: busy }) => title === there.title && !busy, 'the same scene');
       for (const fact of ['settings', 'position', 'angles', 'view', 'artefact']) {
@@ -253,6 +277,7 @@ for (const api of ['webgpu', 'webgl2']) {
       }
       other.quiet();
       await other.close();
+      await viewer.wake();
       viewer.quiet();
     });
 
@@ -260,6 +285,7 @@ for (const api of ['webgpu', 'webgl2']) {
       const start = await viewer.facts();
       await viewer.page.evaluate(() => window.viewer.tell('save'));
       await viewer.until(async () => viewer.page.evaluate(() => localStorage.getItem('shadowfit viewer')), 'what is kept');
+      await viewer.keepTasks();
       await viewer.page.reload();
       const again = await viewer.untilFacts(({ is_ready: ready }) => ready, 'the first frame');
       // The file has angles in degrees.
@@ -309,6 +335,7 @@ for (const api of ['webgpu', 'webgl2']) {
     test('the page fits other sizes, fine screens and phones', async () => {
       await viewer.page.setViewportSize({ width: 800, height: 500 });
       await viewer.untilFacts(({ size }) => `${size}` === '800,500', 'the new size');
+      await viewer.rest();
       const fine = await Viewer.open(browser, { api, query: '&afresh', width: 400, height: 240, scale: 2 });
       await fine.untilFacts(({ size }) => `${size}` === '800,480', 'two pixels a point');
       await fine.close();
@@ -320,6 +347,7 @@ for (const api of ['webgpu', 'webgl2']) {
       assert.ok(share > 0.3, `the drawer covers ${share} of the picture`);
       phone.quiet();
       await phone.close();
+      await viewer.wake();
       viewer.quiet();
     });
 
@@ -338,11 +366,35 @@ for (const api of ['webgpu', 'webgl2']) {
     });
 
     test('no task of the page takes longer than anybody notices', async (context) => {
-      const tasks = await viewer.page.evaluate(() => window.longTasks);
-      const long = tasks.filter(({ duration }) => duration > LONGEST_TASK);
+      await viewer.keepTasks();
+      const long = viewer.tasks.filter(({ duration }) => duration > LONGEST_TASK);
       context.diagnostic(`tasks of more than ${LONGEST_TASK} ms: ${JSON.stringify(long)}`);
       // A busy machine may take the page's core away now and then; a viewer that blocked it would do so in each frame.
       assert.ok(long.length <= 2, JSON.stringify(long));
+    });
+
+    test('a lost device is told, and the page opens again', async () => {
+      const { page } = viewer;
+      const { processInfo: processes } = await (await browser.newBrowserCDPSession()).send('SystemInfo.getProcessInfo');
+      process.kill(processes.find(({ type }) => type === 'GPU').id, 'SIGKILL');
+      await page.waitForSelector('#cover.failed');
+      assert.match(await page.textContent('#state'), /graphics device was lost/);
+      assert.match(await page.textContent('#advice'), /settings are saved/);
+      await page.click('#again');
+      await page.waitForSelector('#cover.failed', { state: 'detached' });
+      await viewer.untilReady();
+      // Whatever the random actions left on show.
+      const { count } = await viewer.colours(await page.screenshot());
+      assert.ok(count > 100, `${count} colours`);
+    });
+
+    test('a page without memory says so', async () => {
+      const { page } = viewer;
+      // More than a module of 32 bits can have.
+      await page.evaluate(() => window.viewer.tell('file', 'huge.glb', { length: 4e9 }));
+      await page.waitForSelector('#cover.failed');
+      assert.match(await page.textContent('#state'), /No memory is left/);
+      assert.match(await page.textContent('#advice'), /smaller scene/);
     });
   });
 }

@@ -14,12 +14,16 @@ const ADVICE = {
     'This browser has neither WebGPU nor WebGL2 turned on. A current Chrome, Edge, Firefox or Safari has; if yours is, '
     + 'turn on hardware acceleration in its settings and load the page again.',
   lost: 'The graphics driver was reset, or the browser took its memory back. Your settings are saved: load the page again.',
-  memory: 'The graphics card has no memory left. Close other pages that draw, or choose a smaller scene, and load the page again.',
+  memory: 'Close other pages, or choose a smaller scene, and load the page again.',
   panic: 'This is a bug of the viewer. Your settings are saved: load the page again, and please report the text above.',
   failure: 'Load the page again; if that does not help, please report the text above.',
 };
 
+/// Ends the page with a message. What comes after the first one follows from it, and is not shown.
 function show(state, advice) {
+  if (cover.classList.contains('failed')) {
+    return;
+  }
   cover.classList.remove('gone');
   cover.classList.add('failed');
   element('state').textContent = state;
@@ -83,10 +87,10 @@ const told = {
     show(text, ADVICE.panic);
   },
   lost(text) {
-    show(`The graphics device was lost. ${text}`, ADVICE.lost);
+    show(`The graphics device was lost. ${text}`.trim(), ADVICE.lost);
   },
   memory(text) {
-    show(text, ADVICE.memory);
+    show(`No memory is left. ${text}`.trim(), ADVICE.memory);
   },
   error(text) {
     console.error(text);
@@ -317,9 +321,11 @@ canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 
 const DEAD = 0.15;
 let wasPressed = false;
+let isWatching = false;
 
 function pads() {
   const pad = navigator.getGamepads().find((found) => found?.mapping === 'standard');
+  isWatching = Boolean(pad);
   if (!pad) {
     tell('sticks', 0, 0, 0, 0, 0);
     return;
@@ -334,7 +340,11 @@ function pads() {
   requestAnimationFrame(pads);
 }
 
-addEventListener('gamepadconnected', pads);
+addEventListener('gamepadconnected', () => {
+  if (!isWatching) {
+    pads();
+  }
+});
 
 // ---- files
 

@@ -21,8 +21,12 @@ self.decodeImage = async (bytes) => {
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, gl.getParameter(gl.TEXTURE_BINDING_2D), 0);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
+  const error = gl.getError();
   gl.getExtension('WEBGL_lose_context')?.loseContext();
   picture.close();
+  if (error !== gl.NO_ERROR) {
+    throw new Error(`${width} x ${height} pixels are too many`);
+  }
   return [width, height, rgba];
 };
 
@@ -69,11 +73,22 @@ function call([method, ...values]) {
 
 let isOver = false;
 
-function failed(error) {
+/// Tells the page that it is over, and why.
+function end(kind, text) {
   if (!isOver) {
     isOver = true;
-    postMessage(['failure', `${error.message ?? error}`]);
+    postMessage([kind, text]);
   }
+}
+
+/// What errors say where there is no memory. A module that stops without a panic, which the page has been told of before,
+/// has asked for more than there is, too.
+const WITHOUT_MEMORY = /malloc|allocation failed|out of memory/i;
+
+function failed(error) {
+  const text = `${error.message ?? error}`;
+  const isStopped = error instanceof WebAssembly.RuntimeError && /unreachable/.test(text);
+  end(isStopped || WITHOUT_MEMORY.test(text) ? 'memory' : 'failure', isStopped ? '' : text);
 }
 
 function frame() {
@@ -102,10 +117,14 @@ async function start({ canvas, width, height, scale, kept, page, fragment, wante
   postMessage(['compiled']);
   canvas.width = width;
   canvas.height = height;
+  canvas.addEventListener('webglcontextlost', () => end('lost', ''));
   viewer = await module.Page.open(canvas, scale, kept ?? undefined, page, fragment);
   waiting.splice(0).forEach(call);
   requestAnimationFrame(frame);
 }
+
+// What goes wrong between frames.
+addEventListener('error', ({ error, message }) => failed(error ?? message));
 
 onmessage = ({ data }) => {
   if (!Array.isArray(data)) {
