@@ -92,11 +92,16 @@ impl NamedTechnique {
     pub fn read(file: &Path) -> Result<Self> {
         let at = || file.display().to_string();
         let text = std::fs::read_to_string(file).with_context(at)?;
-        let mut named = Self::from_toml(&text).with_context(at)?;
-        if named.name.is_empty() {
-            named.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self::from_toml(&text).with_context(at)?.or_named_after(file))
+    }
+
+    /// The same with the name of its file, without the extension, if it has none of its own.
+    #[must_use]
+    pub fn or_named_after(mut self, file: &Path) -> Self {
+        if self.name.is_empty() {
+            self.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
-        Ok(named)
+        self
     }
 
     /// The technique of a TOML text, as [`Self::to_toml`] writes it.

@@ -40,10 +40,11 @@ pub(super) const ROWS: &[Parameter] = &[
             },
             set: |s, value| {
                 let radius = &mut s.technique.softness.radius;
-                // The width stays as it is.
+                // The width stays as it is, unless it is larger than the largest sun's.
                 *radius = match (value, *radius) {
                     (Value::Option(0), SoftRadius::Metres(metres)) => {
-                        SoftRadius::SunAngle(libm::atanf(metres / Softness::USUAL_DISTANCE))
+                        let radians = libm::atanf(metres / Softness::USUAL_DISTANCE);
+                        SoftRadius::SunAngle(radians.min((LARGEST_SUN as f32).to_radians()))
                     }
                     (Value::Option(1), SoftRadius::SunAngle(radians)) => {
                         SoftRadius::Metres(libm::tanf(radians) * Softness::USUAL_DISTANCE)

@@ -270,6 +270,9 @@ fn softness_keeps_its_width_when_it_is_measured_otherwise() {
         assert!((width(&settings) / before - 1.0).abs() < 1e-6, "{measure}");
     }
     assert!((written(&settings, row("softness.metres")).parse::<f32>().expect("a number") - before).abs() < 1e-6);
+    // No sun of the table's is as large as the widest edges in metres; what is set can be read back.
+    let widest = with(&[("softness.measure", "metres"), ("softness.metres", "10"), ("softness.measure", "sun_angle")]);
+    assert_eq!(widest, with(&[("softness.angle", &written(&widest, row("softness.angle")))]));
 }
 
 #[test]

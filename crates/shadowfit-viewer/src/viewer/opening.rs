@@ -150,9 +150,5 @@ impl Viewer {
 
 /// The technique of a file; one without a name gets the file's.
 fn technique(path: &Path) -> Result<NamedTechnique> {
-    let mut named = NamedTechnique::from_toml(std::str::from_utf8(&files::read(path)?)?)?;
-    if named.name.is_empty() {
-        named.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    }
-    Ok(named)
+    Ok(NamedTechnique::from_toml(std::str::from_utf8(&files::read(path)?)?)?.or_named_after(path))
 }
