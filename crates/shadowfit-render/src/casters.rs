@@ -240,4 +240,14 @@ mod tests {
             assert_eq!((draw.part, &draw.indices, draw.instances.len()), (part, &indices, instances));
         }
     }
+
+    #[test]
+    fn bounds_follow_a_mirrored_and_turned_transform() {
+        let matrix = Mat4::from_translation(Vec3::X * 5.0)
+            * Mat4::from_rotation_y(core::f32::consts::FRAC_PI_2)
+            * Mat4::from_scale(Vec3::new(-1.0, 2.0, 3.0));
+        let bounds = transformed(&Aabb { min: Vec3::ZERO, max: Vec3::ONE }, &matrix);
+        assert!((bounds.min - Vec3::new(5.0, 0.0, 0.0)).length() < 1e-5, "{bounds:?}");
+        assert!((bounds.max - Vec3::new(8.0, 2.0, 1.0)).length() < 1e-5, "{bounds:?}");
+    }
 }

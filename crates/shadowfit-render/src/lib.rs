@@ -20,6 +20,7 @@ mod maker;
 mod marks;
 mod material;
 mod overlay;
+mod part;
 pub mod passes;
 mod pipelines;
 mod pixel;

@@ -1,25 +1,22 @@
-//! A scene on the GPU: vertex and index buffers, materials, and per frame the instances that each
-//! pass sees. Deformed primitives (skins, morph targets) are deformed on the CPU, so that ray
-//! tracers see exactly the same triangles.
+//! A scene on the GPU: its parts, materials, and per frame the instances that each pass sees. Deformed
+//! primitives (skins, morph targets) are deformed on the CPU, so that ray tracers see exactly the same triangles.
 
 use core::sync::atomic::{AtomicU64, Ordering};
-use std::borrow::Cow;
 
 use bytemuck::cast_slice;
-use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat4, Vec3};
 use shadowfit::Aabb;
 use shadowfit_rays::{RayError, RayScene};
-use shadowfit_scene::{AlphaMode, Deformed, Instance, Pose, Primitive, Scene};
+use shadowfit_scene::{AlphaMode, Deformed, Instance, Pose, Scene};
 use shadowfit_wgpu::Casters;
 
 use crate::Gpu;
-use crate::casters::{CasterDraw, Cluster, SceneCasters, clustered, transformed};
-use crate::gpu::is_opengl;
-use crate::maker::{INSTANCES, Streams};
+use crate::casters::{CasterDraw, SceneCasters, transformed};
+use crate::maker::INSTANCES;
 use crate::material::upload_materials;
+use crate::part::{Part, PartKey};
 use crate::rays::{RayPart, SceneRays};
 use crate::uniform::InstanceData;
-use crate::unrolled::{Numbering, Unrolled};
 
 /// A scene that can be drawn.
 #[derive(Debug)]
@@ -44,44 +41,6 @@ pub struct GpuScene {
 
 /// Numbers of poses that were given away.
 static POSES: AtomicU64 = AtomicU64::new(0);
-
-/// One primitive with all its instances (a deformed one has a part of its own per instance).
-#[derive(Debug)]
-pub(crate) struct Part {
-    /// Positions, normals, tangents, and texture coordinates with colours.
-    pub(crate) streams: [wgpu::Buffer; 4],
-    /// Which of the last two have an element for each vertex.
-    has: Streams,
-    pub(crate) indices: wgpu::Buffer,
-    pub(crate) index_count: u32,
-    /// Where probes number triangles by their vertices.
-    unrolled: Option<Unrolled>,
-    /// Its triangles in the order of their clusters, for the shadow passes.
-    pub(crate) caster_indices: wgpu::Buffer,
-    clusters: Vec<Cluster>,
-    pub(crate) material: usize,
-    pub(crate) alpha: AlphaMode,
-    pub(crate) double_sided: bool,
-    pub(crate) mirrored: bool,
-    /// Whether its vertices move.
-    deforms: bool,
-    local_bounds: Option<Aabb>,
-    members: Vec<usize>,
-}
-
-/// What selects a part's pipeline, in every pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
-pub struct PartKey {
-    /// Whether fragments below the cutoff are absent.
-    pub masked: bool,
-    /// Whether it is blended over what lies behind.
-    pub blended: bool,
-    double_sided: bool,
-    mirrored: bool,
-    /// Which of its streams have an element for each vertex.
-    pub streams: Streams,
-}
 
 #[derive(Clone, Copy, Debug)]
 struct SceneInstance {
@@ -372,84 +331,6 @@ impl GpuScene {
     }
 }
 
-impl Part {
-    fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, (mirrored, deforms): (bool, bool)) -> Self {
-        let material = &scene.materials[primitive.material];
-        let Primitive { positions, normals, indices, .. } = primitive;
-        let has = streams(gpu, primitive);
-        let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
-        let vertices: [&[u8]; 4] =
-            [cast_slice(positions), cast_slice(normals), cast_slice(&tangents), cast_slice(&surface)];
-        // Passes fit what deforms to them for rays.
-        let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
-        // Blended surfaces are not probed.
-        let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(&gpu.device) == Numbering::Vertices;
-        let each = [
-            Some(vertices[0]),
-            Some(vertices[1]),
-            has.tangents.then_some(vertices[2]),
-            has.surface.then_some(vertices[3]),
-        ];
-        // What casts nothing is not cut, and neither is what deforms.
-        let is_whole = deforms || material.alpha == AlphaMode::Blend;
-        let (caster_indices, clusters) = clustered(positions, indices, is_whole);
-        let index = |indices: &[u32]| filled_buffer(gpu, wgpu::BufferUsages::INDEX, cast_slice(indices));
-        Self {
-            streams: vertices.map(|bytes| filled_buffer(gpu, wgpu::BufferUsages::VERTEX | read, bytes)),
-            unrolled: is_unrolled.then(|| Unrolled::new(gpu, indices, each)),
-            has,
-            indices: index(indices),
-            caster_indices: index(&caster_indices),
-            index_count: primitive.indices.len() as u32,
-            clusters,
-            material: primitive.material,
-            alpha: material.alpha,
-            double_sided: material.double_sided,
-            mirrored,
-            deforms,
-            local_bounds: Aabb::from_points(primitive.positions.iter().copied()),
-            members: Vec::new(),
-        }
-    }
-
-    /// Whether the caster rule lets the part cast: blended surfaces cast nothing.
-    fn casts(&self) -> bool {
-        self.alpha != AlphaMode::Blend
-    }
-}
-
-impl PartKey {
-    pub(crate) fn of(part: &Part) -> Self {
-        Self {
-            masked: matches!(part.alpha, AlphaMode::Mask { .. }),
-            blended: part.alpha == AlphaMode::Blend,
-            double_sided: part.double_sided,
-            mirrored: part.mirrored,
-            streams: part.has,
-        }
-    }
-
-    /// The constants of the WGSL of [materials](crate::shaders::material).
-    pub fn constants(self) -> [(&'static str, f64); 1] {
-        [("MASKED", f64::from(self.masked))]
-    }
-
-    /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
-    pub fn cull_mode(self) -> Option<wgpu::Face> {
-        (!self.double_sided).then(|| self.back())
-    }
-
-    /// The front as the rasteriser names it.
-    pub fn front(self) -> wgpu::Face {
-        if self.mirrored { wgpu::Face::Back } else { wgpu::Face::Front }
-    }
-
-    /// The back as the rasteriser names it.
-    pub fn back(self) -> wgpu::Face {
-        if self.mirrored { wgpu::Face::Front } else { wgpu::Face::Back }
-    }
-}
-
 /// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes
 /// (Gribb and Hartmann, 2001).
 fn in_frustum(clip_from_world: Mat4) -> impl Fn(&shadowfit::Aabb) -> bool {
@@ -511,32 +392,6 @@ fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
     scene.instance_skin(instance).is_some() || !primitive.morphs.is_empty()
 }
 
-/// Which streams get an element for each vertex: all on OpenGL, where those of browsers have no single elements.
-fn streams(gpu: &Gpu, primitive: &Primitive) -> Streams {
-    let has_all = is_opengl(&gpu.device);
-    Streams {
-        tangents: has_all || !primitive.tangents.is_empty(),
-        surface: has_all || !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
-    }
-}
-
-/// Tangents of each vertex, or of all.
-fn tangents(primitive: &Primitive, has: Streams) -> Cow<'_, [Vec4]> {
-    let count = if has.tangents { primitive.positions.len() } else { 1 };
-    if primitive.tangents.is_empty() { vec![Vec4::ZERO; count].into() } else { (&primitive.tangents).into() }
-}
-
-/// Texture coordinates and colours of each vertex, or those of all.
-fn surface(primitive: &Primitive, has: Streams) -> Vec<[f32; 6]> {
-    let element = |index: usize| {
-        let uv = primitive.uvs.get(index).copied().unwrap_or(Vec2::ZERO);
-        let color = primitive.colors.get(index).copied().unwrap_or(Vec4::ONE);
-        [uv.x, uv.y, color.x, color.y, color.z, color.w]
-    };
-    let count = if has.surface { primitive.positions.len() } else { 1 };
-    (0..count).map(element).collect()
-}
-
 fn instance_data(world_from_mesh: &Mat4, eye: DVec3, first_triangle: u32) -> InstanceData {
     let translation = (world_from_mesh.w_axis.truncate().as_dvec3() - eye).as_vec3();
     let relative = Mat4 { w_axis: translation.extend(1.0), ..*world_from_mesh };
@@ -555,27 +410,6 @@ fn instance_buffer(device: &wgpu::Device, count: usize) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
-}
-
-/// Bytes that are on their way to the GPU at a time: each of them is held twice meanwhile.
-const UPLOAD: usize = 64 << 20;
-
-pub(crate) fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("primitive"),
-        size: (bytes.len() as u64).max(4),
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    for (index, part) in bytes.chunks(UPLOAD).enumerate() {
-        gpu.queue.write_buffer(&buffer, (index * UPLOAD) as u64, part);
-        if bytes.len() > UPLOAD {
-            gpu.submit([]);
-            // A device that was lost is reported where it is drawn with.
-            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        }
-    }
-    buffer
 }
 
 #[cfg(test)]
@@ -605,15 +439,5 @@ mod tests {
         {
             assert!(!keeps(outside), "{outside}");
         }
-    }
-
-    #[test]
-    fn bounds_follow_a_mirrored_and_turned_transform() {
-        let matrix = Mat4::from_translation(Vec3::X * 5.0)
-            * Mat4::from_rotation_y(core::f32::consts::FRAC_PI_2)
-            * Mat4::from_scale(Vec3::new(-1.0, 2.0, 3.0));
-        let bounds = transformed(&Aabb { min: Vec3::ZERO, max: Vec3::ONE }, &matrix);
-        assert!((bounds.min - Vec3::new(5.0, 0.0, 0.0)).length() < 1e-5, "{bounds:?}");
-        assert!((bounds.max - Vec3::new(8.0, 2.0, 1.0)).length() < 1e-5, "{bounds:?}");
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::Gpu;
 use crate::maker::STRIDES;
-use crate::scene::filled_buffer;
+use crate::part::filled_buffer;
 
 /// What a probe's triangles are numbered by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

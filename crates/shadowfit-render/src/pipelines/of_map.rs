@@ -8,10 +8,10 @@ use super::Layouts;
 use crate::maker::{
     BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, caster_buffers, culled, depth, instances, part_buffers, strips,
 };
+use crate::part::{Part, PartKey};
 use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
 use crate::renderer::NORMAL_FORMAT;
-use crate::scene::{Part, PartKey};
 use crate::uniform::InsetVertex;
 use crate::unrolled::Numbering;
 use crate::{Overlay, shaders};

@@ -1,0 +1,177 @@
+//! A part of a scene on the GPU: the buffers of one primitive, and what selects its pipelines.
+
+use std::borrow::Cow;
+
+use bytemuck::cast_slice;
+use glam::{Vec2, Vec4};
+use shadowfit::Aabb;
+use shadowfit_scene::{AlphaMode, Primitive, Scene};
+
+use crate::Gpu;
+use crate::casters::{Cluster, clustered};
+use crate::gpu::is_opengl;
+use crate::maker::Streams;
+use crate::unrolled::{Numbering, Unrolled};
+
+/// One primitive with all its instances (a deformed one has a part of its own per instance).
+#[derive(Debug)]
+pub(crate) struct Part {
+    /// Positions, normals, tangents, and texture coordinates with colours.
+    pub(crate) streams: [wgpu::Buffer; 4],
+    /// Which of the last two have an element for each vertex.
+    pub(crate) has: Streams,
+    pub(crate) indices: wgpu::Buffer,
+    pub(crate) index_count: u32,
+    /// Where probes number triangles by their vertices.
+    pub(crate) unrolled: Option<Unrolled>,
+    /// Its triangles in the order of their clusters, for the shadow passes.
+    pub(crate) caster_indices: wgpu::Buffer,
+    pub(crate) clusters: Vec<Cluster>,
+    pub(crate) material: usize,
+    pub(crate) alpha: AlphaMode,
+    pub(crate) double_sided: bool,
+    pub(crate) mirrored: bool,
+    /// Whether its vertices move.
+    pub(crate) deforms: bool,
+    pub(crate) local_bounds: Option<Aabb>,
+    pub(crate) members: Vec<usize>,
+}
+
+/// What selects a part's pipeline, in every pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
+pub struct PartKey {
+    /// Whether fragments below the cutoff are absent.
+    pub masked: bool,
+    /// Whether it is blended over what lies behind.
+    pub blended: bool,
+    double_sided: bool,
+    mirrored: bool,
+    /// Which of its streams have an element for each vertex.
+    pub streams: Streams,
+}
+
+impl Part {
+    pub(crate) fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, (mirrored, deforms): (bool, bool)) -> Self {
+        let material = &scene.materials[primitive.material];
+        let Primitive { positions, normals, indices, .. } = primitive;
+        let has = streams(gpu, primitive);
+        let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
+        let vertices: [&[u8]; 4] =
+            [cast_slice(positions), cast_slice(normals), cast_slice(&tangents), cast_slice(&surface)];
+        // Passes fit what deforms to them for rays.
+        let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
+        // Blended surfaces are not probed.
+        let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(&gpu.device) == Numbering::Vertices;
+        let each = [
+            Some(vertices[0]),
+            Some(vertices[1]),
+            has.tangents.then_some(vertices[2]),
+            has.surface.then_some(vertices[3]),
+        ];
+        // What casts nothing is not cut, and neither is what deforms.
+        let is_whole = deforms || material.alpha == AlphaMode::Blend;
+        let (caster_indices, clusters) = clustered(positions, indices, is_whole);
+        let index = |indices: &[u32]| filled_buffer(gpu, wgpu::BufferUsages::INDEX, cast_slice(indices));
+        Self {
+            streams: vertices.map(|bytes| filled_buffer(gpu, wgpu::BufferUsages::VERTEX | read, bytes)),
+            unrolled: is_unrolled.then(|| Unrolled::new(gpu, indices, each)),
+            has,
+            indices: index(indices),
+            caster_indices: index(&caster_indices),
+            index_count: primitive.indices.len() as u32,
+            clusters,
+            material: primitive.material,
+            alpha: material.alpha,
+            double_sided: material.double_sided,
+            mirrored,
+            deforms,
+            local_bounds: Aabb::from_points(primitive.positions.iter().copied()),
+            members: Vec::new(),
+        }
+    }
+
+    /// Whether the caster rule lets the part cast: blended surfaces cast nothing.
+    pub(crate) fn casts(&self) -> bool {
+        self.alpha != AlphaMode::Blend
+    }
+}
+
+impl PartKey {
+    pub(crate) fn of(part: &Part) -> Self {
+        Self {
+            masked: matches!(part.alpha, AlphaMode::Mask { .. }),
+            blended: part.alpha == AlphaMode::Blend,
+            double_sided: part.double_sided,
+            mirrored: part.mirrored,
+            streams: part.has,
+        }
+    }
+
+    /// The constants of the WGSL of [materials](crate::shaders::material).
+    pub fn constants(self) -> [(&'static str, f64); 1] {
+        [("MASKED", f64::from(self.masked))]
+    }
+
+    /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
+    pub fn cull_mode(self) -> Option<wgpu::Face> {
+        (!self.double_sided).then(|| self.back())
+    }
+
+    /// The front as the rasteriser names it.
+    pub fn front(self) -> wgpu::Face {
+        if self.mirrored { wgpu::Face::Back } else { wgpu::Face::Front }
+    }
+
+    /// The back as the rasteriser names it.
+    pub fn back(self) -> wgpu::Face {
+        if self.mirrored { wgpu::Face::Front } else { wgpu::Face::Back }
+    }
+}
+
+/// Which streams get an element for each vertex: all on OpenGL, where those of browsers have no single elements.
+fn streams(gpu: &Gpu, primitive: &Primitive) -> Streams {
+    let has_all = is_opengl(&gpu.device);
+    Streams {
+        tangents: has_all || !primitive.tangents.is_empty(),
+        surface: has_all || !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
+    }
+}
+
+/// Tangents of each vertex, or of all.
+fn tangents(primitive: &Primitive, has: Streams) -> Cow<'_, [Vec4]> {
+    let count = if has.tangents { primitive.positions.len() } else { 1 };
+    if primitive.tangents.is_empty() { vec![Vec4::ZERO; count].into() } else { (&primitive.tangents).into() }
+}
+
+/// Texture coordinates and colours of each vertex, or those of all.
+fn surface(primitive: &Primitive, has: Streams) -> Vec<[f32; 6]> {
+    let element = |index: usize| {
+        let uv = primitive.uvs.get(index).copied().unwrap_or(Vec2::ZERO);
+        let color = primitive.colors.get(index).copied().unwrap_or(Vec4::ONE);
+        [uv.x, uv.y, color.x, color.y, color.z, color.w]
+    };
+    let count = if has.surface { primitive.positions.len() } else { 1 };
+    (0..count).map(element).collect()
+}
+
+/// Bytes that are on their way to the GPU at a time: each of them is held twice meanwhile.
+const UPLOAD: usize = 64 << 20;
+
+pub(crate) fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("primitive"),
+        size: (bytes.len() as u64).max(4),
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    for (index, part) in bytes.chunks(UPLOAD).enumerate() {
+        gpu.queue.write_buffer(&buffer, (index * UPLOAD) as u64, part);
+        if bytes.len() > UPLOAD {
+            gpu.submit([]);
+            // A device that was lost is reported where it is drawn with.
+            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        }
+    }
+    buffer
+}
