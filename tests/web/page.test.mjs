@@ -27,14 +27,19 @@ const PATIENCE = 120_000;
 const LONGEST_TASK = 50;
 /// Where the button of the panel is on a phone of 390 points.
 const DRAWER = [350, 22];
+/// What is left of the picture there beside the open drawer.
+const BESIDE = [10, 500];
+/// A part of the bar at the top that has no text, on all sizes of the page.
+const BAR = [150, 4, 150, 3];
 /// Console messages of the browser itself, which no page can help.
 const OF_BROWSER = /software WebGL|GPU stall due to ReadPixels|Automatic fallback to software|powerPreference/;
 
 /// An open page with what it said.
 class Viewer {
-  static async open(browser, { api, query = '', hash = '', width = 720, height = 300, scale = 1, isTouch = false }) {
+  static async open(browser, { api, query = '', hash = '', width = 720, height = 300, scale = 1, isTouch = false, colours = 'light' }) {
     const context = await browser.newContext({
-      viewport: { width, height }, deviceScaleFactor: scale, hasTouch: isTouch, acceptDownloads: true,
+      viewport: { width, height }, deviceScaleFactor: scale, hasTouch: isTouch, colorScheme: colours,
+      acceptDownloads: true,
       permissions: ['clipboard-read', 'clipboard-write'],
     });
     const page = await context.newPage();
@@ -116,7 +121,7 @@ class Viewer {
   async untilFacts(check, name, patience) {
     return this.until(async () => {
       const facts = await this.facts();
-      return check(facts) && facts;
+      return await check(facts) && facts;
     }, name, patience);
   }
 
@@ -164,6 +169,19 @@ class Viewer {
     }, [one.toString('base64'), other.toString('base64'), least]);
   }
 
+  /// Mean value of the channels of what lies in a rectangle of the page, of 255.
+  async brightness([x, y, width, height]) {
+    const png = await this.page.screenshot({ clip: { x, y, width, height } });
+    return this.desk.evaluate(async (bytes) => {
+      const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${bytes}`)).blob());
+      const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+      context.drawImage(picture, 0, 0);
+      const { data } = context.getImageData(0, 0, picture.width, picture.height);
+      const channels = data.filter((_, index) => index % 4 !== 3);
+      return channels.reduce((sum, value) => sum + value, 0) / channels.length;
+    }, png.toString('base64'));
+  }
+
   quiet() {
     assert.deepEqual(this.said, [], 'the console is free of errors and warnings');
   }
@@ -197,7 +215,7 @@ for (const api of ['webgpu', 'webgl2']) {
       viewer.quiet();
     });
 
-    test('W moves the camera, a drag turns it, and the wheel flies faster', async () => {
+    test('W moves the camera, and a drag and a locked mouse turn it', async () => {
       const start = await viewer.facts();
       await viewer.page.keyboard.down('w');
       const moved = await viewer.untilFacts(({ position }) => `${position}` !== `${start.position}`, 'a movement');
@@ -205,9 +223,18 @@ for (const api of ['webgpu', 'webgl2']) {
       assert.ok(moved.position[2] < start.position[2], `forward: ${start.position} to ${moved.position}`);
       await viewer.page.mouse.move(200, 200);
       await viewer.page.mouse.down();
-      await viewer.page.mouse.move(260, 210, { steps: 4 });
-      await viewer.untilFacts(({ angles }) => `${angles}` !== `${start.angles}`, 'a turn');
+      let x = 200;
+      const drags = async () => viewer.page.mouse.move(x += 5, 210);
+      await viewer.untilFacts(async ({ angles }) => `${angles}` !== `${start.angles}` || void await drags(), 'a turn');
       await viewer.page.mouse.up();
+      await viewer.page.keyboard.press('v');
+      const lock = () => viewer.page.evaluate(() => document.pointerLockElement?.id);
+      await viewer.until(async () => await lock() === 'canvas', 'a locked mouse');
+      const { angles: before } = await viewer.facts();
+      await viewer.page.mouse.move(300, 220, { steps: 4 });
+      await viewer.untilFacts(({ angles }) => `${angles}` !== `${before}`, 'a turn by the locked mouse');
+      await viewer.page.evaluate(() => document.exitPointerLock());
+      await viewer.until(async () => !await lock(), 'a free mouse');
       viewer.quiet();
     });
 
@@ -336,8 +363,10 @@ for (const api of ['webgpu', 'webgl2']) {
       await viewer.page.setViewportSize({ width: 800, height: 500 });
       await viewer.untilFacts(({ size }) => `${size}` === '800,500', 'the new size');
       await viewer.rest();
-      const fine = await Viewer.open(browser, { api, query: '&afresh', width: 400, height: 240, scale: 2 });
+      const options = { api, query: '&afresh', width: 400, height: 240, scale: 2, colours: 'dark' };
+      const fine = await Viewer.open(browser, options);
       await fine.untilFacts(({ size }) => `${size}` === '800,480', 'two pixels a point');
+      assert.ok(await fine.brightness(BAR) < 80, 'a dark page where the browser prefers one');
       await fine.close();
       const phone = await Viewer.open(browser, { api, query: '&afresh', width: 390, height: 844, isTouch: true });
       const shut = await phone.page.screenshot();
@@ -345,6 +374,9 @@ for (const api of ['webgpu', 'webgl2']) {
       await phone.untilFacts(({ drawer }) => drawer, 'the drawer');
       const { share } = await phone.difference(shut, await phone.page.screenshot());
       assert.ok(share > 0.3, `the drawer covers ${share} of the picture`);
+      assert.ok(await phone.brightness(BAR) > 160, 'a light page where the browser prefers one');
+      await phone.page.touchscreen.tap(...BESIDE);
+      await phone.untilFacts(({ drawer }) => !drawer, 'the picture');
       phone.quiet();
       await phone.close();
       await viewer.wake();

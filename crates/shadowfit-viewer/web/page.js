@@ -19,7 +19,7 @@ const ADVICE = {
   failure: 'Load the page again; if that does not help, please report the text above.',
 };
 
-/// Ends the page with a message. What comes after the first one follows from it, and is not shown.
+/// Ends the page with a message. What the browser says of the worker after that follows from it, and is not shown.
 function show(state, advice) {
   if (cover.classList.contains('failed')) {
     return;

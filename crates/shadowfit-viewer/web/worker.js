@@ -3,7 +3,23 @@
 const waiting = [];
 let viewer = null;
 
+/// What the viewer tells the page when nothing can follow.
+const ENDINGS = ['panic', 'lost', 'memory', 'failure'];
+let isOver = false;
+
+/// Tells the page that it is over, and why: no frame follows.
+function end(kind, text) {
+  if (!isOver) {
+    isOver = true;
+    postMessage([kind, text]);
+  }
+}
+
 self.tellPage = (kind, value, name) => {
+  if (ENDINGS.includes(kind)) {
+    end(kind, value);
+    return;
+  }
   const transferred = value instanceof Uint8Array ? [value.buffer] : [];
   postMessage([kind, value, name], transferred);
 };
@@ -68,16 +84,6 @@ function call([method, ...values]) {
     }
   } catch (error) {
     failed(error);
-  }
-}
-
-let isOver = false;
-
-/// Tells the page that it is over, and why.
-function end(kind, text) {
-  if (!isOver) {
-    isOver = true;
-    postMessage([kind, text]);
   }
 }
 
