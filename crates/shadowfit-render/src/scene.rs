@@ -296,7 +296,8 @@ impl GpuScene {
         pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
     }
 
-    /// Draws a part of a probe, with its material as a bind group, by a pipeline of its [`Numbering`].
+    /// Draws a part of a probe, with its material as a bind group, by a pipeline of its
+    /// [`Numbering`](crate::unrolled::Numbering).
     pub fn draw_probed(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: u32) {
         let part = &self.parts[draw.part];
         let Some(unrolled) = &part.unrolled else { return self.draw(pass, draw, Some(material_group)) };
