@@ -82,7 +82,7 @@ class Viewer {
     await this.until(() => this.page.evaluate(() => document.documentElement.dataset.ready), 'the first frame');
   }
 
-  /// Leaves the page until [`wake`], so that another one has the software GPU for itself.
+  /// Leaves the page until `wake`, so that another one has the software GPU for itself.
   async rest() {
     await this.keepTasks();
     await this.page.goto('about:blank');
@@ -235,6 +235,32 @@ for (const api of ['webgpu', 'webgl2']) {
       await viewer.untilFacts(({ angles }) => `${angles}` !== `${before}`, 'a turn by the locked mouse');
       await viewer.page.evaluate(() => document.exitPointerLock());
       await viewer.until(async () => !await lock(), 'a free mouse');
+      viewer.quiet();
+    });
+
+    test('one finger turns the camera, two fingers that part fly forward', async () => {
+      const screen = await viewer.context.newCDPSession(viewer.page);
+      const touch = (type, points) =>
+        screen.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+      /// Puts fingers down and moves them at once, as hands do: those that rest ask for a menu. They stay until they are seen.
+      const gesture = async (fingers, fact, before) => {
+        let by = 0;
+        const move = () => touch('touchMove', fingers(by += 8));
+        await touch('touchStart', fingers(by));
+        for (let step = 0; step < 4; step += 1) {
+          await move();
+        }
+        const facts = await viewer.untilFacts(async (now) => `${now[fact]}` !== `${before[fact]}` || void await move(), fact);
+        await touch('touchEnd', []);
+        return facts;
+      };
+      const turned = await gesture((by) => [[200 + by, 160]], 'angles', await viewer.facts());
+      const there = await gesture((by) => [[220 - by, 160], [240 + by, 160]], 'position', turned);
+      const way = there.position.map((side, axis) => side - turned.position[axis]);
+      const [yaw, pitch] = there.angles;
+      const forward = [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
+      const along = way.reduce((sum, side, axis) => sum + side * forward[axis], 0) / Math.hypot(...way);
+      assert.ok(along > 0.9, `forward: ${way} where ${forward} is`);
       viewer.quiet();
     });
 
