@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
+use crate::bevy;
 use crate::machine::Machine;
 use crate::process;
 use crate::setup::{self, Purpose};
@@ -19,7 +20,7 @@ struct Step {
     check: fn(&Machine) -> Result<()>,
 }
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 11] = [
     Step { name: "format", check: format },
     Step { name: "dependencies", check: dependencies },
     Step { name: "no_std build of the core", check: portability::no_std },
@@ -30,6 +31,7 @@ const STEPS: [Step; 10] = [
     Step { name: "same bits without SIMD and in WebAssembly", check: portability::determinism },
     Step { name: "the core with the oldest glam", check: portability::oldest_glam },
     Step { name: "examples", check: examples },
+    Step { name: "the package for Bevy", check: bevy },
 ];
 
 /// Prepares the machine and runs the checks.
@@ -53,7 +55,8 @@ pub(crate) fn ci() -> Result<()> {
 }
 
 fn format(_: &Machine) -> Result<()> {
-    process::run(process::cargo("fmt").args(["--all", "--check"]))
+    process::run(process::cargo("fmt").args(["--all", "--check"]))?;
+    process::run(process::cargo("fmt").args(["--manifest-path", "crates/bevy-shadowfit/Cargo.toml", "--check"]))
 }
 
 fn dependencies(_: &Machine) -> Result<()> {
@@ -126,6 +129,16 @@ fn msrv(machine: &Machine) -> Result<()> {
 
 fn examples(machine: &Machine) -> Result<()> {
     process::run(process::cargo("build").args(["--workspace", "--examples"]).args(setup::features(machine)))
+}
+
+fn bevy(_: &Machine) -> Result<()> {
+    match bevy::Rust::find() {
+        Some(rust) => rust.check(),
+        None => {
+            println!("SKIPPED: {}", bevy::NO_RUST);
+            Ok(())
+        }
+    }
 }
 
 /// The first `rust-version` in a manifest.

@@ -3,6 +3,7 @@
 //! and, on Debian and systems derived from it, installs what is missing.
 
 mod bench;
+mod bevy;
 mod ci;
 #[cfg(test)]
 mod docs;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow, bail};
 
+use crate::bevy;
 use crate::machine::{Machine, Part};
 use crate::process;
 use crate::setup::{self, Purpose};
@@ -43,10 +44,17 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
     // The runner with the most tests comes last, so that its counts close the output.
     let doc_tests = timed(process::cargo("test").args(["--workspace", "--doc", "--no-fail-fast"]).args(features));
     let tests = timed(&mut runner(features, &left_out));
+    let bevy = bevy::Rust::find().map(|rust| timed_by(|| rust.test(&machine)));
     let can_test_page = machine.can_test_page() && process::has_target(web::TARGET);
     let page = can_test_page.then(|| timed_by(|| web::run(&machine, false)));
     for LeftOut { name_part, reason } in &left_out {
         println!("SKIPPED: tests with `{name_part}` in their name: {reason}");
+    }
+    match &bevy {
+        Some((result, time)) => {
+            println!("{} ({:.0} s)", verdict("tests of bevy-shadowfit", result), time.as_secs_f32())
+        }
+        None => println!("SKIPPED: tests of bevy-shadowfit: {}", bevy::NO_RUST),
     }
     match &page {
         Some((result, time)) => println!("{} ({:.0} s)", verdict("tests of the page", result), time.as_secs_f32()),
@@ -64,7 +72,7 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
         None if setup::gpu_is_required() => Err(anyhow!("{} is set, and {NO_PAGE}", setup::REQUIRE_GPU)),
         None => Ok(()),
     };
-    doc_tests.0.and(tests.0).and(page)
+    doc_tests.0.and(tests.0).and(bevy.map_or(Ok(()), |(result, _)| result)).and(page)
 }
 
 /// Runs the golden tests so that they write their pictures.

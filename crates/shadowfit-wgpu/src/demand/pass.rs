@@ -77,6 +77,11 @@ impl DemandPass {
         })
     }
 
+    /// Samples per pixel of the depth textures that it is for.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
     /// Records the pass and the way back of its counts, after the pass that fills the depth buffer. `depth` is a view
     /// of the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass
     /// before it has stored (`StoreOp::Store`); `timestamps` may time the pass.

@@ -1,0 +1,286 @@
+//! A Bevy app without a window that draws one picture an update, and gives it back before the next one.
+//!
+//! Bevy's pipelined renderer is left out: an update draws what the main world holds at its end, and the copy of the
+//! picture is submitted and waited for after that, so that a picture always belongs to the camera and the light that
+//! were set before its update.
+
+use std::error::Error;
+
+use bevy::app::PluginsState;
+use bevy::camera::{Hdr, ImageRenderTarget, RenderTarget};
+use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::light::{CascadeShadowConfig, DirectionalLightShadowMap, ShadowFilteringMethod};
+use bevy::log::{Level, LogPlugin};
+use bevy::math::DMat4;
+use bevy::prelude::*;
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
+use bevy::render::render_asset::RenderAssets;
+use bevy::render::render_resource::{
+    BufferDescriptor, BufferUsages, CommandEncoderDescriptor, MapMode, PollType, TexelCopyBufferInfo,
+    TexelCopyBufferLayout, TextureFormat, TextureUsages,
+};
+use bevy::render::renderer::{RenderDevice, RenderQueue};
+use bevy::render::texture::GpuImage;
+use bevy::render::{RenderApp, RenderPlugin};
+use bevy::window::ExitCondition;
+use bevy::winit::WinitPlugin;
+use bevy_shadowfit::{Fit, FittedShadows};
+use shadowfit_truth::peers::Frame;
+
+use crate::contestant::{Contestant, Entrant};
+use crate::geometry::{self, Corners};
+use crate::light_maps::{self, Frozen, LightMaps, Live, Sun};
+use crate::view_depth::{self, ViewDepthsOf};
+
+/// Bytes of a pixel of the picture: four f32.
+const PIXEL_BYTES: u32 = 16;
+/// Updates after a scene has been set, until all its meshes are on the GPU.
+const SCENE_UPDATES: u32 = 4;
+/// Updates after a light has windows for the first time, until Bevy's shader reads them.
+const SHADER_UPDATES: u32 = 20;
+
+/// The app, and what it shows.
+pub(crate) struct Stage {
+    app: App,
+    camera: Entity,
+    picture: Handle<Image>,
+    material: Handle<StandardMaterial>,
+    settings: StageSettings,
+    objects: Vec<Entity>,
+    sun: Option<Entity>,
+    /// Whether Bevy's shader was extended for windows.
+    reads_windows: bool,
+    /// Updates so far, each of which drew the view.
+    pub(crate) updates: u64,
+}
+
+/// What is the same in all pictures.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StageSettings {
+    /// Width and height of pictures, in pixels.
+    pub(crate) size: [u32; 2],
+    /// Width and height of each shadow map, in texels.
+    pub(crate) map_size: u32,
+    pub(crate) filter: ShadowFilteringMethod,
+    /// Depth bias, in metres, and normal bias, in diagonals of a texel, that lights are given.
+    pub(crate) biases: [f32; 2],
+}
+
+impl Stage {
+    /// Starts Bevy. The scene is empty.
+    pub(crate) fn new(settings: &StageSettings) -> Self {
+        let mut app = new_app();
+        app.insert_resource(GlobalAmbientLight::NONE)
+            .insert_resource(DirectionalLightShadowMap { size: settings.map_size as usize })
+            .insert_resource(ClearColor(Color::BLACK))
+            .add_plugins((bevy_shadowfit::ShadowfitPlugin, light_maps::plugin, view_depth::plugin));
+        while app.plugins_state() == PluginsState::Adding {
+            bevy::tasks::tick_global_task_pools_on_main_thread();
+        }
+        app.finish();
+        app.cleanup();
+        let world = app.world_mut();
+        let picture = add_picture(world, settings.size);
+        let target = ImageRenderTarget { handle: picture.clone(), scale_factor: 1.0 };
+        let plain = (Hdr, Msaa::Off, Tonemapping::None, DebandDither::Disabled, settings.filter);
+        let camera = world.spawn((Camera3d::default(), RenderTarget::Image(target), plain)).id();
+        let material = world.resource_mut::<Assets<StandardMaterial>>().add(white());
+        Self {
+            app,
+            camera,
+            picture,
+            material,
+            settings: *settings,
+            objects: Vec::new(),
+            sun: None,
+            reads_windows: false,
+            updates: 0,
+        }
+    }
+
+    /// Replaces the scene.
+    pub(crate) fn set_scene(&mut self, objects: &[Vec<Corners>]) {
+        let world = self.app.world_mut();
+        for object in self.objects.drain(..) {
+            world.despawn(object);
+        }
+        for object in objects.iter().filter(|object| !object.is_empty()) {
+            let mesh = world.resource_mut::<Assets<Mesh>>().add(geometry::mesh(object));
+            let parts = (Mesh3d(mesh), MeshMaterial3d(self.material.clone()), Transform::IDENTITY);
+            self.objects.push(world.spawn(parts).id());
+        }
+        for _ in 0..SCENE_UPDATES {
+            self.update();
+        }
+    }
+
+    /// Updates until Bevy's shader can read windows, which the first light that has them asks for.
+    fn wait_for_windows(&mut self) {
+        let fitted = FittedShadows { fit: Fit::Windows, ..default() };
+        let light = self.app.world_mut().spawn((DirectionalLight::default(), fitted)).id();
+        self.settle(SHADER_UPDATES);
+        self.app.world_mut().despawn(light);
+        self.reads_windows = true;
+    }
+
+    /// Replaces the light, and with it all that fits remember.
+    pub(crate) fn set_light(&mut self, frame: &Frame, entrant: Entrant) {
+        if entrant.contestant == Contestant::Windows && !self.reads_windows {
+            self.wait_for_windows();
+        }
+        let world = self.app.world_mut();
+        if let Some(sun) = self.sun.take() {
+            world.despawn(sun);
+        }
+        let [x, y, z] = frame.light_dir.map(|part| part as f32);
+        let [shadow_depth_bias, shadow_normal_bias] = self.settings.biases;
+        let light = DirectionalLight { shadow_maps_enabled: true, shadow_depth_bias, shadow_normal_bias, ..default() };
+        let toward = Transform::default().looking_to(Vec3::new(x, y, z), Vec3::Y);
+        let mut sun = world.spawn((Sun, light, Entrant::config(frame.far as f32).build(), toward));
+        entrant.take(&mut sun);
+        self.sun = Some(sun.id());
+        let mut camera = world.entity_mut(self.camera);
+        camera.remove::<DepthPrepass>();
+        if entrant.reads_depth() {
+            camera.insert(DepthPrepass);
+        }
+    }
+
+    /// Moves the camera to a frame's.
+    pub(crate) fn set_camera(&mut self, frame: &Frame) {
+        let world_from_view = frame.view_from_world().inverse().to_cols_array().map(|number| number as f32);
+        let projection = PerspectiveProjection {
+            fov: frame.fov_y_deg.to_radians() as f32,
+            aspect_ratio: frame.aspect as f32,
+            near: frame.near as f32,
+            far: frame.far as f32,
+            ..default()
+        };
+        let pose = Transform::from_matrix(Mat4::from_cols_array(&world_from_view));
+        let mut camera = self.app.world_mut().entity_mut(self.camera);
+        camera.insert((pose, Projection::Perspective(projection)));
+    }
+
+    /// Lets the app update so many times, as a game would while the camera stands.
+    pub(crate) fn settle(&mut self, updates: u32) {
+        for _ in 0..updates {
+            self.update();
+        }
+    }
+
+    /// The picture of the next update. Red channels, rows from the top.
+    pub(crate) fn draw(&mut self) -> Result<Vec<f32>, Box<dyn Error>> {
+        self.update();
+        self.read_back()
+    }
+
+    /// The picture without shadows.
+    pub(crate) fn draw_unshadowed(&mut self) -> Result<Vec<f32>, Box<dyn Error>> {
+        self.set_shadows(false);
+        let picture = self.draw();
+        self.set_shadows(true);
+        picture
+    }
+
+    /// From now on, the points of pictures choose among cascades by their view depth in another frame, if there is one.
+    pub(crate) fn set_view_depths(&mut self, other: Option<&Frame>) {
+        let world_from_view = |frame: &Frame| DMat4::from_cols_array(&frame.view).inverse();
+        let renderer = self.app.sub_app_mut(RenderApp).world_mut();
+        renderer.resource_mut::<ViewDepthsOf>().0 = other.map(world_from_view);
+    }
+
+    /// The picture with the maps of another frame in place of the light's own.
+    pub(crate) fn draw_with(&mut self, maps: &LightMaps) -> Result<Vec<f32>, Box<dyn Error>> {
+        self.app.world_mut().resource_mut::<Frozen>().0 = Some(maps.clone());
+        let picture = self.draw();
+        self.app.world_mut().resource_mut::<Frozen>().0 = None;
+        let live = self.maps()?;
+        let mut sun = self.sun();
+        let (mut config, mut light) =
+            sun.get_components_mut::<(&mut CascadeShadowConfig, &mut DirectionalLight)>().expect("a light's parts");
+        live.put(&mut config, &mut light);
+        picture
+    }
+
+    /// The light's own maps in the last update.
+    pub(crate) fn maps(&self) -> Result<LightMaps, Box<dyn Error>> {
+        let live = &self.app.world().resource::<Live>().0;
+        live.clone().ok_or_else(|| "Bevy made no cascades for the camera".into())
+    }
+
+    fn sun(&mut self) -> EntityWorldMut<'_> {
+        self.app.world_mut().entity_mut(self.sun.expect("a light was set"))
+    }
+
+    fn set_shadows(&mut self, is_on: bool) {
+        self.sun().get_mut::<DirectionalLight>().expect("a light").shadow_maps_enabled = is_on;
+    }
+
+    fn update(&mut self) {
+        self.app.update();
+        self.updates += 1;
+    }
+
+    /// The red channels of the picture of the last update.
+    fn read_back(&self) -> Result<Vec<f32>, Box<dyn Error>> {
+        let world = self.app.sub_app(RenderApp).world();
+        let (device, queue) = (world.resource::<RenderDevice>(), world.resource::<RenderQueue>());
+        let picture = world.resource::<RenderAssets<GpuImage>>().get(&self.picture).ok_or("Bevy drew no picture")?;
+        let [width, height] = self.settings.size;
+        let row_bytes = RenderDevice::align_copy_bytes_per_row((width * PIXEL_BYTES) as usize);
+        let buffer = device.create_buffer(&BufferDescriptor {
+            label: Some("picture"),
+            size: (row_bytes * height as usize) as u64,
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes as u32), rows_per_image: None };
+        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor { label: Some("picture") });
+        encoder.copy_texture_to_buffer(
+            picture.texture.as_image_copy(),
+            TexelCopyBufferInfo { buffer: &buffer, layout },
+            picture.texture_descriptor.size,
+        );
+        queue.submit([encoder.finish()]);
+        let slice = buffer.slice(..);
+        slice.map_async(MapMode::Read, |_| ());
+        device.poll(PollType::wait_indefinitely())?;
+        let bytes = slice.get_mapped_range()?;
+        let pixels = bytes.chunks(row_bytes).flat_map(|row| row[..(width * PIXEL_BYTES) as usize].chunks(16));
+        Ok(pixels.map(|pixel| f32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]])).collect())
+    }
+}
+
+/// Bevy without a window, an event loop or a render thread.
+fn new_app() -> App {
+    let window = WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
+    let log = LogPlugin { level: Level::WARN, ..default() };
+    let mut plugins = DefaultPlugins.set(window).set(log).disable::<WinitPlugin>();
+    if plugins.contains::<PipelinedRenderingPlugin>() {
+        plugins = plugins.disable::<PipelinedRenderingPlugin>();
+    }
+    let mut app = App::new();
+    app.add_plugins(plugins.set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() }));
+    app
+}
+
+/// The image that the camera draws into.
+fn add_picture(world: &mut World, [width, height]: [u32; 2]) -> Handle<Image> {
+    let mut image = Image::new_target_texture(width, height, TextureFormat::Rgba32Float, None);
+    image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+    world.resource_mut::<Assets<Image>>().add(image)
+}
+
+/// What every triangle is made of: it reflects light from both sides and casts shadows with both.
+fn white() -> StandardMaterial {
+    StandardMaterial {
+        base_color: Color::WHITE,
+        perceptual_roughness: 1.0,
+        metallic: 0.0,
+        reflectance: 0.0,
+        cull_mode: None,
+        double_sided: true,
+        ..default()
+    }
+}

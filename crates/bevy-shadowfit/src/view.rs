@@ -1,0 +1,205 @@
+//! The views that are shadowed, and the boxes of what receives shadows in each.
+
+use std::any::TypeId;
+
+use bevy::camera::Camera;
+use bevy::camera::primitives::Aabb;
+use bevy::camera::visibility::{NoCpuCulling, NoFrustumCulling, RenderLayers, VisibleEntities};
+use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemParam;
+use bevy::light::{NotShadowReceiver, ShadowFilteringMethod};
+use bevy::math::{Affine3A, DMat4};
+use bevy::mesh::morph::MeshMorphWeights;
+use bevy::mesh::skinning::SkinnedMesh;
+use bevy::prelude::*;
+use shadowfit::glam as fit_glam;
+use shadowfit::settings::MapSettings;
+use shadowfit::{DepthConvention, ViewFrustum};
+use shadowfit_wgpu::demand::DemandView;
+
+use crate::clusters::{MeshClusters, WholeBox};
+use crate::problem::Problem;
+
+/// A view of the frame.
+pub(crate) struct View {
+    pub(crate) camera: Entity,
+    pub(crate) layers: RenderLayers,
+    pub(crate) filter: ShadowFilteringMethod,
+    /// What it sees, up to the greatest distance at which a light has shadows.
+    world_from_clip: fit_glam::DMat4,
+    eye: fit_glam::DVec3,
+    /// Whether its picture can be counted.
+    pub(crate) has_prepass: bool,
+    pub(crate) receivers: Receivers,
+}
+
+/// What receives shadows in a view.
+#[derive(Default)]
+pub(crate) struct Receivers {
+    /// World boxes, in metres.
+    pub(crate) boxes: Vec<shadowfit::Aabb>,
+    /// Whether there are others of which no box is known, so that everything in view counts.
+    pub(crate) has_unknown: bool,
+}
+
+/// Cameras that show meshes.
+type Cameras<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static Camera,
+        &'static Projection,
+        &'static GlobalTransform,
+        &'static VisibleEntities,
+        Option<&'static RenderLayers>,
+        Option<&'static ShadowFilteringMethod>,
+        Has<DepthPrepass>,
+    ),
+    With<Camera3d>,
+>;
+
+/// Meshes whose visibility the CPU does not look at.
+type Unculled<'w, 's> = Query<
+    'w,
+    's,
+    (MeshBox, &'static InheritedVisibility, Option<&'static RenderLayers>),
+    (With<Mesh3d>, With<NoCpuCulling>, Without<NotShadowReceiver>),
+>;
+
+/// What is known of a mesh.
+#[derive(QueryData)]
+pub(crate) struct MeshBox {
+    transform: &'static GlobalTransform,
+    mesh: &'static Mesh3d,
+    aabb: Option<&'static Aabb>,
+    is_unbounded: Has<NoFrustumCulling>,
+    is_whole: (Has<WholeBox>, Has<SkinnedMesh>, Has<MeshMorphWeights>),
+}
+
+/// Everything that views are made from.
+#[derive(SystemParam)]
+pub(crate) struct Scene<'w, 's> {
+    cameras: Cameras<'w, 's>,
+    clusters: Res<'w, MeshClusters>,
+    meshes: Query<'w, 's, MeshBox, (With<Mesh3d>, Without<NotShadowReceiver>)>,
+    unculled: Unculled<'w, 's>,
+}
+
+impl Scene<'_, '_> {
+    /// The active views, each with what receives shadows in it. Meshes that reach farther than `large` metres to a side
+    /// count with their clusters.
+    pub(crate) fn views(&self, large: f32) -> Result<Vec<View>, Problem> {
+        self.cameras.iter().filter(|(_, camera, ..)| camera.is_active).map(|camera| self.view(camera, large)).collect()
+    }
+
+    fn view(
+        &self,
+        (entity, camera, projection, transform, visible, layers, filter, has_prepass): (
+            Entity,
+            &Camera,
+            &Projection,
+            &GlobalTransform,
+            &VisibleEntities,
+            Option<&RenderLayers>,
+            Option<&ShadowFilteringMethod>,
+            bool,
+        ),
+        large: f32,
+    ) -> Result<View, Problem> {
+        let layers = layers.cloned().unwrap_or_default();
+        let mut receivers = Receivers::default();
+        let visible = visible.get(TypeId::of::<Mesh3d>());
+        receivers.boxes.reserve(visible.len());
+        for (mesh, item) in visible.iter().filter_map(|&mesh| Some((mesh, self.meshes.get(mesh).ok()?))) {
+            receivers.add(&item, &self.clusters, large).map_err(|()| Problem::Mesh(mesh))?;
+        }
+        for (mesh, visibility, mesh_layers) in &self.unculled {
+            if visibility.get() && layers.intersects(mesh_layers.unwrap_or_default()) {
+                receivers.add(&mesh, &self.clusters, large).map_err(|()| Problem::View(entity))?;
+            }
+        }
+        let world_from_view = world_from_view(transform).ok_or(Problem::View(entity))?;
+        let clip_from_view = match &camera.sub_camera_view {
+            Some(part) => projection.get_clip_from_view_for_sub(part),
+            None => projection.get_clip_from_view(),
+        };
+        let clip_from_view = DMat4::from_cols_array(&clip_from_view.to_cols_array().map(f64::from));
+        let world_from_clip = world_from_view * clip_from_view.inverse();
+        Ok(View {
+            camera: entity,
+            layers,
+            filter: filter.copied().unwrap_or_default(),
+            world_from_clip: fit_glam::DMat4::from_cols_array(&world_from_clip.to_cols_array()),
+            eye: fit_glam::DVec3::from_array(world_from_view.w_axis.truncate().to_array()),
+            has_prepass,
+            receivers,
+        })
+    }
+}
+
+/// World space from a camera's view space; `None` where a metre of the one is none of the other, so that view depths
+/// would mean something else to Bevy.
+fn world_from_view(transform: &GlobalTransform) -> Option<DMat4> {
+    let matrix = DMat4::from_cols_array(&transform.to_matrix().to_cols_array().map(f64::from));
+    let is_unit = |axis: usize| (matrix.col(axis).length() - 1.0).abs() < 1e-3;
+    ((0..3).all(is_unit) && matrix.is_finite()).then_some(matrix)
+}
+
+impl View {
+    /// What the view sees, as far as `max_distance`, in metres of view depth.
+    pub(crate) fn frustum(&self, max_distance: f32) -> Result<ViewFrustum, shadowfit::FitError> {
+        ViewFrustum::from_world_from_clip_f64(&self.world_from_clip, self.eye, DepthConvention::Reversed, max_distance)
+    }
+
+    /// The picture of a frustum of this view, to be counted for a light that travels in a direction; the rectangle is
+    /// not known here.
+    pub(crate) fn demand(&self, frustum: &ViewFrustum, direction: fit_glam::Vec3, max_distance: f32) -> DemandView {
+        let eye_from_clip = fit_glam::DMat4::from_translation(-self.eye) * self.world_from_clip;
+        DemandView {
+            frustum: *frustum,
+            clip_from_world: eye_from_clip.inverse().as_mat4(),
+            depth: DepthConvention::Reversed,
+            direction,
+            up: MapSettings::default().up,
+            max_distance,
+            rectangle: [0; 4],
+        }
+    }
+}
+
+impl Receivers {
+    fn add(&mut self, item: &MeshBoxItem, clusters: &MeshClusters, large: f32) -> Result<(), ()> {
+        let Some(aabb) = item.aabb.filter(|_| !item.is_unbounded) else {
+            self.has_unknown = true;
+            return Ok(());
+        };
+        let world_from_mesh = item.transform.affine();
+        let whole = world_box(aabb, &world_from_mesh).ok_or(())?;
+        let is_large = (whole.max - whole.min).max_element() > 2.0 * large;
+        let may_be_cut = !(item.is_whole.0 || item.is_whole.1 || item.is_whole.2);
+        match (is_large && may_be_cut).then(|| clusters.of(item.mesh.id())).flatten() {
+            Some(clusters) => {
+                let boxes = clusters.iter().map(|cluster| {
+                    let corner = |v: fit_glam::Vec3| Vec3::from_array(v.to_array());
+                    Aabb::from_min_max(corner(cluster.min), corner(cluster.max))
+                });
+                self.boxes.extend(boxes.filter_map(|aabb| world_box(&aabb, &world_from_mesh)));
+            }
+            None => self.boxes.push(whole),
+        }
+        Ok(())
+    }
+}
+
+/// The world box around a mesh's own one; `None` if it is not finite.
+fn world_box(aabb: &Aabb, world_from_mesh: &Affine3A) -> Option<shadowfit::Aabb> {
+    let centre = world_from_mesh.transform_point3a(aabb.center);
+    let m = &world_from_mesh.matrix3;
+    let half = aabb.half_extents;
+    let half = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
+    let (min, max) = (centre - half, centre + half);
+    let vector = |v: bevy::math::Vec3A| fit_glam::Vec3::from_array(v.to_array());
+    (min.is_finite() && max.is_finite()).then(|| shadowfit::Aabb::new(vector(min), vector(max)))
+}

@@ -1,0 +1,94 @@
+//! Windows are read by coverage, which Bevy's shader does not do: it takes the cascade of a point's view depth. So the
+//! text of its shader library `shadows.wesl` is extended once it is loaded: two functions begin with a question that only
+//! lights with [`Fit::Windows`](crate::Fit::Windows) answer with yes.
+
+use std::borrow::Cow;
+
+use bevy::prelude::*;
+use bevy::shader::{Shader, Source};
+
+/// The library's path in Bevy.
+const PATH: &str = "bevy_pbr/render/shadows.wesl";
+
+/// Where what is added goes: after the beginning of Bevy's functions.
+const ADDITIONS: [(&str, &str); 2] = [
+    (
+        "fn get_cascade_index(light_id: u32, view_z: f32) -> u32 {",
+        "
+    // The last window holds all that is seen.
+    if (shadowfit_has_windows(light_id)) {
+        let light = &view_bindings::lights.directional_lights[light_id];
+        return select((*light).num_cascades - 1u, (*light).num_cascades, -view_z >= (*light).cascades[0].far_bound);
+    }
+",
+    ),
+    (
+        "fn fetch_directional_shadow(
+    light_id: u32,
+    frag_position: vec4<f32>,
+    surface_normal: vec3<f32>,
+    view_z: f32,
+    frag_coord_xy: vec2<f32>,
+) -> f32 {",
+        "
+    if (shadowfit_has_windows(light_id)) {
+        return shadowfit_fetch(light_id, frag_position, surface_normal, view_z, frag_coord_xy);
+    }
+",
+    ),
+];
+
+/// Whether windows can be read.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum WindowsShader {
+    /// Bevy's library is not loaded yet.
+    #[default]
+    Awaited,
+    /// It is extended, and Bevy's renderer will be told in the next frame.
+    Extended,
+    /// The renderer is told in this frame, with the windows.
+    Ready,
+    /// It is not the text that this version knows, or there is none.
+    Unknown,
+}
+
+/// Extends Bevy's shader library as soon as a light asks for windows and the library is there.
+pub(crate) fn extend(
+    mut state: ResMut<WindowsShader>,
+    lights: Query<&crate::FittedShadows>,
+    shaders: Option<ResMut<Assets<Shader>>>,
+) {
+    if *state == WindowsShader::Extended {
+        *state = WindowsShader::Ready;
+    }
+    let is_asked_for = lights.iter().any(|fitted| fitted.fit == crate::Fit::Windows);
+    let Some(mut shaders) = shaders.filter(|_| is_asked_for && *state == WindowsShader::Awaited) else { return };
+    let library =
+        shaders.iter().find(|(_, shader)| shader.path.ends_with(PATH)).map(|(id, shader)| (id, &shader.source));
+    let Some((id, source)) = library else { return };
+    let extended = match source {
+        Source::Wesl(text) => extended(text),
+        _ => None,
+    };
+    match (extended, shaders.get_mut(id)) {
+        (Some(text), Some(mut shader)) => {
+            shader.source = Source::Wesl(Cow::Owned(text));
+            *state = WindowsShader::Extended;
+        }
+        _ => {
+            warn!("Fit::Windows is Fit::Calm here: {PATH} is not the one of Bevy 0.20");
+            *state = WindowsShader::Unknown;
+        }
+    }
+}
+
+/// Bevy's text with the additions, if it has a place for each.
+fn extended(text: &str) -> Option<String> {
+    let mut extended = text.replace("\r\n", "\n");
+    for (place, addition) in ADDITIONS {
+        let end = extended.find(place)? + place.len();
+        extended.insert_str(end, addition);
+    }
+    extended.push_str(include_str!("windows.wesl"));
+    Some(extended)
+}
