@@ -170,12 +170,10 @@ impl Sun {
             return Ok(());
         }
         let has_windows = self.fitted.fit == Fit::Windows;
-        let bounds = if has_windows {
-            vec![self.max_distance(); self.bounds.len()]
-        } else {
-            self.bounds(&frusta, &mut memory.bounds)?
-        };
+        let bounds =
+            if has_windows { vec![self.max_distance(); self.bounds.len()] } else { self.bounds(&frusta, memory)? };
         memory.views.retain(|camera, _| views.iter().any(|view| view.camera == *camera));
+        let farthest = memory.farthest.unwrap_or(f32::MAX);
         let mut fitted = Vec::with_capacity(frusta.len());
         for (view, frustum) in &frusta {
             let Some(bevys) = cascades.cascades.get(&view.camera) else { continue };
@@ -183,7 +181,7 @@ impl Sun {
             let cascades = if has_windows {
                 self.windows(view, frustum, fitters)?
             } else {
-                self.cascades(view, frustum, &bounds, fitters, bevys)?
+                self.cascades(view, frustum, &bounds, fitters, bevys, farthest)?
             };
             fitted.push((view.camera, cascades));
         }
@@ -241,11 +239,15 @@ impl Sun {
     }
 
     /// Bounds of the cascades of all views, in metres of view depth.
-    fn bounds(&self, views: &[(&View, ViewFrustum)], fitter: &mut ShadowFitter) -> Result<Vec<f32>, Problem> {
+    fn bounds(&self, views: &[(&View, ViewFrustum)], memory: &mut FitMemory) -> Result<Vec<f32>, Problem> {
         let count = self.bounds.len();
         if self.fitted.splits == FitSplits::Bevys || count == 1 {
             return Ok(self.bounds.clone());
         }
+        if self.fitted.fit == Fit::Stable {
+            return Ok(self.spaced_bounds(views, &mut memory.farthest));
+        }
+        let fitter = &mut memory.bounds;
         let technique = self.fitted.fit.for_bounds(count, self.max_distance(), self.resolution, self.reading);
         if *fitter.technique() != technique {
             fitter.set_technique(&technique);
@@ -273,6 +275,22 @@ impl Sun {
         Ok(bounds)
     }
 
+    /// Bounds by Bevy's rule, equal ratios from the first one on, up to the farthest receiver in view instead of where
+    /// shadows end: nearer ones are sharper, but more pixels pass from one map to the next when the camera moves.
+    fn spaced_bounds(&self, views: &[(&View, ViewFrustum)], held: &mut Option<f32>) -> Vec<f32> {
+        let (first, end) = (self.bounds[0], self.max_distance());
+        let farthest = |(view, frustum): &(&View, ViewFrustum)| view.receivers.farthest(frustum.origin.as_vec3());
+        let last = views.iter().map(farthest).fold(first, f32::max).min(end);
+        let is_kept = |far: &f32| *far >= last && *far <= last * MAX_FAR_WASTE;
+        let far = held.filter(is_kept).unwrap_or(last * FAR_ROOM).min(end);
+        *held = Some(far);
+        let count = self.bounds.len();
+        let ratio = (far / first).powf(1.0 / (count - 1) as f32);
+        let mut bounds: Vec<f32> = (0..count).map(|i| first * ratio.powi(i as i32)).collect();
+        bounds[count - 1] = end;
+        bounds
+    }
+
     /// The cascades of a view; Bevy's where no point of the view lies between their bounds.
     fn cascades(
         &self,
@@ -281,10 +299,12 @@ impl Sun {
         bounds: &[f32],
         fitters: &mut Vec<ShadowFitter>,
         bevys: &[Cascade],
+        farthest: f32,
     ) -> Result<Vec<Cascade>, Problem> {
         let technique = self.fitted.fit.for_cascade(self.resolution, self.reading);
         fitters.resize_with(bounds.len(), || ShadowFitter::new(&technique));
         let depths = Depths::of(view, frustum);
+        let is_stable = self.fitted.fit == Fit::Stable && self.fitted.splits == FitSplits::Ours;
         let mut cascades = bevys.to_vec();
         let mut near = frustum.near;
         let mut boxes = Vec::with_capacity(view.receivers.boxes.len());
@@ -293,7 +313,11 @@ impl Sun {
                 fitter.set_technique(&technique);
             }
             // Points within rounding of a bound may read either side.
-            let (from, to) = (near - near.abs() * ROUNDING, far + far.abs() * ROUNDING);
+            let (from, mut to) = (near - near.abs() * ROUNDING, far + far.abs() * ROUNDING);
+            if is_stable && *far == self.max_distance() {
+                // Nothing receives beyond.
+                to = to.min(farthest);
+            }
             near = frustum.near.max(far * (1.0 - self.overlap));
             let Ok(part) = frustum.slice(from, to) else { continue };
             boxes.clear();
@@ -314,6 +338,11 @@ impl Sun {
         cascade(map, self.biases[0].max(0.0) + (self.biases[1].max(0.0) * SQRT_2 + 1.0) * texel)
     }
 }
+
+/// How far beyond the farthest receiver new bounds of still maps reach, and when they are given up: bounds that change
+/// move all edges.
+const FAR_ROOM: f32 = 1.25;
+const MAX_FAR_WASTE: f32 = 2.5;
 
 /// Relative error of a view depth in Bevy's shader: f32, with room for the matrices that it goes through.
 const ROUNDING: f32 = 1e-5;

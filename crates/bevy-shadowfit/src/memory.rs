@@ -12,6 +12,8 @@ use crate::settings::FittedShadows;
 pub(crate) struct FitMemory {
     /// Chooses the bounds, for all views together.
     pub(crate) bounds: ShadowFitter,
+    /// View depth up to which the bounds of still maps are spaced, in metres.
+    pub(crate) farthest: Option<f32>,
     /// Fits each cascade of each view.
     pub(crate) views: EntityHashMap<Vec<ShadowFitter>>,
     /// What the user has set, while the light holds our values.

@@ -35,7 +35,7 @@ use crate::memory::FitMemory;
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(FitMemory)]
 pub struct FittedShadows {
-    /// How the cascades are fitted. Default: [`Fit::Calm`].
+    /// How the cascades are fitted. Default: [`Fit::Windows`].
     pub fit: Fit,
     /// Whose biases the light has. Default: [`FitBias::Ours`].
     pub bias: FitBias,
@@ -47,12 +47,11 @@ pub struct FittedShadows {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum Fit {
-    /// Spheres around parts of the view, moved by whole texels, as Bevy's own cascades are, but with bounds where the
-    /// scene needs them: edges stand still, and are sharper than Bevy's.
+    /// Spheres around parts of the view, moved by whole texels, as Bevy's own cascades are, with bounds up to the farthest
+    /// mesh in view: edges stand still.
     Stable,
     /// Least rectangles around the meshes in view, kept while they serve and moved by whole texels: nearly as still,
-    /// and far sharper. The default.
-    #[default]
+    /// and far sharper. The best that Bevy's shader reads by itself.
     Calm,
     /// Least rectangles around the meshes in view, in each frame anew, with bounds by what the frame before showed: the
     /// sharpest of those that Bevy's shader reads by itself, and edges crawl when the camera moves. For pictures that
@@ -62,7 +61,8 @@ pub enum Fit {
     /// before showed: sharper than [`Self::Histogram`] and nearly as still as [`Self::Stable`]. They are read by
     /// coverage: a point reads the finest one that holds it, for which two functions of Bevy's shader library
     /// `shadows.wesl` are extended when it is loaded. All bounds are those of the last cascade, and
-    /// [`FittedShadows::splits`] has no effect. Where Bevy's shader is another one, it is [`Self::Calm`].
+    /// [`FittedShadows::splits`] has no effect. Where Bevy's shader is another one, it is [`Self::Calm`]. The default.
+    #[default]
     Windows,
 }
 

@@ -170,6 +170,15 @@ impl View {
 }
 
 impl Receivers {
+    /// Distance of the farthest point of any from an eye, in metres: no turn of the camera makes its view depth greater.
+    pub(crate) fn farthest(&self, eye: fit_glam::Vec3) -> f32 {
+        if self.has_unknown {
+            return f32::MAX;
+        }
+        let of_box = |aabb: &shadowfit::Aabb| (aabb.max - eye).abs().max((aabb.min - eye).abs()).length();
+        self.boxes.iter().map(of_box).fold(0.0, f32::max)
+    }
+
     fn add(&mut self, item: &MeshBoxItem, clusters: &MeshClusters, large: f32) -> Result<(), ()> {
         let Some(aabb) = item.aabb.filter(|_| !item.is_unbounded) else {
             self.has_unknown = true;

@@ -2,7 +2,7 @@
 
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
-use bevy_shadowfit::{Fit, FitBias, FittedShadows};
+use bevy_shadowfit::{Fit, FitBias, FitSplits, FittedShadows};
 
 /// View depth at which Bevy's first cascade ends, in metres: its default.
 const FIRST_BOUND: f32 = 10.0;
@@ -29,6 +29,15 @@ pub(crate) enum Bias {
     Bevys,
     /// This crate's
     Ours,
+}
+
+/// Whose bounds cascades have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Splits {
+    /// This crate's, in its own fits
+    Ours,
+    /// The defaults of Bevy's config
+    Bevys,
 }
 
 /// A row of the report.
@@ -81,13 +90,17 @@ impl Entrant {
     }
 
     /// Hands a new light to the plugin, if the contestant is one of its fits.
-    pub(crate) fn take(&self, light: &mut EntityWorldMut) {
+    pub(crate) fn take(&self, light: &mut EntityWorldMut, splits: Splits) {
         let Some(fit) = self.fit() else { return };
         let bias = match self.bias {
             Bias::Bevys => FitBias::Bevys,
             Bias::Ours => FitBias::Ours,
         };
-        light.insert(FittedShadows { fit, bias, ..default() });
+        let splits = match splits {
+            Splits::Ours => FitSplits::Ours,
+            Splits::Bevys => FitSplits::Bevys,
+        };
+        light.insert(FittedShadows { fit, bias, splits });
     }
 
     fn fit(&self) -> Option<Fit> {

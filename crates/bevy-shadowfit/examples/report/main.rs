@@ -45,7 +45,7 @@ use serde_json::{Value, json};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{Frame, Scenarios};
 
-use contestant::{Bias, Contestant, Entrant};
+use contestant::{Bias, Contestant, Entrant, Splits};
 use measure::{Measure, Picture, Times};
 use stage::{Stage, StageSettings};
 use table::Measured;
@@ -74,6 +74,9 @@ struct Arguments {
     /// Whose bias; Bevy's own cascades have Bevy's
     #[arg(long, value_delimiter = ',', default_values = ["bevys", "ours"])]
     biases: Vec<Bias>,
+    /// Whose bounds the cascades of this crate's fits have
+    #[arg(long, default_value = "ours")]
+    splits: Splits,
     /// Depth bias of lights with Bevy's bias, in metres: Bevy's default unless it is given
     #[arg(long, value_name = "METRES", default_value_t = DirectionalLight::DEFAULT_SHADOW_DEPTH_BIAS)]
     depth_bias: f32,
@@ -200,6 +203,7 @@ impl<'a> Report<'a> {
             size: arguments.size,
             map_size: arguments.map_size,
             filter: arguments.filter.method(),
+            splits: arguments.splits,
             biases: [arguments.depth_bias, arguments.normal_bias],
         };
         let entrants = Entrant::of(contestants, biases);

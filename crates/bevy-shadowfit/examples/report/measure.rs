@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use shadowfit::LightProjection;
 use shadowfit::glam::DVec3;
 use shadowfit::selection::MapOrder;
 use shadowfit::settings::MapSelection;
@@ -239,8 +238,7 @@ impl Measure<'_> {
     fn picture_maps<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
         // Windows all end where shadows do, and come finest first.
         let reading = if has_windows(maps) {
-            let order =
-                MapOrder::new(MapSelection::ViewDepth { overlap: 0.0 }, &vec![LightProjection::default(); maps.len()]);
+            let order = MapOrder::by_area(maps.iter().map(|_| Some(1.0)));
             MapReading::Coverage { order, blend: MapSelection::DEFAULT_BLEND }
         } else {
             MapReading::ViewDepth

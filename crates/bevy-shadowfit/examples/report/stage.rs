@@ -28,7 +28,7 @@ use bevy::winit::WinitPlugin;
 use bevy_shadowfit::{Fit, FittedShadows};
 use shadowfit_truth::peers::Frame;
 
-use crate::contestant::{Contestant, Entrant};
+use crate::contestant::{Contestant, Entrant, Splits};
 use crate::geometry::{self, Corners};
 use crate::light_maps::{self, Frozen, LightMaps, Live, Sun};
 use crate::view_depth::{self, ViewDepthsOf};
@@ -63,6 +63,7 @@ pub(crate) struct StageSettings {
     /// Width and height of each shadow map, in texels.
     pub(crate) map_size: u32,
     pub(crate) filter: ShadowFilteringMethod,
+    pub(crate) splits: Splits,
     /// Depth bias, in metres, and normal bias, in diagonals of a texel, that lights are given.
     pub(crate) biases: [f32; 2],
 }
@@ -138,7 +139,7 @@ impl Stage {
         let light = DirectionalLight { shadow_maps_enabled: true, shadow_depth_bias, shadow_normal_bias, ..default() };
         let toward = Transform::default().looking_to(Vec3::new(x, y, z), Vec3::Y);
         let mut sun = world.spawn((Sun, light, Entrant::config(frame.far as f32).build(), toward));
-        entrant.take(&mut sun);
+        entrant.take(&mut sun, self.settings.splits);
         self.sun = Some(sun.id());
         let mut camera = world.entity_mut(self.camera);
         camera.remove::<DepthPrepass>();

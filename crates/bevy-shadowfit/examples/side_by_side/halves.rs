@@ -17,7 +17,7 @@ use crate::flight::Flight;
 /// Sizes of the maps that can be chosen, in texels a side.
 const MAP_SIZES: [usize; 4] = [512, 1024, 2048, 4096];
 /// Fits that can be chosen: those whose cascades are read by view depth, as the measured look-up does it.
-const FITS: [Fit; 3] = [Fit::Stable, Fit::Calm, Fit::Histogram];
+const FITS: [Fit; 4] = [Fit::Stable, Fit::Calm, Fit::Histogram, Fit::Windows];
 /// View depth at which shadows end, in metres: Bevy's default. Scenes that are smaller end earlier.
 const MAX_DISTANCE: f32 = 150.0;
 /// View depth at which Bevy's first cascade ends, in metres: its default.

@@ -15,6 +15,10 @@ use shadowfit_truth::{Tracer, TruthPoint};
 const FILTER_TEXELS: usize = 6;
 /// Texels before the one that holds the point's corner, from which on the filter reads.
 const FILTER_BEFORE: i64 = 3;
+/// Greatest distance from a point to the centre of a texel that is read, along an axis, in texels.
+pub(crate) const REACH: f64 = 3.0;
+/// Texels over which a window is blended into the next one.
+pub(crate) const BLEND: f64 = 8.0;
 /// Sum of the filter's weights along an axis.
 const FILTER_SUM: f64 = 12.0;
 /// Bevy's normal bias is a number of texels' diagonals.
@@ -48,6 +52,13 @@ pub(crate) struct LightMaps {
     pub(crate) to_light: DVec3,
 }
 
+impl LightMaps {
+    /// Whether they are windows, which all end where shadows do.
+    pub(crate) fn has_windows(&self) -> bool {
+        self.maps.len() > 1 && self.maps.iter().all(|map| map.bound == self.maps[0].bound)
+    }
+}
+
 /// Finds the light that arrives at points, and remembers the texels that it has traced.
 pub(crate) struct Lookup<'a> {
     tracer: &'a Tracer,
@@ -67,6 +78,9 @@ impl<'a> Lookup<'a> {
 
     /// Share of the light that arrives, 0..=1: `fetch_directional_shadow`.
     pub(crate) fn factor(&mut self, point: &TruthPoint) -> f64 {
+        if self.light.has_windows() {
+            return self.by_coverage(point);
+        }
         let maps = &self.light.maps;
         let Some(index) = maps.iter().position(|map| point.view_depth < map.bound) else { return 1.0 };
         let here = self.cascade(index, point);
@@ -79,16 +93,41 @@ impl<'a> Lookup<'a> {
         here + (self.cascade(index + 1, point) - here) * weight
     }
 
-    /// The same by one of the cascades: `sample_directional_cascade`.
-    fn cascade(&mut self, index: usize, point: &TruthPoint) -> f64 {
+    /// The same of windows: `shadowfit_fetch`, which the plugin adds to Bevy's shader.
+    fn by_coverage(&mut self, point: &TruthPoint) -> f64 {
+        let maps = &self.light.maps;
+        let count = maps.len();
+        if point.view_depth >= maps[0].bound {
+            return 1.0;
+        }
+        let (mut factor, mut rest) = (0.0, 1.0);
+        for index in 0..count {
+            let Some(ndc) = self.position(index, point) else { continue };
+            let room = (1.0 - ndc.truncate().abs().max_element()) * 0.5 * f64::from(self.light.size) - REACH;
+            if room < 0.0 || rest == 0.0 {
+                continue;
+            }
+            let weight = if index + 1 == count { rest } else { rest * (room / BLEND).min(1.0) };
+            factor += weight * self.cascade(index, point);
+            rest -= weight;
+        }
+        factor + rest
+    }
+
+    /// Where one of the cascades is read for a point, in its clip space; `None` outside.
+    fn position(&self, index: usize, point: &TruthPoint) -> Option<DVec3> {
         let (light, map) = (self.light, &self.light.maps[index]);
         let normal_offset = point.normal * (light.normal_bias * NORMAL_BIAS_UNIT * map.texel);
         let at = point.position + normal_offset + light.to_light * light.depth_bias;
         let ndc = map.clip_from_world.project_point3(at);
         let is_inside = ndc.truncate().abs().max_element() <= 1.0 && (0.0..=1.0).contains(&ndc.z);
-        if !is_inside {
-            return 1.0;
-        }
+        is_inside.then_some(ndc)
+    }
+
+    /// The same by one of the cascades: `sample_directional_cascade`.
+    fn cascade(&mut self, index: usize, point: &TruthPoint) -> f64 {
+        let light = self.light;
+        let Some(ndc) = self.position(index, point) else { return 1.0 };
         let texel = (ndc.truncate() * DVec2::new(0.5, -0.5) + 0.5) * f64::from(light.size);
         let [across, down] = [texel.x, texel.y].map(filter);
         let mut sum = 0.0;

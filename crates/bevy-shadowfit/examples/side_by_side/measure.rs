@@ -2,14 +2,13 @@
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam::DVec2;
+use shadowfit::selection::MapOrder;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth, TruthSettings, judge};
 
-use crate::lookup::{LightMaps, Lookup};
+use crate::lookup::{BLEND, LightMaps, Lookup, REACH};
 
 /// Pixels of a measured picture.
 const PIXELS: f32 = 160.0 * 90.0;
-/// Reach of Bevy's filter, in texels.
-const REACH: f32 = 3.0;
 
 /// All that decides what a half shows, apart from the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +42,14 @@ impl Shown {
         let judged = truth.points.iter().map(|point| point.as_ref().filter(|point| point.is_judged));
         let factors: Vec<f32> = judged.map(|point| point.map_or(1.0, |point| lookup.factor(point) as f32)).collect();
         let maps = light.measured();
-        let maps = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: REACH, depth_clamp: true };
+        let reading = if light.has_windows() {
+            // They come finest first.
+            let order = MapOrder::by_area(maps.iter().map(|_| Some(1.0)));
+            MapReading::Coverage { order, blend: BLEND as f32 }
+        } else {
+            MapReading::ViewDepth
+        };
+        let maps = PictureMaps { maps: &maps, reading, reach: REACH as f32, depth_clamp: true };
         let figures = judge(tracer, &truth, &maps, &factors, |_| true).tally.figures();
         // A pixel of the measured picture is that many pixels of the window wide.
         let scale = f64::from(self.height) / f64::from(size[1]);
