@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use bevy::asset::AssetPlugin;
 use bevy::camera::CameraPlugin;
 use bevy::camera::primitives::Aabb;
-use bevy::camera::visibility::VisibleEntities;
+use bevy::camera::visibility::{VisibilitySystems, VisibleEntities};
 use bevy::light::cascade::build_directional_light_cascades;
-use bevy::light::{DirectionalLight, LightPlugin};
+use bevy::light::{DirectionalLight, LightPlugin, SimulationLightSystems};
 use bevy::mesh::MeshPlugin;
 use bevy::prelude::*;
 use bevy_shadowfit::prelude::*;
@@ -52,24 +52,29 @@ fn app(side: usize, fit: Fit) -> App {
     let light = (TransformPlugin, AssetPlugin::default(), MeshPlugin, CameraPlugin, LightPlugin);
     app.add_plugins((MinimalPlugins, light, ShadowfitPlugin)).init_asset::<Image>();
     app.insert_resource(Times { start: Instant::now(), ours: Vec::new(), bevys: Vec::new() });
-    let start = |mut times: ResMut<Times>| times.start = Instant::now();
-    let end = |mut times: ResMut<Times>| {
-        let taken = times.start.elapsed();
-        times.ours.push(taken);
-    };
-    app.add_systems(PostUpdate, start.before(ShadowfitSystems::Fit).after(build_directional_light_cascades));
-    app.configure_sets(
-        PostUpdate,
-        ShadowfitSystems::Fit.after(bevy::camera::visibility::VisibilitySystems::CheckVisibility),
-    );
-    app.add_systems(
-        PostUpdate,
-        end.after(ShadowfitSystems::Fit).before(bevy::light::SimulationLightSystems::UpdateLightFrusta),
-    );
+    let before_bevys = start.before(build_directional_light_cascades).after(TransformSystems::Propagate);
+    let after_bevys = end_of_bevys.after(build_directional_light_cascades);
+    let before_ours = start.after(end_of_bevys).after(VisibilitySystems::CheckVisibility).before(ShadowfitSystems::Fit);
+    let after_ours = end_of_ours.after(ShadowfitSystems::Fit).before(SimulationLightSystems::UpdateLightFrusta);
+    app.add_systems(PostUpdate, (before_bevys, after_bevys, before_ours, after_ours));
     spawn(&mut app, side, fit);
     app.finish();
     app.cleanup();
     app
+}
+
+fn start(mut times: ResMut<Times>) {
+    times.start = Instant::now();
+}
+
+fn end_of_bevys(mut times: ResMut<Times>) {
+    let taken = times.start.elapsed();
+    times.bevys.push(taken);
+}
+
+fn end_of_ours(mut times: ResMut<Times>) {
+    let taken = times.start.elapsed();
+    times.ours.push(taken);
 }
 
 /// A city of boxes on a ground, every one turned otherwise.
@@ -87,7 +92,8 @@ fn spawn(app: &mut App, side: usize, fit: Fit) {
     let sun = DirectionalLight { shadow_maps_enabled: true, ..default() };
     let at = Transform::default().looking_to(Vec3::new(0.5, -0.8, 0.2), Vec3::Y);
     world.spawn((sun, FittedShadows { fit, ..default() }, at));
-    world.spawn((Camera3d::default(), Transform::default()));
+    let lens = PerspectiveProjection { aspect_ratio: 16.0 / 9.0, fov: 1.0, ..default() };
+    world.spawn((Camera3d::default(), Projection::Perspective(lens), Transform::default()));
 }
 
 fn fly(app: &mut App, frame: usize, side: usize) {

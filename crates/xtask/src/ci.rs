@@ -132,13 +132,11 @@ fn examples(machine: &Machine) -> Result<()> {
 }
 
 fn bevy(_: &Machine) -> Result<()> {
-    match bevy::Rust::find() {
-        Some(rust) => rust.check(),
-        None => {
-            println!("SKIPPED: {}", bevy::NO_RUST);
-            Ok(())
-        }
-    }
+    let Some(rust) = bevy::Rust::find() else {
+        println!("SKIPPED: {}", bevy::NO_RUST);
+        return Ok(());
+    };
+    rust.check()
 }
 
 /// The first `rust-version` in a manifest.

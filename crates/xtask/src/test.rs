@@ -52,7 +52,7 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
     }
     match &bevy {
         Some((result, time)) => {
-            println!("{} ({:.0} s)", verdict("tests of bevy-shadowfit", result), time.as_secs_f32())
+            println!("{} ({:.0} s)", verdict("tests of bevy-shadowfit", result), time.as_secs_f32());
         }
         None => println!("SKIPPED: tests of bevy-shadowfit: {}", bevy::NO_RUST),
     }

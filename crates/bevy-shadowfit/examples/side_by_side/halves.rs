@@ -91,7 +91,7 @@ fn spawn(side: Side, content: &Content, commands: &mut Commands) {
     };
     let mut sun = commands.spawn((side, light, config.build(), layers));
     if side == Side::Right {
-        sun.insert(FittedShadows { fit: Fit::Calm, ..default() });
+        sun.insert(FittedShadows::default());
     }
 }
 
