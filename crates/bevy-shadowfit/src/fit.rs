@@ -137,7 +137,7 @@ impl Sun {
         let direction = forward.try_normalize().ok_or(Problem::Light)?;
         let filters = || views.iter().map(|view| view.filter);
         let biases = match fitted.bias {
-            FitBias::Ours => bias::automatic(filters()),
+            FitBias::Ours => bias::OURS,
             FitBias::Bevys => [light.shadow_depth_bias, light.shadow_normal_bias],
         };
         Ok(Self {

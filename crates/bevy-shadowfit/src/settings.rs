@@ -70,8 +70,8 @@ pub enum Fit {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum FitBias {
-    /// The least that clears the light's maps of acne, by the filter of its views and the size of its texels. The
-    /// default.
+    /// 0.05 m toward the light and 0.3 diagonals of a texel along the normal, which have far fewer wrong pixels
+    /// than Bevy's defaults with every fit. For worlds in metres. The default.
     #[default]
     Ours,
     /// [`DirectionalLight::shadow_depth_bias`] and [`DirectionalLight::shadow_normal_bias`] as they are set.

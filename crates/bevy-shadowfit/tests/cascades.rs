@@ -4,7 +4,7 @@ mod support;
 
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::primitives::Aabb;
-use bevy::camera::visibility::{NoFrustumCulling, RenderLayers, VisibilityRange};
+use bevy::camera::visibility::{NoCpuCulling, NoFrustumCulling, RenderLayers, VisibilityRange};
 use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLight, NotShadowReceiver};
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
@@ -302,6 +302,20 @@ fn stable_bounds_end_where_the_farthest_mesh_does() {
     let bevys = (config(&app, light).bounds.clone(), cascades(&app, light, camera)[2].texel_size);
     assert_eq!((ours.0[0], ours.0[3]), (bevys.0[0], bevys.0[3]));
     assert!(ours.0[2] < bevys.0[2] && ours.1 < bevys.1, "{ours:?} and {bevys:?}");
+}
+
+#[test]
+fn meshes_that_the_cpu_does_not_cull_are_covered() {
+    let mut app = app();
+    let light = spawn_sun(&mut app, FittedShadows { fit: Fit::Histogram, ..default() });
+    let at = Transform::from_xyz(0.0, 2.0, 10.0).looking_at(Vec3::ZERO, Vec3::Y);
+    let camera = app.world_mut().spawn((Camera3d::default(), at)).id();
+    spawn_box(&mut app, Vec3::ZERO, Vec3::ONE);
+    let far = spawn_box(&mut app, Vec3::new(4.0, 0.0, -30.0), Vec3::ONE);
+    app.world_mut().entity_mut(far).insert(NoCpuCulling);
+    app.update();
+    app.update();
+    prove(&mut app, light, camera);
 }
 
 /// A flat ground with a high mast at its corner, as one mesh: nearly all of its box is air.
