@@ -108,8 +108,8 @@ impl Reading {
 
     /// Free texels that a map needs at its border: beyond it Bevy's shader finds light.
     fn border(self) -> f32 {
-        // Bevy's renderer takes the bias in diagonals of texels.
-        self.reach + self.normal_bias * SQRT_2 * MAX_TEXEL_RATIO
+        // Bevy's renderer takes the bias in diagonals of texels, and of their longer side.
+        self.reach + self.normal_bias * SQRT_2 * MAX_WINDOW_RATIO
     }
 }
 
@@ -126,6 +126,9 @@ fn reach(filter: ShadowFilteringMethod) -> f32 {
 
 /// Greatest ratio of a texel's sides: Bevy's biases know one size only, that of the longer side.
 const MAX_TEXEL_RATIO: f32 = 2.0;
+
+/// Ratio of the sides of a window's texel where the sun stands 15 degrees high, rounded up.
+const MAX_WINDOW_RATIO: f32 = 4.0;
 
 impl Fit {
     fn shape(self) -> Shape {
