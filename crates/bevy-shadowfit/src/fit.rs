@@ -127,7 +127,7 @@ impl Sun {
         views: &[&View],
     ) -> Result<Self, Problem> {
         let count = config.bounds.len();
-        let is_ascending = config.bounds.iter().all(|bound| bound.is_finite())
+        let is_ascending = config.bounds.iter().all(|bound| bound.is_finite() && *bound > 0.0)
             && config.bounds.windows(2).all(|pair| pair[0] <= pair[1]);
         if !(1..=MAX_CASCADES_PER_LIGHT).contains(&count) || !is_ascending {
             return Err(Problem::Cascades(count));
@@ -241,11 +241,14 @@ impl Sun {
     /// Bounds of the cascades of all views, in metres of view depth.
     fn bounds(&self, views: &[(&View, ViewFrustum)], memory: &mut FitMemory) -> Result<Vec<f32>, Problem> {
         let count = self.bounds.len();
-        if self.fitted.splits == FitSplits::Bevys || count == 1 {
+        if self.fitted.splits == FitSplits::Bevys {
             return Ok(self.bounds.clone());
         }
         if self.fitted.fit == Fit::Stable {
             return Ok(self.spaced_bounds(views, &mut memory.farthest));
+        }
+        if count == 1 {
+            return Ok(self.bounds.clone());
         }
         let fitter = &mut memory.bounds;
         let technique = self.fitted.fit.for_bounds(count, self.max_distance(), self.resolution, self.reading);
@@ -285,7 +288,7 @@ impl Sun {
         let far = held.filter(is_kept).unwrap_or(last * FAR_ROOM).min(end);
         *held = Some(far);
         let count = self.bounds.len();
-        let ratio = (far / first).powf(1.0 / (count - 1) as f32);
+        let ratio = (far / first).powf(1.0 / (count - 1).max(1) as f32);
         let mut bounds: Vec<f32> = (0..count).map(|i| first * ratio.powi(i as i32)).collect();
         bounds[count - 1] = end;
         bounds

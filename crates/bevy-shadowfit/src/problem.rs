@@ -32,7 +32,7 @@ impl fmt::Display for Problem {
             Self::Light => write!(f, "its transform has no direction (it scales by 0 or is not finite)"),
             Self::Cascades(count) => write!(
                 f,
-                "its CascadeShadowConfig has {count} bounds, or bounds that are not finite and ascending; 1 to {} are drawn",
+                "its CascadeShadowConfig has {count} bounds, or bounds that are not positive, finite and ascending; 1 to {} are drawn",
                 bevy::pbr::MAX_CASCADES_PER_LIGHT
             ),
             Self::View(camera) => {

@@ -202,7 +202,7 @@ fn meshes_without_a_box_may_be_anywhere_in_view() {
 #[test]
 fn what_cannot_be_fitted_keeps_bevys_cascades_and_works_again_afterwards() {
     type Harm = fn(&mut App, Entity, Entity);
-    let harms: [(&str, Harm); 7] = [
+    let harms: [(&str, Harm); 8] = [
         ("a mesh that is not finite", |app, _, _| {
             spawn_box(app, Vec3::new(0.0, 0.0, -5.0), Vec3::splat(f32::INFINITY));
         }),
@@ -217,6 +217,7 @@ fn what_cannot_be_fitted_keeps_bevys_cascades_and_works_again_afterwards() {
         ("a light without a direction", |app, light, _| {
             app.world_mut().get_mut::<Transform>(light).unwrap().scale = Vec3::ZERO;
         }),
+        ("a bound of zero", |app, light, _| config_mut(app, light).bounds[0] = 0.0),
         ("bounds that descend", |app, light, _| config_mut(app, light).bounds.reverse()),
     ];
     for (name, harm) in harms {
@@ -316,6 +317,22 @@ fn meshes_that_the_cpu_does_not_cull_are_covered() {
     app.update();
     app.update();
     prove(&mut app, light, camera);
+}
+
+#[test]
+fn stable_maps_hold_far_meshes_that_come_with_another_number_of_cascades() {
+    let mut app = app();
+    let (light, camera) = scene(&mut app, FittedShadows { fit: Fit::Stable, ..default() });
+    app.update();
+    for count in [1, 4, 2] {
+        spawn_box(&mut app, Vec3::new(0.0, 0.0, -60.0 - 20.0 * count as f32), Vec3::ONE);
+        let config = CascadeShadowConfigBuilder { num_cascades: count, ..default() };
+        *config_mut(&mut app, light) = config.into();
+        app.update();
+        app.update();
+        assert_eq!(cascades(&app, light, camera).len(), count);
+        prove(&mut app, light, camera);
+    }
 }
 
 /// A flat ground with a high mast at its corner, as one mesh: nearly all of its box is air.
