@@ -135,7 +135,6 @@ impl Sun {
         // The direction that Bevy's shader lights by: it may differ from the rotation's where a transform mirrors.
         let forward = -transform.affine().matrix3.z_axis;
         let direction = forward.try_normalize().ok_or(Problem::Light)?;
-        let filters = || views.iter().map(|view| view.filter);
         let biases = match fitted.bias {
             FitBias::Ours => bias::OURS,
             FitBias::Bevys => [light.shadow_depth_bias, light.shadow_normal_bias],
@@ -146,7 +145,7 @@ impl Sun {
             bounds: config.bounds.clone(),
             overlap: config.overlap_proportion.clamp(0.0, 1.0),
             resolution,
-            reading: Reading::new(filters(), biases[1]),
+            reading: Reading::new(views.iter().map(|view| view.filter), biases[1]),
             biases,
         })
     }

@@ -75,12 +75,11 @@ fn count(
     let camera_entity = view.retained_view_entity.main_entity.id();
     let (Some(wanted), Some(depth)) = (wanted, textures.depth_only_view()) else { return };
     for (key, demand) in wanted.0.iter().filter(|((_, camera), _)| *camera == camera_entity) {
-        let [width, height] = [depth.texture().width(), depth.texture().height()];
-        let rectangle = match &camera.viewport {
-            Some(part) => [part.physical_position, part.physical_size].map(|corner| corner.to_array()).concat(),
-            None => vec![0, 0, width, height],
+        let (corner, size) = match &camera.viewport {
+            Some(part) => (part.physical_position, part.physical_size),
+            None => (UVec2::ZERO, UVec2::new(depth.texture().width(), depth.texture().height())),
         };
-        let demand = DemandView { rectangle: [rectangle[0], rectangle[1], rectangle[2], rectangle[3]], ..*demand };
+        let demand = DemandView { rectangle: [corner.x, corner.y, size.x, size.y], ..*demand };
         let Some(pass) = passes.of(*key, depth.texture().sample_count(), &device, &queue) else { return };
         if let Err(error) = pass.record(context.command_encoder(), depth, &demand, None) {
             warn_once!("what a depth prepass shows cannot be counted: {error}; cascades go by boxes");

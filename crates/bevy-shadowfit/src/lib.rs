@@ -14,8 +14,9 @@
 //! }
 //! ```
 //!
-//! Bevy's renderer stays as it is: its shaders, its maps, its culling. Only where the cascades of a light lie is
+//! Bevy's renderer stays as it is: its passes, its maps, its filters, its culling. Where the cascades of a light lie is
 //! replaced, by a system that runs after Bevy has made its own and before anything reads them ([`ShadowfitSystems::Fit`]).
+//! [`Fit::Windows`], the default, also adds to two functions of Bevy's shader library; the other fits leave it alone.
 
 use bevy::asset::AssetEventSystems;
 use bevy::camera::visibility::VisibilitySystems;

@@ -82,8 +82,9 @@ pub enum FitBias {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum FitSplits {
-    /// Those that make the coarsest texels on screen as fine as can be, for what is in view; the last bound, where
-    /// shadows end, stays that of the config. The default.
+    /// Those that make the coarsest texels on screen as fine as can be, for what is in view; with [`Fit::Stable`] Bevy's
+    /// spacing, up to the farthest mesh in view. The last bound, where shadows end, stays that of the config. The
+    /// default.
     #[default]
     Ours,
     /// All bounds of the config as they are set.

@@ -92,3 +92,20 @@ fn extended(text: &str) -> Option<String> {
     extended.push_str(include_str!("windows.wesl"));
     Some(extended)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_library_with_both_functions_is_extended() {
+        let [(index, first), (fetch, second)] = ADDITIONS;
+        let library = format!("{index}\n    return 0u;\n}}\n\n{fetch}\n    return 1.0;\n}}\n");
+        let text = extended(&library).expect("it has both functions");
+        assert!(text.starts_with(&format!("{index}{first}")) && text.contains(&format!("{fetch}{second}")));
+        assert_eq!(extended(&library.replace('\n', "\r\n")), Some(text));
+        assert_eq!(extended(&library.replace("view_z: f32,", "depth: f32,")), None);
+        assert_eq!(extended(&library.replace("get_cascade_index", "cascade_of")), None);
+        assert_eq!(extended(""), None);
+    }
+}
