@@ -109,7 +109,7 @@ fn measure(
         Casters::Clusters => clusters(objects)?,
     };
     let drawn = Scene::from_objects(name, &casters);
-    let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0));
+    let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0))?;
     // Only what the shadow passes draw is counted.
     let target = renderer.target(gpu, [1, 1]);
     let mut fitter = ShadowFitter::new(&named.technique);

@@ -107,6 +107,35 @@ fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak()
     assert!(growth < most, "memory grows: {report}");
 }
 
+#[test]
+fn a_lost_device_is_told_once_and_the_window_comes_back_as_it_was() {
+    let Some(desktop) = desktop("lost") else { return };
+    let (script, before, after) = (desktop.file("lose.txt"), desktop.file("before.png"), desktop.file("after.png"));
+    let lines = [
+        "await loaded".to_owned(),
+        "set view.judge off".to_owned(),
+        "technique stable-4".to_owned(),
+        "frames 4".to_owned(),
+        format!("picture {}", before.display()),
+        "lose-device".to_owned(),
+        "frames 8".to_owned(),
+        format!("picture {}", after.display()),
+        "lose-device".to_owned(),
+        "frames 4".to_owned(),
+    ];
+    std::fs::write(&script, lines.join("\n")).expect("the script is written");
+    let script = script.display().to_string();
+    let mut viewer = Viewer::start(&desktop, &[&ARGUMENTS[..], &["--script", &script]].concat());
+    viewer.wait_for_line("lost", PATIENCE * 2);
+    // The second loss comes so soon after the first one that there would be no end of them.
+    assert_eq!(viewer.exit_code(PATIENCE * 2), Some(2), "{}", viewer.log());
+    let log = viewer.log();
+    assert_eq!(log.matches("it is made anew").count(), 1, "{log}");
+    assert!(log.contains("lost again") && log.contains("--software") && !log.contains("panicked"), "{log}");
+    let [before, after] = [before, after].map(|path| image::open(path).expect("a picture").to_rgb8());
+    assert!(before == after, "the picture is another one after the loss");
+}
+
 /// A folder with files to drop where there are no others: a scene, a technique, and what looks like a scene and is none.
 fn few_files(desktop: &Desktop) -> PathBuf {
     /// A triangle, ten metres wide.

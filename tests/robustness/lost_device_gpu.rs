@@ -21,7 +21,7 @@ fn renderer(gpu: &Gpu) -> (Renderer, GpuScene) {
     let descriptor = ShadowMapDescriptor { resolution: [256; 2], ..ShadowMapDescriptor::default() };
     let renderer = Renderer::new(gpu, &descriptor, 1).expect("a renderer");
     let scene = default_scene();
-    let gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
+    let gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0)).expect("memory");
     (renderer, gpu_scene)
 }
 

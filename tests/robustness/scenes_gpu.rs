@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use shadowfit_params::tool::InsetMaps;
 use shadowfit_scene::{Scene, SceneError, load_gltf};
+use shadowfit_study::PrepareError;
 use shadowfit_truth::PictureTally;
 use shadowfit_viewer::{Artefact, Stage, StageError};
 
@@ -83,7 +84,7 @@ fn every_scene_of_the_collection_is_drawn_and_judged() {
                 draw_and_judge(&mut stage, &name);
                 drawn += 1;
             }
-            Err(StageError::NothingToDraw(_)) => empty.push(name),
+            Err(StageError::Scene(PrepareError::NothingToDraw(_))) => empty.push(name),
             Err(error) => panic!("{name}: {error}"),
         }
     }

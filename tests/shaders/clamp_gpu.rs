@@ -6,7 +6,7 @@ use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, MapSetti
 use shadowfit::{
     Bias, DepthConvention, FitInput, FitState, FittedMap, LightProjection, PerspectiveCamera, Scratch, Technique,
 };
-use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Renderer};
+use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Renderer, Wanted};
 use shadowfit_scene::builtin;
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor};
 
@@ -20,14 +20,8 @@ const SIZE: [u32; 2] = [320, 180];
 /// The software adapter, opened without depth clamp.
 fn without_clamp() -> Gpu {
     let gpu = software_gpu();
-    let (device, queue) = pollster::block_on(gpu.adapter.request_device(&wgpu::DeviceDescriptor {
-        required_features: gpu.device.features() - wgpu::Features::DEPTH_CLIP_CONTROL,
-        required_limits: gpu.device.limits(),
-        ..Default::default()
-    }))
-    .expect("a device with fewer features");
-    let adapter = gpu.adapter.clone();
-    Gpu { adapter, device, queue }
+    let features = gpu.device.features() - wgpu::Features::DEPTH_CLIP_CONTROL;
+    pollster::block_on(Gpu::of_adapter(gpu.adapter, &Wanted { features, limits: None })).expect("fewer features")
 }
 
 fn descriptor(format: MapFormat, depth: DepthConvention) -> ShadowMapDescriptor {
@@ -104,7 +98,7 @@ fn picture(gpu: &Gpu, format: MapFormat) -> Vec<u8> {
     let maps: Vec<FittedMap> = fitted.to_vec();
     let mut renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&technique), 1).expect("a renderer");
     let scene = builtin::default_scene();
-    let mut gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
+    let mut gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0)).expect("memory");
     let target = renderer.target(gpu, SIZE);
     let atmosphere = Atmosphere::default();
     renderer.draw(gpu, &mut gpu_scene, &Frame::new(&camera, direction, &maps, &atmosphere), &target).expect("a frame");

@@ -86,7 +86,7 @@ impl Pictures {
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(technique), samples).expect("a renderer");
         let pose = scene.pose(None, 0.0);
         let triangles = pose.triangles(&scene);
-        let gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &pose);
+        let gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &pose).expect("memory");
         let target = renderer.target(&gpu, SIZE);
         let seen = Seen::new(&gpu, technique, scene);
         (Self { gpu, renderer, scene: gpu_scene, target, triangles }, seen)

@@ -241,7 +241,8 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
         let mut renderer = Renderer::new(&gpu, &descriptor(&case), 1).expect("a renderer");
         for view in views() {
             let scene = &view.scene;
-            let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0));
+            let mut gpu_scene =
+                GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0)).expect("memory");
             let boxes = boxes(scene, &gpu_scene);
             let camera = camera(&view);
             let (mut kept, mut whole) = (0, 0);
@@ -278,7 +279,8 @@ fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
 fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
     let mut renderer = Renderer::new(gpu, &descriptor(case), 1).expect("a renderer");
     let [_, view] = views();
-    let mut scene = GpuScene::new(gpu, renderer.material_layout(), &view.scene, &view.scene.pose(None, 0.0));
+    let mut scene =
+        GpuScene::new(gpu, renderer.material_layout(), &view.scene, &view.scene.pose(None, 0.0)).expect("memory");
     let direction = DIRECTIONS[1].normalize();
     let inner = camera(&view);
     let maps = fitted(case, &inner, &[Aabb::new(Vec3::splat(-70.0), Vec3::splat(70.0))], direction);
@@ -310,7 +312,8 @@ fn real_scenes_get_the_same_factor_in_every_pixel() {
             .unwrap_or_else(|error| panic!("{error}"));
         for case in &cases[..3] {
             let mut renderer = Renderer::new(&gpu, &descriptor(case), 1).expect("a renderer");
-            let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
+            let mut gpu_scene =
+                GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0)).expect("memory");
             let boxes = boxes(&scene, &gpu_scene);
             // One frame of each path, a third of it in.
             for frame in scenarios.frames.iter().filter(|frame| frame.scene == index && frame.frame == 7) {

@@ -86,7 +86,8 @@ fn picture(camera: &PerspectiveCamera, maps: &[FittedMap], overlay: Overlay) -> 
     let corner = |x: f32, z: f32| Vec3::new(x * 200.0, 0.0, z * 200.0);
     let floor = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     let scene = Scene::from_objects("floor", &[vec![[floor[0], floor[1], floor[2]], [floor[0], floor[2], floor[3]]]]);
-    let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
+    let mut gpu_scene =
+        GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0)).expect("memory");
     let target = renderer.target(&gpu, SIZE);
     let atmosphere = Atmosphere::default();
     let frame = Frame { overlay, ..Frame::new(camera, DIRECTION.normalize(), maps, &atmosphere) };

@@ -2,6 +2,9 @@
 //! everywhere.
 
 use core::fmt;
+use std::sync::{Arc, Mutex};
+
+use crate::faults::{Faults, watched};
 
 /// Which adapter to open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,6 +25,25 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
+    pub(crate) faults: Arc<Mutex<Faults>>,
+}
+
+/// What a device should have. It works with less, too: the defaults are all that makes a difference.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Features, where the adapter has them.
+    pub features: wgpu::Features,
+    /// Limits, which the adapter must have; `None` for what its kind guarantees, with as large textures and buffers as it
+    /// allows.
+    pub limits: Option<wgpu::Limits>,
+}
+
+impl Default for Wanted {
+    fn default() -> Self {
+        let features =
+            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::PRIMITIVE_INDEX;
+        Self { features, limits: None }
+    }
 }
 
 /// Why no GPU could be opened, with what to do about it.
@@ -69,7 +91,7 @@ impl Gpu {
             AdapterChoice::Any => any_adapter(&instance, None).await?,
             AdapterChoice::Software => software_adapter(&instance, None).await?,
         };
-        Self::open(adapter).await
+        Self::of_adapter(adapter, &Wanted::default()).await
     }
 
     /// The graphics instance: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others; in browsers what the
@@ -92,38 +114,30 @@ impl Gpu {
         instance: &wgpu::Instance,
         surface: &wgpu::Surface<'_>,
     ) -> Result<Self, GpuError> {
-        Self::open(match choice {
+        let adapter = match choice {
             AdapterChoice::Any => any_adapter(instance, Some(surface)).await?,
             AdapterChoice::Software => software_adapter(instance, Some(surface)).await?,
-        })
-        .await
+        };
+        Self::of_adapter(adapter, &Wanted::default()).await
     }
 
-    async fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
-        let wanted =
-            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::PRIMITIVE_INDEX;
-        let limits = adapter.limits();
-        // WebGL2 has neither compute shaders nor storage buffers; all others have what WebGPU guarantees.
-        let guaranteed = match adapter.get_info().backend {
-            wgpu::Backend::Gl => wgpu::Limits::downlevel_webgl2_defaults(),
-            _ => wgpu::Limits::default(),
-        };
+    /// Opens an adapter with as much as is wanted of what it has.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError::Device`] if it cannot be opened.
+    pub async fn of_adapter(adapter: wgpu::Adapter, wanted: &Wanted) -> Result<Self, GpuError> {
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("shadowfit"),
-                required_features: adapter.features() & wanted,
-                required_limits: wgpu::Limits {
-                    // Scenes of millions of triangles are uploaded whole to GPUs that ray trace
-                    // them.
-                    max_buffer_size: limits.max_buffer_size,
-                    max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-                    ..guaranteed.using_resolution(limits)
-                },
+                required_features: adapter.features() & wanted.features,
+                required_limits: wanted.limits.clone().unwrap_or_else(|| usual_limits(&adapter)),
                 ..Default::default()
             })
             .await
             .map_err(GpuError::Device)?;
-        Ok(Self { adapter, device, queue })
+        let faults = watched(&device);
+        Ok(Self { adapter, device, queue, faults })
     }
 
     /// Submits work. Where the CPU itself draws, that may take until what was submitted before is drawn, which
@@ -154,6 +168,21 @@ impl Gpu {
     /// Whether pictures are drawn by the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+}
+
+fn usual_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
+    let limits = adapter.limits();
+    // WebGL2 has neither compute shaders nor storage buffers; all others have what WebGPU guarantees.
+    let guaranteed = match adapter.get_info().backend {
+        wgpu::Backend::Gl => wgpu::Limits::downlevel_webgl2_defaults(),
+        _ => wgpu::Limits::default(),
+    };
+    wgpu::Limits {
+        // Scenes of millions of triangles are uploaded whole to GPUs that ray trace them.
+        max_buffer_size: limits.max_buffer_size,
+        max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+        ..guaranteed.using_resolution(limits)
     }
 }
 

@@ -59,7 +59,12 @@ impl GpuTimer {
 
     /// The times of the oldest frame that the GPU has finished, once, in seconds on the GPU's clock.
     pub fn take(&mut self, gpu: &Gpu) -> Option<Vec<GpuTimerQueryResult>> {
-        self.0.as_mut()?.process_finished_frame(gpu.queue.get_timestamp_period())
+        let profiler = self.0.as_mut()?;
+        // The profiler expects that a buffer that it has mapped stays so, but those of a lost device are destroyed.
+        if gpu.lost().is_some() {
+            return None;
+        }
+        profiler.process_finished_frame(gpu.queue.get_timestamp_period())
     }
 
     /// As [`Self::take`], from the start of the frame's first pass to the end of its last one, in milliseconds; `Some(0)`

@@ -1,5 +1,6 @@
 //! Materials on the GPU: uniforms, textures with all their levels, samplers, one bind group each.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use shadowfit_scene::{Image, Material, Scene, Texture, Wrap};
@@ -7,6 +8,7 @@ use shadowfit_scene::{Image, Material, Scene, Texture, Wrap};
 use crate::attachment::cleared;
 use crate::maker::{Maker, Shape};
 use crate::uniform::MaterialUniform;
+use crate::upload::Upload;
 use crate::{Gpu, bindings, shaders};
 
 /// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp. Software adapters do without: Mesa's
@@ -26,26 +28,36 @@ pub fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     bindings::layout(device, "material", wgpu::ShaderStages::FRAGMENT, &types)
 }
 
-/// Makes the bind group of every material of a scene.
-pub(crate) fn upload_materials(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene) -> Vec<wgpu::BindGroup> {
-    let mut uploader = Uploader::new(gpu, scene);
+/// Makes the bind group of every material of a scene, with textures of at most `side` texels a side.
+pub(crate) fn upload_materials(
+    upload: &Upload<'_>,
+    layout: &wgpu::BindGroupLayout,
+    scene: &Scene,
+    side: u32,
+) -> Vec<wgpu::BindGroup> {
+    let mut uploader = Uploader::new(upload, scene, side);
     scene.materials.iter().map(|material| uploader.material(layout, material)).collect()
 }
 
 struct Uploader<'a> {
-    gpu: &'a Gpu,
+    upload: &'a Upload<'a>,
     scene: &'a Scene,
+    /// Most texels of a texture's side.
+    side: u32,
     levels: LevelMaker,
     views: HashMap<(usize, bool), wgpu::TextureView>,
     white: wgpu::TextureView,
 }
 
 impl<'a> Uploader<'a> {
-    fn new(gpu: &'a Gpu, scene: &'a Scene) -> Self {
-        let levels = LevelMaker::new(&gpu.device);
+    fn new(upload: &'a Upload<'a>, scene: &'a Scene, side: u32) -> Self {
+        let device = &upload.gpu.device;
+        let side = side.min(device.limits().max_texture_dimension_2d);
+        let levels = LevelMaker::new(device);
         let pixel = Image { name: String::new(), width: 1, height: 1, rgba: vec![255; 4] };
-        let white = upload_image(gpu, &levels, &pixel, false);
-        Self { gpu, scene, levels, views: HashMap::new(), white }
+        // Without memory for a single pixel, nothing of it is used.
+        let white = upload_image(upload, &levels, &pixel, (false, side)).unwrap_or_else(|| single_pixel(device));
+        Self { upload, scene, side, levels, views: HashMap::new(), white }
     }
 
     /// The view of a texture's image; white where there is none.
@@ -53,17 +65,18 @@ impl<'a> Uploader<'a> {
         let Some((index, image)) = texture.and_then(|t| Some((t.image, self.scene.images.get(t.image)?))) else {
             return self.white.clone();
         };
-        let (gpu, levels) = (self.gpu, &self.levels);
-        self.views.entry((index, srgb)).or_insert_with(|| upload_image(gpu, levels, image, srgb)).clone()
+        let (upload, levels, side, white) = (self.upload, &self.levels, self.side, &self.white);
+        let view = || upload_image(upload, levels, image, (srgb, side)).unwrap_or_else(|| white.clone());
+        self.views.entry((index, srgb)).or_insert_with(view).clone()
     }
 
     fn material(&mut self, layout: &wgpu::BindGroupLayout, material: &Material) -> wgpu::BindGroup {
-        let device = &self.gpu.device;
+        let Gpu { device, queue, .. } = self.upload.gpu;
         let uniform = bindings::uniform_buffer::<MaterialUniform>(device, "material");
-        self.gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&MaterialUniform::new(material)));
+        queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&MaterialUniform::new(material)));
         let base = self.view(material.base_color_texture, true);
         let normal = self.view(material.normal_texture, false);
-        let samplers = [material.base_color_texture, material.normal_texture].map(|t| sampler(self.gpu, t));
+        let samplers = [material.base_color_texture, material.normal_texture].map(|t| sampler(self.upload.gpu, t));
         let resources = [
             uniform.as_entire_binding(),
             wgpu::BindingResource::TextureView(&base),
@@ -96,13 +109,17 @@ fn sampler(gpu: &Gpu, texture: Option<Texture>) -> wgpu::Sampler {
     })
 }
 
-/// Uploads an image with all its levels. Images larger than the device allows keep only what fits
-/// after halving.
-fn upload_image(gpu: &Gpu, levels: &LevelMaker, image: &Image, srgb: bool) -> wgpu::TextureView {
-    let image = &halved_to_fit(image, gpu.device.limits().max_texture_dimension_2d);
+/// Uploads an image with all its levels, halved until no side has more texels than `side`; `None` without memory.
+fn upload_image(
+    upload: &Upload<'_>,
+    levels: &LevelMaker,
+    image: &Image,
+    (srgb, side): (bool, u32),
+) -> Option<wgpu::TextureView> {
+    let image = &halved_to_fit(image, side);
     let format = if srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm };
     let size = wgpu::Extent3d { width: image.width, height: image.height, depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+    let descriptor = wgpu::TextureDescriptor {
         label: Some(&image.name),
         size,
         mip_level_count: size.max_mips(wgpu::TextureDimension::D2),
@@ -113,29 +130,37 @@ fn upload_image(gpu: &Gpu, levels: &LevelMaker, image: &Image, srgb: bool) -> wg
             | wgpu::TextureUsages::COPY_DST
             | wgpu::TextureUsages::RENDER_ATTACHMENT,
         view_formats: &[],
+    };
+    let texture = upload.texture(&descriptor, &image.rgba)?;
+    levels.fill(upload.gpu, &texture);
+    Some(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
+/// A texture of whatever colour.
+fn single_pixel(device: &wgpu::Device) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("no memory"),
+        size: wgpu::Extent3d::default(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
     });
-    gpu.queue.write_texture(
-        texture.as_image_copy(),
-        &image.rgba,
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(image.width * 4), rows_per_image: None },
-        size,
-    );
-    levels.fill(gpu, &texture);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn halved_to_fit(image: &Image, limit: u32) -> Image {
-    let mut image = image.clone();
+fn halved_to_fit(image: &Image, limit: u32) -> Cow<'_, Image> {
+    let mut image = Cow::Borrowed(image);
     while image.width > limit || image.height > limit {
         let (width, height) = (image.width.div_ceil(2), image.height.div_ceil(2));
-        let rgba = (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .flat_map(|(x, y)| {
-                let at = ((y * 2 * image.width + x * 2) * 4) as usize;
-                [image.rgba[at], image.rgba[at + 1], image.rgba[at + 2], image.rgba[at + 3]]
-            })
-            .collect();
-        image = Image { name: image.name, width, height, rgba };
+        let mut rgba = Vec::with_capacity(width as usize * height as usize * 4);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let at = (y as usize * 2 * image.width as usize + x as usize * 2) * 4;
+            rgba.extend_from_slice(&image.rgba[at..at + 4]);
+        }
+        image = Cow::Owned(Image { name: image.name.clone(), width, height, rgba });
     }
     image
 }

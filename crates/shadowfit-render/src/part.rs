@@ -7,11 +7,11 @@ use glam::{Vec2, Vec4};
 use shadowfit::Aabb;
 use shadowfit_scene::{AlphaMode, Primitive, Scene};
 
-use crate::Gpu;
 use crate::casters::{Cluster, clustered};
 use crate::gpu::is_opengl;
 use crate::maker::Streams;
 use crate::unrolled::{Numbering, Unrolled};
+use crate::upload::Upload;
 
 /// One primitive with all its instances (a deformed one has a part of its own per instance).
 #[derive(Debug)]
@@ -52,17 +52,23 @@ pub struct PartKey {
 }
 
 impl Part {
-    pub(crate) fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, (mirrored, deforms): (bool, bool)) -> Self {
+    pub(crate) fn new(
+        upload: &Upload<'_>,
+        scene: &Scene,
+        primitive: &Primitive,
+        (mirrored, deforms): (bool, bool),
+    ) -> Self {
         let material = &scene.materials[primitive.material];
         let Primitive { positions, normals, indices, .. } = primitive;
-        let has = streams(gpu, primitive);
+        let device = &upload.gpu.device;
+        let has = streams(device, primitive);
         let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
         let vertices: [&[u8]; 4] =
             [cast_slice(positions), cast_slice(normals), cast_slice(&tangents), cast_slice(&surface)];
         // Passes fit what deforms to them for rays.
         let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
         // Blended surfaces are not probed.
-        let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(&gpu.device) == Numbering::Vertices;
+        let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(device) == Numbering::Vertices;
         let each = [
             Some(vertices[0]),
             Some(vertices[1]),
@@ -72,10 +78,10 @@ impl Part {
         // What casts nothing is not cut, and neither is what deforms.
         let is_whole = deforms || material.alpha == AlphaMode::Blend;
         let (caster_indices, clusters) = clustered(positions, indices, is_whole);
-        let index = |indices: &[u32]| filled_buffer(gpu, wgpu::BufferUsages::INDEX, cast_slice(indices));
+        let index = |indices: &[u32]| upload.buffer(wgpu::BufferUsages::INDEX, cast_slice(indices));
         Self {
-            streams: vertices.map(|bytes| filled_buffer(gpu, wgpu::BufferUsages::VERTEX | read, bytes)),
-            unrolled: is_unrolled.then(|| Unrolled::new(gpu, indices, each)),
+            streams: vertices.map(|bytes| upload.buffer(wgpu::BufferUsages::VERTEX | read, bytes)),
+            unrolled: is_unrolled.then(|| Unrolled::new(upload, indices, each)),
             has,
             indices: index(indices),
             caster_indices: index(&caster_indices),
@@ -130,8 +136,8 @@ impl PartKey {
 }
 
 /// Which streams get an element for each vertex: all on OpenGL, where those of browsers have no single elements.
-fn streams(gpu: &Gpu, primitive: &Primitive) -> Streams {
-    let has_all = is_opengl(&gpu.device);
+fn streams(device: &wgpu::Device, primitive: &Primitive) -> Streams {
+    let has_all = is_opengl(device);
     Streams {
         tangents: has_all || !primitive.tangents.is_empty(),
         surface: has_all || !primitive.colors.is_empty() || !primitive.uvs.is_empty(),
@@ -153,25 +159,4 @@ fn surface(primitive: &Primitive, has: Streams) -> Vec<[f32; 6]> {
     };
     let count = if has.surface { primitive.positions.len() } else { 1 };
     (0..count).map(element).collect()
-}
-
-/// Bytes that are on their way to the GPU at a time: each of them is held twice meanwhile.
-const UPLOAD: usize = 64 << 20;
-
-pub(crate) fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("primitive"),
-        size: (bytes.len() as u64).max(4),
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    for (index, part) in bytes.chunks(UPLOAD).enumerate() {
-        gpu.queue.write_buffer(&buffer, (index * UPLOAD) as u64, part);
-        if bytes.len() > UPLOAD {
-            gpu.submit([]);
-            // A device that was lost is reported where it is drawn with.
-            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        }
-    }
-    buffer
 }

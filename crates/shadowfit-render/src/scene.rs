@@ -10,13 +10,14 @@ use shadowfit_rays::{RayError, RayScene};
 use shadowfit_scene::{AlphaMode, Deformed, Instance, Pose, Scene};
 use shadowfit_wgpu::Casters;
 
-use crate::Gpu;
 use crate::casters::{CasterDraw, SceneCasters, transformed};
 use crate::maker::INSTANCES;
 use crate::material::upload_materials;
 use crate::part::{Part, PartKey};
 use crate::rays::{RayPart, SceneRays};
 use crate::uniform::InstanceData;
+use crate::upload::Upload;
+use crate::{DeviceFault, Gpu};
 
 /// A scene that can be drawn.
 #[derive(Debug)]
@@ -38,6 +39,9 @@ pub struct GpuScene {
     /// Made when edges are traced for the first time.
     rays: Option<SceneRays>,
 }
+
+/// Least side of textures that are halved for want of memory, in texels: below that they take next to none.
+const LEAST_TEXTURE: u32 = 32;
 
 /// Numbers of poses that were given away.
 static POSES: AtomicU64 = AtomicU64::new(0);
@@ -64,7 +68,52 @@ pub struct Draw {
 
 impl GpuScene {
     /// Uploads a scene in a pose. `layout` is [`material_layout`](crate::passes::material_layout).
-    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, pose: &Pose) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// [`DeviceFault`] if the device has no memory for it.
+    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, pose: &Pose) -> Result<Self, DeviceFault> {
+        Self::with_textures(gpu, layout, (scene, pose), u32::MAX)
+    }
+
+    /// The same within the device's memory: where there is not enough, textures are halved until there is. Returns the most
+    /// texels that a texture's side was allowed, if that made a difference.
+    ///
+    /// # Errors
+    ///
+    /// [`DeviceFault`] where triangles alone are too many.
+    pub fn within_memory(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        scene: &Scene,
+        pose: &Pose,
+    ) -> Result<(Self, Option<u32>), DeviceFault> {
+        let make = |side| Self::with_textures(gpu, layout, (scene, pose), side);
+        let fault = match make(u32::MAX) {
+            Ok(made) => return Ok((made, None)),
+            Err(fault) => fault,
+        };
+        let largest = scene.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(0);
+        let mut side = largest.next_power_of_two() / 2;
+        while matches!(fault, DeviceFault::OutOfMemory(_)) && side >= LEAST_TEXTURE {
+            // What was made in vain is freed only once the device is done with it.
+            gpu.submit([]);
+            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            if let Ok(made) = make(side) {
+                return Ok((made, Some(side)));
+            }
+            side /= 2;
+        }
+        Err(fault)
+    }
+
+    fn with_textures(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        (scene, pose): (&Scene, &Pose),
+        side: u32,
+    ) -> Result<Self, DeviceFault> {
+        let upload = Upload::new(gpu);
         let instances: Vec<Instance> = scene.instances();
         let mut parts: Vec<Part> = Vec::new();
         let mut shared = std::collections::HashMap::new();
@@ -74,16 +123,16 @@ impl GpuScene {
             let deforms = is_deformed(scene, instance);
             let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
             let part = *shared.entry(key).or_insert_with(|| {
-                parts.push(Part::new(gpu, scene, primitive, (mirrored, deforms)));
+                parts.push(Part::new(&upload, scene, primitive, (mirrored, deforms)));
                 parts.len() - 1
             });
             parts[part].members.push(index);
         }
         let count = instances.len();
         let casters = casters(scene, &instances, &parts);
-        let mut gpu_scene = Self {
+        let gpu_scene = Self {
             parts,
-            materials: upload_materials(gpu, layout, scene),
+            materials: upload_materials(&upload, layout, scene, side),
             instances: numbered(scene, instances),
             casters,
             eye: DVec3::ZERO,
@@ -94,8 +143,9 @@ impl GpuScene {
             pose: 0,
             rays: None,
         };
+        let mut gpu_scene = upload.result(gpu_scene)?;
         gpu_scene.set_pose(gpu, scene, pose);
-        gpu_scene
+        Ok(gpu_scene)
     }
 
     /// Moves everything to a pose of the same scene.

@@ -3,7 +3,7 @@
 
 use crate::Gpu;
 use crate::maker::STRIDES;
-use crate::part::filled_buffer;
+use crate::upload::Upload;
 
 /// What a probe's triangles are numbered by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,11 +48,11 @@ pub(crate) struct Unrolled {
 impl Unrolled {
     /// Unrolls a part's streams, which are as [`part_buffers`](crate::passes::part_buffers) has them; `None` where there is
     /// a single element.
-    pub(crate) fn new(gpu: &Gpu, indices: &[u32], streams: [Option<&[u8]>; 4]) -> Self {
+    pub(crate) fn new(upload: &Upload<'_>, indices: &[u32], streams: [Option<&[u8]>; 4]) -> Self {
         let mut strides = STRIDES.into_iter();
         let streams = streams.map(|stream| {
             let stride = strides.next().unwrap_or_default();
-            stream.map(|stream| filled_buffer(gpu, wgpu::BufferUsages::VERTEX, &unrolled(indices, stream, stride)))
+            stream.map(|stream| upload.buffer(wgpu::BufferUsages::VERTEX, &unrolled(indices, stream, stride)))
         });
         Self { streams, vertices: indices.len() as u32 }
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_params::BoxSource;
-use shadowfit_render::{Gpu, GpuScene, RayError};
+use shadowfit_render::{DeviceFault, Gpu, GpuScene, RayError};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 use crate::SceneRays;
@@ -24,17 +24,30 @@ fn origin_of(bounds: &Aabb) -> DVec3 {
     if middle.abs().max_element() <= NEAR_THE_ORIGIN { DVec3::ZERO } else { middle.as_dvec3().round() }
 }
 
-/// A scene without triangles, by its name.
+/// Why a scene cannot be made ready, with its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NothingToDraw(pub String);
+pub enum PrepareError {
+    /// It has no triangles.
+    NothingToDraw(String),
+    /// The device has no memory for it, even with the smallest textures, or refuses it.
+    Device(String, DeviceFault),
+}
 
-impl fmt::Display for NothingToDraw {
+impl fmt::Display for PrepareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: the scene has no triangles, so there is nothing to show", self.0)
+        match self {
+            Self::NothingToDraw(name) => write!(f, "{name}: the scene has no triangles, so there is nothing to show"),
+            Self::Device(name, fault) => {
+                write!(
+                    f,
+                    "{name}: the scene cannot be given to the graphics device: {fault}; use one with fewer triangles"
+                )
+            }
+        }
     }
 }
 
-impl core::error::Error for NothingToDraw {}
+impl core::error::Error for PrepareError {}
 
 /// A scene in a pose, ready to be drawn, traced and fitted to.
 ///
@@ -79,13 +92,20 @@ impl PreparedScene {
     ///
     /// # Errors
     ///
-    /// [`NothingToDraw`] for a scene without triangles.
-    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: Scene) -> Result<Self, NothingToDraw> {
+    /// [`PrepareError`] for a scene without triangles, and one that the device has no memory for. Where smaller textures
+    /// are enough, it gets these, and a note.
+    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mut scene: Scene) -> Result<Self, PrepareError> {
         let pose = scene.pose(None, 0.0);
         let Some(bounds) = scene.bounds(&pose) else {
-            return Err(NothingToDraw(scene.name));
+            return Err(PrepareError::NothingToDraw(scene.name));
         };
-        let gpu_scene = GpuScene::new(gpu, layout, &scene, &pose);
+        let (gpu_scene, side) = GpuScene::within_memory(gpu, layout, &scene, &pose)
+            .map_err(|fault| PrepareError::Device(scene.name.clone(), fault))?;
+        if let Some(side) = side {
+            scene
+                .notes
+                .push(format!("textures halved to at most {side} texels a side: the GPU has no memory for more"));
+        }
         let [mut clusters, mut objects] = [SceneBoxes::new(&scene, &pose), SceneBoxes::of_instances(&scene)];
         for boxes in [&mut clusters, &mut objects] {
             boxes.set_pose(|index| gpu_scene.instance_bounds(index));
@@ -100,6 +120,19 @@ impl PreparedScene {
             rays: PosedRays::default(),
         };
         Ok(Self { gpu_scene, no_gpu_rays: None, posed })
+    }
+
+    /// Gives the scene in its present pose to another device, in place of one that was lost.
+    ///
+    /// # Errors
+    ///
+    /// [`PrepareError`], as for a new one; the scene cannot be drawn then.
+    pub fn move_to(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Result<(), PrepareError> {
+        let Self { gpu_scene, no_gpu_rays, posed } = self;
+        let (moved, _) = GpuScene::within_memory(gpu, layout, &posed.scene, &posed.pose)
+            .map_err(|fault| PrepareError::Device(posed.scene.name.clone(), fault))?;
+        (*gpu_scene, *no_gpu_rays) = (moved, None);
+        Ok(())
     }
 
     /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. Nothing
@@ -279,7 +312,7 @@ mod tests {
     use shadowfit_scene::builtin::default_scene;
     use shadowfit_wgpu::ShadowMapDescriptor;
 
-    fn prepared(scene: Scene) -> (Gpu, Result<PreparedScene, NothingToDraw>) {
+    fn prepared(scene: Scene) -> (Gpu, Result<PreparedScene, PrepareError>) {
         let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
         let prepared = PreparedScene::new(&gpu, renderer.material_layout(), scene);
@@ -306,7 +339,7 @@ mod tests {
     fn a_scene_can_be_made_on_one_thread_and_used_on_another() {
         fn assert_send<T: Send>() {}
         assert_send::<PreparedScene>();
-        assert_send::<Result<PreparedScene, NothingToDraw>>();
+        assert_send::<Result<PreparedScene, PrepareError>>();
     }
 
     #[test]
@@ -328,7 +361,7 @@ mod tests {
     #[test]
     fn gpu_a_scene_without_triangles_is_refused_by_its_name() {
         let scene = Scene::from_objects("bare", &[]);
-        assert_eq!(prepared(scene).1.expect_err("nothing to draw"), NothingToDraw("bare".to_owned()));
+        assert_eq!(prepared(scene).1.expect_err("nothing to draw"), PrepareError::NothingToDraw("bare".to_owned()));
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub(crate) enum Effect {
     Resize([u32; 2]),
     /// Drops a file on the window.
     Drop(PathBuf),
+    /// Destroys the graphics device.
+    LoseDevice,
     /// Prints a line to the standard error.
     Print(String),
 }

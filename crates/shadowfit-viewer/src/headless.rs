@@ -17,7 +17,7 @@ use crate::interface::{Canvas, Interface, InterfaceInput};
 use crate::saved::Saved;
 use crate::source::SceneSource;
 use crate::stage::Stage;
-use crate::viewer::{Start, Viewer, compared_with};
+use crate::viewer::{Renewals, Start, Viewer, compared_with};
 
 /// Samples per pixel of headless pictures.
 const SAMPLES: u32 = 4;
@@ -51,7 +51,10 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     stage.settings = settings;
     stage.animation = arguments.animation;
     stage.set_home();
-    let written = render_pictures(&mut stage, folder, arguments.size())?;
+    let gpu = stage.gpu().clone();
+    let written = gpu.unless_lost(|| render_pictures(&mut stage, folder, arguments.size()));
+    let written =
+        written.context("the graphics device was lost; start again, with smaller pictures if it was too slow")??;
     tell(&written, &stage.scene().name, &stage, folder);
     Ok(())
 }
@@ -68,6 +71,8 @@ fn tell(written: &[PathBuf], name: &str, stage: &Stage, folder: &Path) {
 fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let start = Start::new(arguments)?.saving_into(folder);
     let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    gpu.keep_faults();
+    let mut renewals = Renewals::default();
     let mut stage = Stage::empty(gpu, SAMPLES)?;
     stage.read_depths();
     stage.wait_for_rays();
@@ -76,9 +81,20 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let mut canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
     let mut clock = 0.0;
     while !viewer.has_played() && !viewer.window_requests.quit {
-        let (layout, _) = viewer.frame(input(size, clock), FRAME);
-        viewer.paint(&layout, &canvas.view, size);
+        let gpu = viewer.stage.gpu().clone();
+        gpu.unless_lost(|| {
+            let (layout, _) = viewer.frame(input(size, clock), FRAME);
+            viewer.paint(&layout, &canvas.view, size);
+        });
         clock += f64::from(FRAME);
+        if let Some(why) = gpu.lost() {
+            renewals.next(&why)?;
+            let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+            gpu.keep_faults();
+            canvas = Canvas::new(&gpu.device, size, FORMAT);
+            viewer.move_to(gpu, FORMAT, &why)?;
+        }
+        viewer.tell_faults();
         if let Some(wanted) = viewer.window_requests.resize.take() {
             size = wanted;
             canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);

@@ -125,6 +125,15 @@ impl Interface {
         self.edits_other = false;
     }
 
+    /// Goes on with the device of a stage that has [moved](Stage::move_to), and a surface of a format.
+    pub(crate) fn move_to(&mut self, stage: &Stage, format: wgpu::TextureFormat) {
+        self.painter = Painter::new(&stage.gpu().device, format);
+        self.pictures.move_to(stage, &mut self.painter);
+        self.format = format;
+        // egui sends the whole texture of its fonts again only when it loads them anew. No providers are used.
+        self.context.set_font_providers(Vec::new());
+    }
+
     /// Format of the surface that it is painted to.
     pub(crate) fn format(&self) -> wgpu::TextureFormat {
         self.format
@@ -196,7 +205,8 @@ impl Interface {
     fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
         let (name, notes) = (stage.scene().name.clone(), stage.scene().notes.clone());
         let scene = SceneLine { name: &name, triangles: stage.prepared_scene().triangles(), notes: &notes };
-        let message = stage.problem().map(str::to_owned).or_else(|| input.message.map(str::to_owned));
+        let problem = stage.problem().or(self.pictures.problem());
+        let message = problem.or(input.message).map(str::to_owned);
         let (narration, changes) = (stage.narration().to_owned(), stage.cure_changes().to_vec());
         let shown = stage.shown();
         let figures = self.figures;

@@ -53,6 +53,7 @@ pub use stage::{Shown, Stage, StageError};
 #[cfg(not(target_family = "wasm"))]
 pub fn main() -> ExitCode {
     let arguments = cli::parse();
+    shadowfit_render::hush_lost_devices();
     let result = match &arguments.headless {
         Some(folder) => headless::run(&arguments, folder),
         None => window::run(&arguments),

@@ -103,5 +103,7 @@ async fn load(
     if is_given_up.load(Ordering::Relaxed) {
         return None;
     }
-    Some(PreparedScene::new(gpu, layout, scene).map_err(Error::from).with_context(|| source.text()))
+    // The viewer loads the scene anew for the device that comes after a lost one.
+    let prepared = gpu.unless_lost(|| PreparedScene::new(gpu, layout, scene))?;
+    Some(prepared.map_err(Error::from).with_context(|| source.text()))
 }

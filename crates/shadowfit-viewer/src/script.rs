@@ -54,6 +54,8 @@ pub(crate) enum Step {
     Frames(u32),
     /// Waits until something is done.
     Await(Awaited),
+    /// Loses the device.
+    LoseDevice,
     /// Plays random actions.
     Monkey(Monkey),
 }
@@ -208,6 +210,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     }),
     step("monkey", "SECONDS SEED [FOLDER]", "plays random actions, and drops files of a folder", |words| {
         words.monkey().map(Step::Monkey)
+    }),
+    step("lose-device", "", "destroys the graphics device, as if its driver had been reset", |words| {
+        words.nothing().map(|()| Step::LoseDevice)
     }),
     plain("quit", "quits the viewer", Command::Quit),
 ];

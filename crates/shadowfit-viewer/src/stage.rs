@@ -21,7 +21,7 @@ mod depth_tests;
 mod edges_tests;
 #[cfg(test)]
 mod live_tests;
-#[cfg(test)]
+#[cfg(all(test, target_os = "linux"))]
 mod memory_tests;
 
 use core::fmt;
@@ -30,7 +30,7 @@ use shadowfit::{Aabb, FittedMap, PerspectiveCamera};
 use shadowfit_params::tool::Settings;
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
 use shadowfit_scene::Scene;
-use shadowfit_study::{NothingToDraw, PreparedScene, View};
+use shadowfit_study::{PrepareError, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapError;
 
 use compare::Other;
@@ -44,8 +44,8 @@ use side::Side;
 /// Why a stage could not be set up.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StageError {
-    /// The scene has no triangles to draw.
-    NothingToDraw(NothingToDraw),
+    /// The scene has no triangles to draw, or the device has no memory for it.
+    Scene(PrepareError),
     /// The shadow map could not be made.
     ShadowMap(ShadowMapError),
 }
@@ -53,7 +53,7 @@ pub enum StageError {
 impl fmt::Display for StageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NothingToDraw(error) => error.fmt(f),
+            Self::Scene(error) => error.fmt(f),
             Self::ShadowMap(error) => error.fmt(f),
         }
     }
@@ -61,9 +61,9 @@ impl fmt::Display for StageError {
 
 impl core::error::Error for StageError {}
 
-impl From<NothingToDraw> for StageError {
-    fn from(error: NothingToDraw) -> Self {
-        Self::NothingToDraw(error)
+impl From<PrepareError> for StageError {
+    fn from(error: PrepareError) -> Self {
+        Self::Scene(error)
     }
 }
 
@@ -167,6 +167,26 @@ impl Stage {
         self.other = None;
         self.sample = None;
         self.side.scene_changed();
+    }
+
+    /// Goes on with another device, after the first one was lost: scene, pose, camera and settings stay as they are.
+    ///
+    /// # Errors
+    ///
+    /// [`StageError`] if the device has no memory for as much. The stage stays with the old one then.
+    pub fn move_to(&mut self, gpu: Gpu) -> Result<(), StageError> {
+        let side = self.side.anew(&gpu, self.samples)?;
+        self.scene.move_to(&gpu, side.evaluator.renderer.material_layout())?;
+        (self.gpu, self.side) = (gpu, side);
+        self.side.cut(self.settings.view.freeze_fit);
+        self.why = why::PixelQuestion::default();
+        if let Some(show) = &mut self.sample {
+            show.move_to(&self.gpu, self.samples);
+        }
+        if let Some(other) = self.other.take() {
+            self.compare_with(Some(other.technique));
+        }
+        Ok(())
     }
 
     /// Layout of the scene's materials, for scenes that are prepared elsewhere.

@@ -2,6 +2,7 @@
 //! call it once per frame.
 
 mod commands;
+mod faults;
 mod following;
 mod opening;
 mod sample;
@@ -10,7 +11,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
@@ -39,6 +40,7 @@ use crate::undo::{History, State};
 
 #[cfg(not(target_family = "wasm"))]
 pub(crate) use commands::compared_with;
+pub(crate) use faults::Renewals;
 use saving::Saving;
 pub(crate) use start::Start;
 
@@ -65,6 +67,8 @@ pub(crate) struct Viewer {
     tuning: Tuning,
     measuring: Measuring,
     history: History,
+    /// State at the end of the last frame.
+    last_state: Option<State>,
     saved: Saved,
     store: Option<Store>,
     /// The link that is being followed, until its scene is there.
@@ -90,6 +94,8 @@ pub(crate) struct Viewer {
     pub(crate) window_requests: WindowRequests,
     /// Whether the mouse drags the picture: pages lock the pointer then.
     pub(crate) is_looking: bool,
+    /// Faults of the device that were told.
+    told_faults: HashSet<String>,
     /// The error that the viewer ends with.
     pub(crate) failure: Option<anyhow::Error>,
 }
@@ -143,6 +149,7 @@ impl Viewer {
             tuning: Tuning::default(),
             measuring: Measuring::default(),
             history: History::default(),
+            last_state: None,
             saved: Saved::default(),
             store,
             link: None,
@@ -159,6 +166,7 @@ impl Viewer {
             litter: None,
             window_requests: WindowRequests::default(),
             is_looking: false,
+            told_faults: HashSet::new(),
             failure: None,
         };
         viewer.restore();
@@ -242,7 +250,9 @@ impl Viewer {
         }
         self.line = None;
         if self.has_scene {
-            self.history.feed(self.clock, &self.state());
+            let state = self.state();
+            self.history.feed(self.clock, &state);
+            self.last_state = Some(state);
         }
         if self.clock - self.saved_at > SAVE_EVERY {
             self.save();
@@ -300,6 +310,7 @@ impl Viewer {
                 Effect::Input(event) => raw_input.events.push(event),
                 Effect::Resize(size) => self.window_requests.resize = Some(size),
                 Effect::Drop(path) => self.commands.push_back(request(Command::OpenFile(path))),
+                Effect::LoseDevice => self.stage.gpu().device.destroy(),
                 Effect::Print(text) => eprintln!("{text}"),
             }
         }

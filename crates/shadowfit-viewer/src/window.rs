@@ -1,12 +1,11 @@
 //! The window: surface, events, frames.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow};
 use shadowfit_egui::Command;
-use shadowfit_render::Gpu;
+use shadowfit_render::{AdapterChoice, Gpu};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
@@ -16,7 +15,7 @@ use winit::window::{Window, WindowId};
 use crate::cli::Arguments;
 use crate::saved::Store;
 use crate::stage::Stage;
-use crate::viewer::{Start, Viewer};
+use crate::viewer::{Renewals, Start, Viewer};
 
 /// Samples per pixel: software rasterisers pay for each.
 const GPU_SAMPLES: u32 = 4;
@@ -53,7 +52,8 @@ struct Running {
     egui: egui_winit::State,
     #[cfg(feature = "gamepad")]
     gamepads: crate::gamepad::Gamepads,
-    device_lost: Arc<AtomicBool>,
+    adapter: AdapterChoice,
+    renewals: Renewals,
     last_frame: Instant,
     log: Option<Log>,
 }
@@ -92,11 +92,12 @@ impl ApplicationHandler for App {
         }
     }
 
-    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        let Some(running) = &mut self.running else { return };
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
+        // A window whose device was lost has gone.
+        let Some(running) = self.running.as_mut().filter(|running| running.window.id() == window) else { return };
         let stop = match event {
             WindowEvent::CloseRequested => Some(Ok(())),
-            WindowEvent::RedrawRequested => running.frame().transpose(),
+            WindowEvent::RedrawRequested => running.frame(event_loop).transpose(),
             event => {
                 running.event(&event);
                 None
@@ -117,7 +118,7 @@ impl ApplicationHandler for App {
                 running.window.request_redraw();
             } else if goes_on {
                 std::thread::sleep(HIDDEN_FRAME);
-                if let Some(result) = running.frame().transpose() {
+                if let Some(result) = running.frame(event_loop).transpose() {
                     self.stop(event_loop, result);
                 }
             }
@@ -150,11 +151,9 @@ impl Running {
         let begin = Instant::now();
         let arguments = &start.arguments;
         let window = open_window(event_loop, arguments.size())?;
-        let instance = Gpu::instance();
-        let surface = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
-        let gpu = pollster::block_on(Gpu::for_surface(arguments.adapter(), &instance, &surface))?;
-        let device_lost = watch_device(&gpu);
-        let surface = Surface::new(instance, window.clone(), surface, &gpu)?;
+        let adapter = arguments.adapter();
+        let (surface, gpu) = Surface::new(window.clone(), adapter)?;
+        gpu.keep_faults();
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::empty(gpu, samples)?;
         stage.read_depths();
@@ -165,14 +164,7 @@ impl Running {
             (None, false) => Store::of_person(),
         };
         let viewer = Viewer::new(stage, surface.configuration.format, start, store);
-        let egui = egui_winit::State::new(
-            viewer.interface.context.clone(),
-            egui::ViewportId::ROOT,
-            &window,
-            Some(window.scale_factor() as f32),
-            window.theme(),
-            Some(viewer.stage.gpu().device.limits().max_texture_dimension_2d as usize),
-        );
+        let egui = egui_state(&window, &viewer);
         Ok(Self {
             window,
             surface,
@@ -180,7 +172,8 @@ impl Running {
             egui,
             #[cfg(feature = "gamepad")]
             gamepads: crate::gamepad::Gamepads::new(),
-            device_lost,
+            adapter,
+            renewals: Renewals::default(),
             last_frame: Instant::now(),
             log,
         })
@@ -199,32 +192,16 @@ impl Running {
     }
 
     /// Draws a frame; `Some` asks to quit.
-    fn frame(&mut self) -> Result<Option<()>> {
-        if self.device_lost.load(Ordering::Relaxed) {
-            return Err(anyhow!("the graphics device was lost (driver reset or removed); start the viewer again"));
+    fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<Option<()>> {
+        if let Some(why) = self.viewer.stage.gpu().lost() {
+            self.renew(event_loop, &why)?;
         }
-        let seconds = self.last_frame.elapsed().as_secs_f32();
-        self.last_frame = Instant::now();
-        #[cfg(feature = "gamepad")]
-        {
-            let (sticks, commands) = self.gamepads.poll();
-            self.viewer.input.sticks = sticks;
-            for command in commands {
-                self.viewer.ask(command);
-            }
-        }
-        let texture = self.surface.acquire(self.viewer.stage.gpu())?;
-        let begin = Instant::now();
-        let waited = shadowfit_render::waited();
-        let raw_input = self.egui.take_egui_input(&self.window);
-        let (layout, output) = self.viewer.frame(raw_input, seconds);
-        self.egui.handle_platform_output(&self.window, output);
-        if let Some((texture, size)) = texture {
-            let view = texture.texture.create_view(&Default::default());
-            self.viewer.paint(&layout, &view, size);
-            self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
-            self.window.pre_present_notify();
-            self.viewer.stage.gpu().queue.present(texture);
+        self.viewer.tell_faults();
+        // Without its device a frame ends where it is, and the next one has another. The window's texture is given back
+        // outside of what may panic.
+        let gpu = self.viewer.stage.gpu().clone();
+        if let Some(mut texture) = gpu.unless_lost(|| self.surface.acquire(&gpu)).transpose()? {
+            gpu.unless_lost(|| self.draw(&mut texture));
         }
         let requests = std::mem::take(&mut self.viewer.window_requests);
         if let Some([width, height]) = requests.resize {
@@ -235,6 +212,58 @@ impl Running {
             self.window.set_title(&self.viewer.title());
         }
         Ok(requests.quit.then_some(()))
+    }
+
+    /// Draws a frame into a texture of the window, if there is one, and presents it.
+    fn draw(&mut self, texture: &mut Option<(wgpu::SurfaceTexture, [u32; 2])>) {
+        let seconds = self.last_frame.elapsed().as_secs_f32();
+        self.last_frame = Instant::now();
+        #[cfg(feature = "gamepad")]
+        {
+            let (sticks, commands) = self.gamepads.poll();
+            self.viewer.input.sticks = sticks;
+            for command in commands {
+                self.viewer.ask(command);
+            }
+        }
+        let begin = Instant::now();
+        let waited = shadowfit_render::waited();
+        let raw_input = self.egui.take_egui_input(&self.window);
+        let (layout, output) = self.viewer.frame(raw_input, seconds);
+        self.egui.handle_platform_output(&self.window, output);
+        let Some((surface, size)) = texture else {
+            // Nothing else holds such frames up.
+            return std::thread::sleep(HIDDEN_FRAME);
+        };
+        let view = surface.texture.create_view(&Default::default());
+        self.viewer.paint(&layout, &view, *size);
+        self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
+        self.window.pre_present_notify();
+        if let Some((surface, _)) = texture.take() {
+            self.viewer.stage.gpu().queue.present(surface);
+        }
+    }
+
+    /// Opens a device in place of one that was lost, and a window in place of the old one, which its swapchain may occupy:
+    /// wgpu 30 cannot always destroy that of a lost device.
+    fn renew(&mut self, event_loop: &ActiveEventLoop, why: &str) -> Result<()> {
+        self.viewer.save();
+        self.renewals.next(why)?;
+        let window = open_window(event_loop, self.window.inner_size().into())?;
+        if let Ok(place) = self.window.outer_position() {
+            window.set_outer_position(place);
+        }
+        let opened = Surface::new(window.clone(), self.adapter);
+        let (surface, gpu) = opened.context("the graphics device was lost, and there is no other")?;
+        gpu.keep_faults();
+        let lost = self.viewer.stage.gpu().clone();
+        self.viewer.move_to(gpu, surface.configuration.format, why)?;
+        let old = std::mem::replace(&mut self.surface, surface);
+        lost.unless_lost(|| drop(old));
+        self.egui = egui_state(&window, &self.viewer);
+        self.window = window;
+        self.window.set_title(&self.viewer.title());
+        Ok(())
     }
 
     fn log_frame(&mut self, busy: Duration) {
@@ -273,28 +302,25 @@ fn ms(time: Duration) -> f64 {
 }
 
 impl Surface {
-    fn new(instance: wgpu::Instance, window: Arc<Window>, handle: wgpu::Surface<'static>, gpu: &Gpu) -> Result<Self> {
-        let size = window.inner_size();
-        let mut configuration = handle
-            .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
-            .ok_or_else(|| anyhow!("{} cannot draw on this window", gpu.name()))?;
-        // The interface blends encoded colours, so the surface must not encode them again.
-        configuration.format = configuration.format.remove_srgb_suffix();
-        configuration.present_mode = wgpu::PresentMode::AutoVsync;
-        handle.configure(&gpu.device, &configuration);
-        let has_area = size.width > 0 && size.height > 0;
+    /// The surface of a window, and a device that draws on it.
+    fn new(window: Arc<Window>, adapter: AdapterChoice) -> Result<(Self, Gpu)> {
+        let instance = Gpu::instance();
+        let handle = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
+        let gpu = pollster::block_on(Gpu::for_surface(adapter, &instance, &handle))?;
+        let configuration = configured(&handle, &gpu, window.inner_size())?;
+        let has_area = has_area(window.inner_size());
         let size = Some([configuration.width, configuration.height]);
-        Ok(Self { instance, window, handle, is_stale: false, configuration, size, has_area })
+        Ok((Self { instance, window, handle, is_stale: false, configuration, size, has_area }, gpu))
     }
 
     /// Notes a new size of the window.
     fn expect(&mut self, size: PhysicalSize<u32>) {
-        self.has_area = size.width > 0 && size.height > 0;
+        self.has_area = has_area(size);
         self.is_stale = true;
     }
 
     fn resize(&mut self, gpu: &Gpu, size: PhysicalSize<u32>) {
-        self.has_area = size.width > 0 && size.height > 0;
+        self.has_area = has_area(size);
         if self.has_area {
             let limit = gpu.device.limits().max_texture_dimension_2d;
             self.configuration.width = size.width.min(limit);
@@ -336,6 +362,8 @@ impl Surface {
                 Ok(None)
             }
             Current::Timeout | Current::Occluded => Ok(None),
+            // The next frame opens another device.
+            Current::Validation if gpu.lost().is_some() => Ok(None),
             Current::Validation => Err(anyhow!("the window's surface failed validation; this is a bug of the viewer")),
         }
     }
@@ -349,15 +377,31 @@ fn open_window(event_loop: &ActiveEventLoop, size: [u32; 2]) -> Result<Arc<Windo
     Ok(Arc::new(event_loop.create_window(attributes).context("no window could be opened")?))
 }
 
-/// A flag that is set when the device is lost.
-fn watch_device(gpu: &Gpu) -> Arc<AtomicBool> {
-    let lost = Arc::new(AtomicBool::new(false));
-    let flag = lost.clone();
-    gpu.device.set_device_lost_callback(move |reason, message| {
-        if reason != wgpu::DeviceLostReason::Destroyed {
-            eprintln!("graphics device lost: {message}");
-            flag.store(true, Ordering::Relaxed);
-        }
-    });
-    lost
+/// egui's part of a window.
+fn egui_state(window: &Window, viewer: &Viewer) -> egui_winit::State {
+    egui_winit::State::new(
+        viewer.interface.context.clone(),
+        egui::ViewportId::ROOT,
+        window,
+        Some(window.scale_factor() as f32),
+        window.theme(),
+        Some(viewer.stage.gpu().device.limits().max_texture_dimension_2d as usize),
+    )
+}
+
+fn has_area(size: PhysicalSize<u32>) -> bool {
+    size.width > 0 && size.height > 0
+}
+
+/// Configures a surface for a window of a size.
+fn configured(handle: &wgpu::Surface<'_>, gpu: &Gpu, size: PhysicalSize<u32>) -> Result<wgpu::SurfaceConfiguration> {
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    let mut configuration = handle
+        .get_default_config(&gpu.adapter, size.width.clamp(1, limit), size.height.clamp(1, limit))
+        .ok_or_else(|| anyhow!("{} cannot draw on this window", gpu.name()))?;
+    // The interface blends encoded colours, so the surface must not encode them again.
+    configuration.format = configuration.format.remove_srgb_suffix();
+    configuration.present_mode = wgpu::PresentMode::AutoVsync;
+    handle.configure(&gpu.device, &configuration);
+    Ok(configuration)
 }

@@ -3,16 +3,14 @@
 use shadowfit_classics::mapped::{FrameExtras, SampleRenderer};
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues};
 use shadowfit_render::passes::material_layout;
-use shadowfit_render::{Gpu, GpuScene, Probe, ProbeTargets};
+use shadowfit_render::{Gpu, GpuScene, Probe, ProbeTargets, Wanted};
 
 use super::scenes::{SIZE, software_gpu};
 
 /// The software adapter without features.
 fn featureless_gpu() -> Gpu {
-    let adapter = software_gpu().adapter;
-    let (device, queue) =
-        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
-    Gpu { adapter, device, queue }
+    let wanted = Wanted { features: wgpu::Features::empty(), limits: Some(wgpu::Limits::default()) };
+    pollster::block_on(Gpu::of_adapter(software_gpu().adapter, &wanted)).expect("a device")
 }
 
 #[test]
@@ -25,7 +23,7 @@ fn probes_of_samples_without_the_primitive_index_are_those_with_it() {
         let scene = sample.scene();
         let probe = |gpu: Gpu| -> Probe {
             let layout = material_layout(&gpu.device);
-            let mut gpu_scene = GpuScene::new(&gpu, &layout, &scene, &scene.pose(None, 0.0));
+            let mut gpu_scene = GpuScene::new(&gpu, &layout, &scene, &scene.pose(None, 0.0)).expect("memory");
             let targets = ProbeTargets::new(&gpu.device, SIZE);
             let extras = FrameExtras::default();
             let mut renderer = SampleRenderer::new(&gpu, 1);

@@ -86,7 +86,7 @@ impl Pictures {
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
         let layout = renderer.material_layout();
         let scene = scene(quads);
-        let scene = GpuScene::new(&gpu, layout, &scene, &scene.pose(None, 0.0));
+        let scene = GpuScene::new(&gpu, layout, &scene, &scene.pose(None, 0.0)).expect("memory");
         let passes = OcclusionPasses::new(&gpu, samples);
         let target = RenderTarget::new(&gpu.device, SIZE, samples);
         Self { gpu, renderer, scene, passes, target }

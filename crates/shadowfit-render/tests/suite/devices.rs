@@ -1,6 +1,6 @@
 //! The software adapter, opened with less than it has.
 
-use shadowfit_render::Gpu;
+use shadowfit_render::{Gpu, Wanted};
 
 /// The software adapter, whatever GPU is present, with these features and limits.
 pub(crate) fn software_gpu(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
@@ -25,8 +25,5 @@ fn opened(backends: wgpu::Backends, features: wgpu::Features, limits: wgpu::Limi
     let adapters = pollster::block_on(instance.enumerate_adapters(backends));
     let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     let adapter = adapters.into_iter().find(is_software).expect("this test draws on the software adapter");
-    let descriptor =
-        wgpu::DeviceDescriptor { required_features: features, required_limits: limits, ..Default::default() };
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
-    Gpu { adapter, device, queue }
+    pollster::block_on(Gpu::of_adapter(adapter, &Wanted { features, limits: Some(limits) })).expect("a device")
 }

@@ -29,7 +29,7 @@ impl Pictures {
     /// A scene at rest, seen from a place.
     pub(crate) fn new(gpu: Gpu, technique: &Technique, samples: u32, scene: &Scene, eye: DVec3) -> Self {
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(technique), samples).expect("a renderer");
-        let gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0));
+        let gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0)).expect("memory");
         let camera = PerspectiveCamera {
             eye,
             forward: (DVec3::Y - eye).as_vec3().normalize(),

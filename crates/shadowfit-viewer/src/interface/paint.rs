@@ -50,6 +50,10 @@ impl Painter {
 
     /// Paints to `target` of `size` pixels.
     pub(crate) fn paint(&mut self, gpu: &Gpu, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
+        // egui's renderer takes it for granted that a device gives it buffers.
+        if gpu.lost().is_some() {
+            return;
+        }
         let Layout { jobs, pixels_per_point } = layout;
         let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point: *pixels_per_point };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());

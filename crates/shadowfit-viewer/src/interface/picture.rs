@@ -30,19 +30,35 @@ struct Shot {
     texture: egui::TextureId,
     /// Size that its place has, in pixels.
     wanted: [u32; 2],
+    /// Size of the place that it was made for: it is smaller where the device has no memory for more.
+    made_for: [u32; 2],
 }
+
+/// Size of pictures until their places are known, in pixels.
+const FIRST_SIZE: [u32; 2] = [16; 2];
 
 impl Shot {
     fn new(stage: &Stage, painter: &mut Painter) -> Self {
-        let target = stage.target([16, 16]);
+        let target = stage.target(FIRST_SIZE);
         let texture = painter.register(stage.gpu(), &target);
-        Self { target, texture, wanted: [16, 16] }
+        Self { target, texture, wanted: FIRST_SIZE, made_for: FIRST_SIZE }
     }
 
     fn fit_place(&mut self, stage: &Stage, painter: &mut Painter) {
-        if self.wanted != self.target.size {
-            self.target = stage.target(self.wanted);
-            painter.replace(stage.gpu(), self.texture, &self.target);
+        if self.wanted == self.made_for {
+            return;
+        }
+        self.made_for = self.wanted;
+        let mut size = self.wanted;
+        loop {
+            match stage.gpu().try_making(|| stage.target(size)) {
+                Ok(target) => {
+                    self.target = target;
+                    return painter.replace(stage.gpu(), self.texture, &self.target);
+                }
+                Err(_) if size.iter().all(|side| *side <= 1) => return,
+                Err(_) => size = size.map(|side| side.div_ceil(2)),
+            }
         }
     }
 }
@@ -59,6 +75,19 @@ impl Pictures {
     pub(super) fn new(stage: &Stage, painter: &mut Painter) -> Self {
         let mut shot = || Shot::new(stage, painter);
         Self { main: shot(), beside: shot(), tapped: None }
+    }
+
+    /// Makes the pictures anew for the device of a stage that has moved.
+    pub(super) fn move_to(&mut self, stage: &Stage, painter: &mut Painter) {
+        for shot in [&mut self.main, &mut self.beside] {
+            *shot = Shot { wanted: shot.wanted, ..Shot::new(stage, painter) };
+        }
+    }
+
+    /// Why the picture is coarser than its place, as a line.
+    pub(super) fn problem(&self) -> Option<&'static str> {
+        let Shot { target, made_for, .. } = &self.main;
+        (target.size != *made_for).then_some("The picture is coarser than the window: the GPU has no memory for more")
     }
 
     /// Size of the picture, in pixels.

@@ -6,7 +6,7 @@ use anyhow::{Result, anyhow};
 use shadowfit::{FittedMap, PerspectiveCamera, Technique};
 use shadowfit_params::figures::JudgedFigures;
 use shadowfit_params::tool::ErrorMarks;
-use shadowfit_render::{Gpu, JudgedPicture, ProbeTargets, classes_texture};
+use shadowfit_render::{DeviceFault, Gpu, JudgedPicture, ProbeTargets, classes_texture};
 use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;
 
@@ -20,6 +20,8 @@ const STILL: f32 = 0.3;
 const MOVING: f32 = 2.0;
 /// Most triangles that are moved to a new pose within a frame, so that frames do not stall.
 const MOST_POSED: usize = 150_000;
+/// Browsers have none.
+const HAS_THREADS: bool = !cfg!(target_family = "wasm");
 /// Frames whose time is remembered until their sums come back.
 const FRAMES: usize = 8;
 
@@ -85,6 +87,8 @@ pub(super) enum JudgedBy {
 pub(super) struct Live {
     /// Who judges.
     pub(super) by: JudgedBy,
+    /// Why the GPU cannot judge this scene, if it should and threads do so instead.
+    no_gpu: Option<String>,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
     /// The picture that the thread judges, and its probe.
@@ -105,8 +109,7 @@ pub(super) struct Live {
 
 impl Live {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let has_threads = !cfg!(target_family = "wasm");
-        let by = match (gpu.is_software(), has_threads, gpu.can_compute()) {
+        let by = match (gpu.is_software(), HAS_THREADS, gpu.can_compute()) {
             (true, true, _) | (_, true, false) => JudgedBy::Threads,
             (false, _, true) => JudgedBy::Gpu,
             (true, false, true) => JudgedBy::SlowGpu,
@@ -117,9 +120,15 @@ impl Live {
 
     /// Forgets all pictures, for another scene.
     pub(super) fn forget(&mut self) {
-        let Self { by, waits, .. } = *self;
+        let waits = self.waits;
+        let by = if self.no_gpu.is_some() { JudgedBy::Gpu } else { self.by };
         // The thread stops judging.
         *self = Self { by, waits, ..Self::default() };
+    }
+
+    /// Why pictures are judged otherwise than usual, as a line.
+    pub(super) fn notice(&self) -> Option<String> {
+        self.no_gpu.as_ref().map(|why| format!("Pictures are judged now and then, by the CPU: {why}"))
     }
 
     /// The picture that was judged last.
@@ -242,7 +251,14 @@ impl Live {
                 }
                 live
             }
-            None => LiveTruth::new(shot.gpu, shot.scene)?,
+            None => match shot.gpu.try_making(|| LiveTruth::new(shot.gpu, shot.scene)) {
+                Ok(live) => live?,
+                Err(fault @ DeviceFault::OutOfMemory(_)) if HAS_THREADS => {
+                    (self.by, self.no_gpu) = (JudgedBy::Threads, Some(fault.to_string()));
+                    return Ok(false);
+                }
+                Err(fault) => return Err(fault.into()),
+            },
         };
         self.posed = Some(shot.seconds);
         let live = self.gpu.insert(live);

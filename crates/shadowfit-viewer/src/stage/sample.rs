@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use shadowfit_classics::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 use shadowfit_params::tool::ViewMode;
-use shadowfit_render::{FlyCamera, FlyInput, RenderTarget, camera::TURN_SPEED};
+use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget, camera::TURN_SPEED};
 
 use super::{Stage, compare};
 
@@ -21,6 +21,13 @@ pub(crate) struct SampleShow {
 }
 
 impl SampleShow {
+    /// Draws with another device from now on.
+    pub(super) fn move_to(&mut self, gpu: &Gpu, samples: u32) {
+        let waits = self.drawer.waits;
+        self.drawer = SampleDrawer::new(gpu, samples);
+        (self.drawer.waits, self.beside) = (waits, None);
+    }
+
     /// Goes back to the values of the source, or of the variant.
     pub(super) fn reset(&mut self) {
         self.values =

@@ -7,7 +7,7 @@ use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_study::{Evaluator, Judging, RayUse, View, atmosphere};
 use shadowfit_wgpu::resolve::EdgeResult;
-use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
+use shadowfit_wgpu::{RESOLUTIONS, ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
 
 use super::live::Live;
 use super::shot::Shot;
@@ -33,6 +33,8 @@ pub(super) struct Side {
     pub(super) shown: Option<Shown>,
     /// Why the settings cannot be shown as they are.
     pub(super) problem: Option<String>,
+    /// The maps that the device had no memory for last, and the largest that it had some for.
+    no_room: Option<[ShadowMapDescriptor; 2]>,
 }
 
 /// All that a picture depends on.
@@ -55,6 +57,24 @@ pub(super) fn filtered_edges(settings: &Settings, result: EdgeResult) -> Option<
     wants.then(|| format!("Edges are filtered: {why}"))
 }
 
+/// Makes a shadow map, or where the device has no memory for it, the first that it has some for of those with half the
+/// texels a side, a quarter, and so on.
+fn within_memory<T>(
+    wanted: &ShadowMapDescriptor,
+    mut make: impl FnMut(&ShadowMapDescriptor) -> Result<T, ShadowMapError>,
+) -> Result<(T, ShadowMapDescriptor), ShadowMapError> {
+    let mut descriptor = *wanted;
+    loop {
+        let least = *RESOLUTIONS.start();
+        match make(&descriptor) {
+            Err(ShadowMapError::OutOfMemory { .. }) if descriptor.resolution.iter().any(|side| *side > least) => {
+                descriptor.resolution = descriptor.resolution.map(|side| (side / 2).max(least));
+            }
+            made => return made.map(|made| (made, descriptor)),
+        }
+    }
+}
+
 impl Side {
     /// A side whose pictures have `samples` per pixel.
     ///
@@ -62,7 +82,8 @@ impl Side {
     ///
     /// [`ShadowMapError`] if the shadow map cannot be made.
     pub(super) fn new(gpu: &Gpu, technique: &Technique, samples: u32) -> Result<Self, ShadowMapError> {
-        let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), samples)?;
+        let wanted = ShadowMapDescriptor::from(technique);
+        let (renderer, _) = within_memory(&wanted, |descriptor| Renderer::new(gpu, descriptor, samples))?;
         Ok(Self {
             evaluator: Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() }),
             fitted: None,
@@ -73,7 +94,22 @@ impl Side {
             unread: None,
             shown: None,
             problem: None,
+            no_room: None,
         })
+    }
+
+    /// The same on another device, with nothing drawn yet; a frozen fit stays.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError`] if the device has no memory for the shadow map.
+    pub(super) fn anew(&self, gpu: &Gpu, samples: u32) -> Result<Self, ShadowMapError> {
+        let mut side = Self::new(gpu, &Technique::default(), samples)?;
+        (side.fitted, side.live.waits) = (self.fitted.clone(), self.live.waits);
+        if self.follows {
+            side.follow();
+        }
+        Ok(side)
     }
 
     /// From now on pictures follow each other in a window: visible points are counted in depth buffers, and not by
@@ -170,17 +206,36 @@ impl Side {
             technique.fit.depth = DepthConvention::ZeroToOne;
         }
         let wanted = ShadowMapDescriptor::from(&technique);
-        if let Err(error) = self.evaluator.renderer.set_shadow_map(shot.gpu, &wanted) {
-            self.problem = Some(error.to_string());
-            let map = self.evaluator.renderer.shadow_map().descriptor();
-            technique = technique.with_count(technique.maps.count().min(map.maps));
-            let fit = &mut technique.fit;
-            (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
-            if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {
-                fit.casters = CasterPolicy::PerObject;
+        let Err(error) = self.set_shadow_map(shot.gpu, &wanted) else { return technique };
+        let map = *self.evaluator.renderer.shadow_map().descriptor();
+        self.problem = Some(match error {
+            ShadowMapError::OutOfMemory { .. } => {
+                let [width, height] = map.resolution;
+                format!("{error}. They are drawn with {width} × {height} texels: choose that to keep it")
             }
+            _ => error.to_string(),
+        });
+        technique = technique.with_count(technique.maps.count().min(map.maps));
+        let fit = &mut technique.fit;
+        (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
+        if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {
+            fit.casters = CasterPolicy::PerObject;
         }
         technique
+    }
+
+    /// Sets the shadow map. Where there is no memory for it, the next smaller one is set, and the error says so.
+    fn set_shadow_map(&mut self, gpu: &Gpu, wanted: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
+        // What there was no memory for is not tried again in each frame.
+        let first = self.no_room.filter(|[refused, _]| refused == wanted).map_or(*wanted, |[_, smaller]| smaller);
+        let renderer = &mut self.evaluator.renderer;
+        let ((), set) = within_memory(&first, |descriptor| renderer.set_shadow_map(gpu, descriptor))?;
+        self.no_room = (set != *wanted).then_some([*wanted, set]);
+        let ShadowMapDescriptor { resolution, format, .. } = *wanted;
+        if self.no_room.is_some() {
+            return Err(ShadowMapError::OutOfMemory { resolution, maps: wanted.maps, format });
+        }
+        Ok(())
     }
 
     /// Counts the visible points of the picture that has just been drawn, if the technique uses them.
@@ -212,7 +267,8 @@ impl Side {
         self.problem = None;
         self.draw_anew(shot, target);
         let result = self.evaluator.renderer.edge_result();
-        self.problem = self.problem.take().or_else(|| filtered_edges(shot.settings, result));
+        self.problem =
+            self.problem.take().or_else(|| filtered_edges(shot.settings, result)).or_else(|| self.live.notice());
     }
 
     /// Draws the view unless it would be as it was last.

@@ -234,7 +234,7 @@ impl Viewer {
         }
     }
 
-    fn restore_state(&mut self, state: State) {
+    pub(super) fn restore_state(&mut self, state: State) {
         self.stage.settings = state.settings;
         if let Some(values) = state.sample {
             self.stage.set_sample_values(values);

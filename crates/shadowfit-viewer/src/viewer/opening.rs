@@ -72,7 +72,11 @@ impl Viewer {
     /// Shows the scene that has been loaded. After an error the old one stays. At the start there is none: instead of the
     /// scene of the last time the built-in one is opened, and for a scene of the arguments the viewer ends.
     pub(super) fn take_scene(&mut self) {
+        // What comes of a lost device is loaded anew for the next one.
         let Some(result) = self.loading.as_ref().and_then(Loading::take) else { return };
+        if self.stage.gpu().lost().is_some() {
+            return;
+        }
         let Some(loading) = self.loading.take() else { return };
         let is_of_last_time = self.start.source.is_none() && loading.source != SceneSource::default();
         match result {

@@ -14,11 +14,11 @@ pub(super) struct Saving {
     pixels: ReadBack,
     size: [u32; 2],
     is_blue_first: bool,
-    path: PathBuf,
+    pub(super) path: PathBuf,
     /// The settings that it was made with.
     settings: String,
     /// The line of the script that asked for it.
-    line: Option<String>,
+    pub(super) line: Option<String>,
 }
 
 impl Viewer {

@@ -19,6 +19,7 @@ use crate::source::SceneSource;
 use crate::stage::Stage;
 
 mod bars;
+mod devices;
 mod links;
 mod narrow;
 mod samples;

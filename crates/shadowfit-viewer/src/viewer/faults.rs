@@ -1,0 +1,103 @@
+//! Faults from below: a device that is lost, or has no memory left.
+
+use std::fmt::Write as _;
+
+use anyhow::{Context, Result, bail};
+use glam::UVec2;
+use shadowfit_render::{DeviceFault, Gpu};
+use shadowfit_wgpu::RESOLUTIONS;
+use web_time::Instant;
+
+use super::Viewer;
+use crate::loading::Loading;
+use crate::source::SceneSource;
+
+/// A device that is lost sooner than this after it was made anew would be lost again and again, in seconds.
+const CALM: f32 = 60.0;
+
+/// When a device was last made anew.
+#[derive(Debug, Default)]
+pub(crate) struct Renewals(Option<Instant>);
+
+impl Renewals {
+    /// Notes that a device was lost.
+    ///
+    /// # Errors
+    ///
+    /// If the one before was lost only just now.
+    pub(crate) fn next(&mut self, why: &str) -> Result<()> {
+        let last = self.0.replace(Instant::now());
+        if let Some(since) = last.map(|last| last.elapsed().as_secs_f32()).filter(|since| *since < CALM) {
+            bail!(
+                "the graphics device was lost again, {since:.1} s after it was made anew ({why}). The settings are kept: \
+                 start the viewer again, or with `--software`, which needs no graphics card"
+            );
+        }
+        eprintln!("the graphics device was lost ({why}); it is made anew");
+        Ok(())
+    }
+}
+
+impl Viewer {
+    /// Goes on with another device, after the first one was lost, and says so: scene, settings and camera stay, but for maps
+    /// that it had no memory for.
+    ///
+    /// # Errors
+    ///
+    /// If the device cannot draw what the first one drew.
+    pub(crate) fn move_to(&mut self, gpu: Gpu, format: wgpu::TextureFormat, why: &str) -> Result<()> {
+        self.stage.move_to(gpu).context("the graphics device was lost, and a new one cannot take its place")?;
+        self.restore_lost();
+        self.interface.move_to(&self.stage, format);
+        for saving in std::mem::take(&mut self.saving) {
+            self.line.clone_from(&saving.line);
+            self.tell(Err(anyhow::anyhow!("{} was not saved: the graphics device was lost", saving.path.display())));
+        }
+        self.line = None;
+        if let Some(Loading { source, line, .. }) = self.loading.take() {
+            self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
+        }
+        let mut text =
+            "The graphics device was lost, and made anew: scene, settings and camera are as they were".to_owned();
+        if why.to_ascii_lowercase().contains("memory") {
+            let resolution = &mut self.stage.settings.technique.fit.resolution;
+            *resolution = (*resolution / 2).max(UVec2::splat(*RESOLUTIONS.start()));
+            let [width, height] = resolution.to_array();
+            let _ = write!(text, ", but for the maps, which have {width} × {height} texels now: it had no memory left");
+        }
+        self.say(text);
+        Ok(())
+    }
+
+    /// Brings back what a frame that was cut short had in hand: the second technique, or the sample.
+    fn restore_lost(&mut self) {
+        let Some(state) = self.last_state.take().filter(|_| self.has_scene) else { return };
+        if let (SceneSource::Sample { sample, variant }, None) = (&self.source, self.stage.sample()) {
+            let camera = self.stage.camera;
+            self.stage.set_sample(sample, *variant);
+            self.restore_state(state);
+            self.stage.camera = camera;
+        } else if self.stage.other_technique().is_none() {
+            self.stage.compare_with(state.other);
+        }
+    }
+
+    /// Tells of faults of the device that nothing else has reported, each one once.
+    pub(crate) fn tell_faults(&mut self) {
+        for fault in self.stage.gpu().take_faults() {
+            if !self.told_faults.insert(fault.to_string()) {
+                continue;
+            }
+            eprintln!("error: {fault}");
+            match fault {
+                DeviceFault::OutOfMemory(_) => {
+                    self.say("The GPU has no memory left: choose smaller or fewer maps, or a smaller window or scene");
+                }
+                DeviceFault::Refused(_) => {
+                    self.player.failed = true;
+                    self.say(format!("{fault}. This is a bug of the viewer"));
+                }
+            }
+        }
+    }
+}

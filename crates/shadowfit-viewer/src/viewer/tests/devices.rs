@@ -1,0 +1,99 @@
+//! Devices that are lost: in each view, beside a second technique, while a scene is loaded, in a sample, and again.
+
+use super::*;
+use crate::viewer::Renewals;
+
+fn software() -> Gpu {
+    pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter")
+}
+
+/// Loses the device, draws a frame with what is left of it, and goes on with another one.
+fn lose(viewer: &mut Viewer) {
+    let gpu = viewer.stage.gpu().clone();
+    gpu.keep_faults();
+    gpu.device.destroy();
+    frame(viewer);
+    settle(viewer, |_| gpu.lost().is_some());
+    assert_eq!(gpu.take_faults(), [], "a lost device is no other fault");
+    let why = gpu.lost().unwrap_or_default();
+    viewer.move_to(software(), wgpu::TextureFormat::Rgba8Unorm, &why).expect("another device");
+}
+
+fn picture(viewer: &mut Viewer) -> Vec<u8> {
+    for _ in 0..4 {
+        frame(viewer);
+    }
+    viewer.interface.pictures.read_back(&viewer.stage).wait(viewer.stage.gpu()).expect("a device that works")
+}
+
+#[test]
+fn gpu_a_lost_device_takes_nothing_along_in_any_view() {
+    let mut viewer = ready(&["--technique", "stable-4", "--set", "view.judge=off"], None);
+    run(&mut viewer, Command::Set("bias.constant".to_owned(), "0.25".to_owned()));
+    viewer.stage.camera.position.y += 3.0;
+    let (settings, camera) = (viewer.stage.settings, viewer.stage.camera);
+    let before = picture(&mut viewer);
+    lose(&mut viewer);
+    assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains("made anew")));
+    assert_eq!((viewer.stage.settings, viewer.stage.camera), (settings, camera));
+    assert!(picture(&mut viewer) == before, "the picture is another one");
+    for mode in ViewMode::ALL {
+        viewer.stage.settings.view.mode = mode;
+        frame(&mut viewer);
+        lose(&mut viewer);
+        frame(&mut viewer);
+        assert!(viewer.is_ready() && viewer.failure.is_none(), "{mode:?}");
+    }
+}
+
+#[test]
+fn gpu_two_techniques_a_frozen_fit_and_a_sample_outlive_their_device() {
+    let mut viewer = ready(&[], None);
+    run(&mut viewer, Command::Compare(Toggle::On));
+    run(&mut viewer, Command::ToggleFreeze);
+    frame(&mut viewer);
+    let (other, maps) = (viewer.stage.other_technique(), viewer.stage.maps(SIZE));
+    viewer.stage.camera.yaw += 0.5;
+    lose(&mut viewer);
+    frame(&mut viewer);
+    assert!(other.is_some() && viewer.stage.other_technique() == other);
+    assert_eq!(viewer.stage.maps(SIZE), maps, "the frozen fit is of the view before");
+
+    let mut sample = ready(&["--sample", "xna-shadow-mapping"], None);
+    let before = picture(&mut sample);
+    lose(&mut sample);
+    assert!(picture(&mut sample) == before, "the sample is another picture");
+}
+
+#[test]
+fn gpu_what_was_under_way_on_a_lost_device_is_begun_again_or_told() {
+    let mut viewer = ready(&[], None);
+    viewer.ask(Command::Open("plain".to_owned()));
+    frame(&mut viewer);
+    lose(&mut viewer);
+    until(&mut viewer, "the scene that was asked for", |viewer| viewer.source == SceneSource::from_text("plain"));
+    run(&mut viewer, Command::StartTune);
+    lose(&mut viewer);
+    run(&mut viewer, Command::CancelTune);
+    run(&mut viewer, Command::ShowArtefact(Artefact::Acne));
+    lose(&mut viewer);
+    settle(&mut viewer, |viewer| viewer.searching.is_none());
+    assert!(viewer.failure.is_none(), "{:?}", viewer.failure);
+}
+
+#[test]
+fn gpu_a_device_that_was_lost_for_want_of_memory_comes_back_with_smaller_maps() {
+    let mut viewer = ready(&["--technique", "stable-4"], None);
+    let resolution = viewer.stage.settings.technique.fit.resolution;
+    viewer.move_to(software(), wgpu::TextureFormat::Rgba8Unorm, "Out of memory").expect("another device");
+    assert_eq!(viewer.stage.settings.technique.fit.resolution, resolution / 2);
+    assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains("256 × 256")));
+}
+
+#[test]
+fn a_device_that_is_lost_again_at_once_ends_the_viewer_with_what_to_do() {
+    let mut renewals = Renewals::default();
+    renewals.next("the driver was reset").expect("the first time");
+    let error = renewals.next("removed").expect_err("at once").to_string();
+    assert!(error.contains("removed") && error.contains("--software"), "{error}");
+}
