@@ -2,6 +2,7 @@
 //! a picture or in words, never in a panic.
 
 mod command_line_gpu;
+mod device_classes_gpu;
 mod lost_device_gpu;
 mod scenes_gpu;
 mod settings_gpu;

@@ -1,0 +1,134 @@
+//! Every view, artefact, filter, format and sample on devices that lack what others have: nothing is refused by the
+//! device, and what cannot be done is said.
+
+use shadowfit::Technique;
+use shadowfit::settings::{Edges, FilterKind, MapFormat};
+use shadowfit_classics::SAMPLES;
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
+use shadowfit_render::{Gpu, RenderTarget, Wanted};
+use shadowfit_scene::builtin::default_scene;
+use shadowfit_viewer::{Artefact, Stage};
+
+use crate::support::software_gpu;
+
+/// Size of the pictures, in pixels.
+const SIZE: [u32; 2] = [64, 36];
+
+/// The devices, by what they lack: a single feature, or all of them with ever lower limits.
+fn classes() -> [(&'static str, Wanted); 6] {
+    let all = Wanted::default().features;
+    let without = |feature| Wanted { features: all - feature, limits: None };
+    let bare = |limits| Wanted { features: wgpu::Features::empty(), limits: Some(limits) };
+    [
+        ("timestamps", without(wgpu::Features::TIMESTAMP_QUERY)),
+        ("depth clamp", without(wgpu::Features::DEPTH_CLIP_CONTROL)),
+        ("the primitive index", without(wgpu::Features::PRIMITIVE_INDEX)),
+        ("every feature", bare(wgpu::Limits::default())),
+        ("WebGPU's limits", bare(wgpu::Limits::downlevel_defaults())),
+        ("compute and WebGL2's limits", bare(wgpu::Limits::downlevel_webgl2_defaults())),
+    ]
+}
+
+struct Class {
+    lacks: &'static str,
+    stage: Stage,
+    target: RenderTarget,
+}
+
+impl Class {
+    fn new(lacks: &'static str, wanted: &Wanted) -> Self {
+        let gpu = pollster::block_on(Gpu::of_adapter(software_gpu().adapter, wanted)).expect("a device with less");
+        gpu.keep_faults();
+        let mut stage = Stage::new(gpu, default_scene(), 4).expect("the default scene");
+        stage.wait_for_rays();
+        stage.settings.technique.fit.resolution = glam::UVec2::splat(256);
+        let target = stage.target(SIZE);
+        Self { lacks, stage, target }
+    }
+
+    /// Draws a picture, which must be one and none of one colour; returns what is said about it.
+    fn draw(&mut self, what: &str) -> Option<String> {
+        self.stage.draw(&self.target);
+        let pixels = self.target.read(self.stage.gpu()).expect("a device that works");
+        let said = self.stage.problem().map(str::to_owned);
+        let lacks = self.lacks;
+        assert_eq!(self.stage.gpu().take_faults(), [], "without {lacks}: {what}: {said:?}");
+        assert!(pixels.chunks_exact(4).any(|pixel| pixel != &pixels[..4]), "without {lacks}: {what} is of one colour");
+        said
+    }
+
+    /// The same for what every device can do.
+    fn draw_well(&mut self, what: &str) {
+        assert_eq!(self.draw(what), None, "without {}: {what}", self.lacks);
+    }
+}
+
+#[test]
+fn every_view_and_artefact_is_shown_on_every_class_of_device() {
+    for (lacks, wanted) in classes() {
+        let mut class = Class::new(lacks, &wanted);
+        for mode in ViewMode::ALL {
+            class.stage.settings.view.mode = mode;
+            class.draw_well(&format!("{mode:?}"));
+        }
+        class.stage.settings.view.mode = ViewMode::Final;
+        class.stage.settings.view.inset = InsetMaps::All;
+        class.draw_well("all maps in the inset");
+        class.stage.settings.view.marks = ErrorMarks::Outline;
+        class.draw_well("marks");
+        class.stage.compare_with(Technique::preset("stable-4"));
+        class.draw_well("two techniques");
+        class.stage.compare_with(None);
+        if wanted.limits.is_none() {
+            continue;
+        }
+        for artefact in [Artefact::Acne, Artefact::Aliasing, Artefact::ClippingHole] {
+            class.stage.show_artefact(artefact);
+            class.draw_well(&format!("{artefact:?}"));
+            class.stage.fix_artefact(artefact);
+            class.draw_well(&format!("{artefact:?} cured"));
+        }
+    }
+}
+
+#[test]
+fn every_filter_and_format_is_drawn_on_every_class_of_device_or_refused_in_words() {
+    for (lacks, wanted) in classes().into_iter().skip(3) {
+        let mut class = Class::new(lacks, &wanted);
+        for filter in FilterKind::ALL {
+            class.stage.settings.technique.filter = filter;
+            class.draw_well(&format!("{filter:?}"));
+        }
+        class.stage.settings.technique.filter = FilterKind::default();
+        for format in MapFormat::ALL {
+            class.stage.settings.technique.format = format;
+            // Colours are not rendered to by every device.
+            if let Some(said) = class.draw(&format!("{format:?}")) {
+                assert!(said.contains(&format!("{format:?}")), "without {lacks}: {said}");
+            }
+        }
+        class.stage.settings.technique.format = MapFormat::default();
+        class.stage.settings.technique.edges = Edges::Traced { samples: Edges::USUAL_SAMPLES };
+        let said = class.draw("traced edges");
+        let can_trace = wanted.limits.is_none_or(|limits| limits.max_storage_buffers_per_shader_stage >= 6);
+        match said {
+            Some(said) => {
+                let is_told = said.contains("Edges are filtered") || said.contains("use shadow maps alone");
+                assert!(!can_trace && is_told, "without {lacks}: {said}");
+            }
+            None => assert!(can_trace, "without {lacks} edges are traced"),
+        }
+    }
+}
+
+#[test]
+fn every_sample_is_drawn_on_every_class_of_device() {
+    for (lacks, wanted) in classes().into_iter().skip(3) {
+        let mut class = Class::new(lacks, &wanted);
+        for sample in &SAMPLES {
+            class.stage.set_scene(sample.scene()).expect("the sample's scene");
+            class.stage.set_sample(sample, None);
+            class.draw(sample.title);
+        }
+    }
+}
