@@ -109,7 +109,8 @@ pub(crate) fn example_program(name: &str) -> PathBuf {
     let program = profile_folder().join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {
         let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--example", name]).current_dir(workspace());
+        // The viewer is one of its own package.
+        build.args(["build", "--workspace", "--example", name]).current_dir(workspace());
         build.env("CARGO_TARGET_DIR", target_folder());
         if profile_folder().ends_with("release") {
             build.arg("--release");

@@ -9,10 +9,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 
 use crate::bevy;
-use crate::machine::Machine;
+use crate::machine::{Machine, WEB_TARGET};
 use crate::process;
 use crate::setup::{self, Purpose};
-use crate::web;
 
 /// One named check.
 struct Step {
@@ -83,8 +82,8 @@ fn lints(machine: &Machine) -> Result<()> {
     process::run(
         process::cargo("clippy").args(["--workspace", "--all-targets"]).args(features).args(["--", "-D", "warnings"]),
     )?;
-    if !process::has_target(web::TARGET) {
-        println!("what is built for browsers alone was not looked at: rustup has no {}", web::TARGET);
+    if !process::has_target(WEB_TARGET) {
+        println!("what is built for browsers alone was not looked at: rustup has no {WEB_TARGET}");
         return Ok(());
     }
     process::run(process::cargo("clippy").args([
@@ -92,7 +91,7 @@ fn lints(machine: &Machine) -> Result<()> {
         "shadowfit-viewer",
         "--lib",
         "--target",
-        web::TARGET,
+        WEB_TARGET,
         "--",
         "-D",
         "warnings",

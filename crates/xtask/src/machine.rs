@@ -7,6 +7,12 @@ use std::process::Command;
 
 use crate::process;
 
+/// Names that Chromium and its kin go by.
+pub(crate) const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// The target of browsers.
+pub(crate) const WEB_TARGET: &str = "wasm32-unknown-unknown";
+
 /// A thing that some task needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Part {
@@ -91,7 +97,7 @@ impl Machine {
             Part::Xvfb => in_path("Xvfb"),
             Part::Xdotool => in_path("xdotool"),
             Part::Import => in_path("import"),
-            Part::Chromium => crate::web::BROWSERS.iter().any(|name| in_path(name)),
+            Part::Chromium => BROWSERS.iter().any(|name| in_path(name)),
             Part::Node => in_path("node"),
             Part::Npm => in_path("npm"),
             Part::Libudev => process::succeeds(Command::new("pkg-config").args(["--exists", "libudev"])),

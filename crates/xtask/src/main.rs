@@ -2,18 +2,24 @@
 //! others are what a contributor and the continuous integration call. Each task first looks at what the machine has
 //! and, on Debian and systems derived from it, installs what is missing.
 
+#![cfg_attr(not(feature = "tools"), allow(dead_code, reason = "other commands share it"))]
+
+#[cfg(feature = "tools")]
 mod bench;
 mod bevy;
 mod ci;
 #[cfg(test)]
 mod docs;
+#[cfg(feature = "tools")]
 mod gallery;
 mod machine;
+#[cfg(feature = "tools")]
 mod maths;
 mod process;
 mod run;
 mod setup;
 mod test;
+#[cfg(feature = "tools")]
 mod web;
 
 use std::process::ExitCode;
@@ -86,12 +92,21 @@ fn main() -> ExitCode {
         Task::Run { args } => run::run(&args),
         Task::Test { args } => test::test(&args),
         Task::Ci => ci::ci(),
-        Task::Gallery { only } => gallery::gallery(&only),
-        Task::Maths => maths::maths(),
-        Task::Bench { args } => bench::bench(&args),
-        Task::Web { test: true, long, .. } => web::test(long),
-        Task::Web { build, port, .. } => web::web(build.as_deref(), port),
         Task::Golden => test::golden(),
+        #[cfg(feature = "tools")]
+        Task::Gallery { only } => gallery::gallery(&only),
+        #[cfg(feature = "tools")]
+        Task::Maths => maths::maths(),
+        #[cfg(feature = "tools")]
+        Task::Bench { args } => bench::bench(&args),
+        #[cfg(feature = "tools")]
+        Task::Web { test: true, long, .. } => web::test(long),
+        #[cfg(feature = "tools")]
+        Task::Web { build, port, .. } => web::web(build.as_deref(), port),
+        #[cfg(not(feature = "tools"))]
+        Task::Gallery { .. } | Task::Maths | Task::Bench { .. } | Task::Web { .. } => {
+            process::run(process::with_tools().args(std::env::args_os().skip(1)))
+        }
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -58,6 +58,14 @@ pub(crate) fn cargo_here(subcommand: &str) -> Command {
     command
 }
 
+/// This program with its feature `tools`, without arguments yet.
+pub(crate) fn with_tools() -> Command {
+    let mut command = cargo_here("run");
+    command.arg("--quiet").arg("--manifest-path").arg(root().join("Cargo.toml"));
+    command.args(["--package", "xtask", "--features", "tools", "--"]);
+    command
+}
+
 /// Shows and runs `command` with this process's own input and output.
 ///
 /// # Errors

@@ -34,7 +34,9 @@ pub(crate) fn run(args: &[String]) -> Result<()> {
 pub(crate) fn viewer(machine: &Machine) -> Command {
     let mut command = process::cargo_here("run");
     command.arg("--manifest-path").arg(process::root().join("Cargo.toml"));
-    command.args(["--release", "--example", "viewer"]).args(setup::features(machine)).arg("--");
+    // The viewer's package alone: the workspace's examples and tests need more crates than it does.
+    command.args(["--release", "--package", "shadowfit-viewer", "--example", "viewer"]);
+    command.args(setup::viewer_features(machine)).arg("--");
     // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", std::env::temp_dir());

@@ -54,8 +54,16 @@ pub(crate) fn prepare(purpose: Purpose) -> Result<Machine> {
     Ok(machine)
 }
 
-/// The root package's features that can be built here. Every task uses these, so that all share one build.
+/// The features that the workspace can be built with here. Every task uses these, so that all share one build.
 pub(crate) fn features(machine: &Machine) -> &'static [&'static str] {
+    if viewer_features(machine).is_empty() {
+        return &["--features", "xtask/tools"];
+    }
+    &["--features", "gamepad,xtask/tools"]
+}
+
+/// Those of the viewer alone.
+pub(crate) fn viewer_features(machine: &Machine) -> &'static [&'static str] {
     if machine.has(Part::Libudev) {
         return &["--features", "gamepad"];
     }

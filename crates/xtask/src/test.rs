@@ -7,10 +7,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, anyhow, bail};
 
 use crate::bevy;
-use crate::machine::{Machine, Part};
+use crate::machine::{Machine, Part, WEB_TARGET};
 use crate::process;
 use crate::setup::{self, Purpose};
-use crate::web;
 
 /// The environment variable with which the golden tests write what they would compare.
 const UPDATE_GOLDENS: &str = "SHADOWFIT_UPDATE_GOLDENS";
@@ -45,8 +44,8 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
     let doc_tests = timed(process::cargo("test").args(["--workspace", "--doc", "--no-fail-fast"]).args(features));
     let tests = timed(&mut runner(features, &left_out));
     let bevy = bevy::Rust::find().map(|rust| timed_by(|| rust.test(&machine)));
-    let can_test_page = machine.can_test_page() && process::has_target(web::TARGET);
-    let page = can_test_page.then(|| timed_by(|| web::run(&machine, false)));
+    let can_test_page = machine.can_test_page() && process::has_target(WEB_TARGET);
+    let page = can_test_page.then(|| timed_by(|| process::run(process::with_tools().args(["web", "--test"]))));
     for LeftOut { name_part, reason } in &left_out {
         println!("SKIPPED: tests with `{name_part}` in their name: {reason}");
     }

@@ -8,15 +8,14 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use image::imageops::FilterType;
 
+use crate::machine::WEB_TARGET;
 use crate::process::{self, has_target, target_folder};
 
 mod browser;
 mod serve;
 
-pub(crate) use browser::{BROWSERS, run, test};
+pub(crate) use browser::test;
 
-/// The target of browsers.
-pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The modules: a folder, and the feature of the viewer that it is built with.
 const MODULES: [(&str, &str); 2] = [("webgpu", "webgpu"), ("webgl2", "webgl")];
 /// The picture that is shown while the module is loaded, and its width in pixels.
@@ -42,8 +41,8 @@ pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
 
 /// Builds the page with a profile.
 fn build(folder: &Path, profile: &str) -> Result<()> {
-    if !has_target(TARGET) {
-        bail!("the page needs Rust's target {TARGET}: `rustup target add {TARGET}` brings it");
+    if !has_target(WEB_TARGET) {
+        bail!("the page needs Rust's target {WEB_TARGET}: `rustup target add {WEB_TARGET}` brings it");
     }
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut sizes = String::new();
@@ -67,11 +66,11 @@ fn build(folder: &Path, profile: &str) -> Result<()> {
 fn module(folder: &Path, feature: &str, profile: &str) -> Result<u64> {
     let mut compiler = process::cargo("rustc");
     compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib", "--profile", profile]);
-    compiler.args(["--target", TARGET, "--no-default-features", "--features", feature]);
+    compiler.args(["--target", WEB_TARGET, "--no-default-features", "--features", feature]);
     process::run(&mut compiler)?;
     // Cargo names the folder of its profile `dev` otherwise.
     let profile = if profile == "dev" { "debug" } else { profile };
-    let built = target_folder().join(TARGET).join(profile).join("shadowfit_viewer.wasm");
+    let built = target_folder().join(WEB_TARGET).join(profile).join("shadowfit_viewer.wasm");
     let mut bindgen = process::cargo("run");
     bindgen.args(["--quiet", "--package", "xtask", "--features", "bindgen", "--bin", "bindgen", "--"]);
     process::run(bindgen.arg(&built).arg(folder))?;

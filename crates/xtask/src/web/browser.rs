@@ -7,12 +7,9 @@ use std::{fs, thread};
 use anyhow::{Context, Result, bail};
 
 use super::{build, serve};
-use crate::machine::Machine;
+use crate::machine::{BROWSERS, Machine};
 use crate::process::{self, target_folder};
 use crate::setup::{self, Purpose};
-
-/// Names that Chromium and its kin go by.
-pub(crate) const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
 /// Size of the window whose pictures the page's are compared with, in pixels: that of `page.test.mjs`.
 const SIZE: &str = "720x300";
@@ -26,17 +23,12 @@ pub(crate) fn test(is_long: bool) -> Result<()> {
     if !machine.can_test_page() {
         bail!("the page cannot be tested: Chromium, Node.js or npm is missing");
     }
-    run(&machine, is_long)
-}
-
-/// The same on a machine that has everything.
-pub(crate) fn run(machine: &Machine, is_long: bool) -> Result<()> {
     let folder = target_folder().join("web-test");
     let page = folder.join("page");
     build(&page, "dev")?;
     let tests = process::root().join("tests/web");
     let native = folder.join("native");
-    play(machine, &tests.join("tour.txt"), &native)?;
+    play(&machine, &tests.join("tour.txt"), &native)?;
     let modules = folder.join("tests");
     copy(&tests, &modules)?;
     process::run(Command::new("npm").args(["install", "--no-audit", "--no-fund", "--silent"]).current_dir(&modules))?;
@@ -54,7 +46,8 @@ pub(crate) fn run(machine: &Machine, is_long: bool) -> Result<()> {
 /// Plays a script in the viewer of this machine, with the software driver, and keeps what it saves.
 fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
     let mut viewer = process::cargo("run");
-    viewer.args(["--quiet", "--example", "viewer"]).args(setup::features(machine)).arg("--");
+    viewer.args(["--quiet", "--package", "shadowfit-viewer", "--example", "viewer"]);
+    viewer.args(setup::viewer_features(machine)).arg("--");
     viewer.arg("--headless").arg(folder).args(["--no-state", "--software", "--size", SIZE]).arg("--script").arg(script);
     // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
