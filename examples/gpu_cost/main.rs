@@ -33,6 +33,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_study::{check_place, write_whole};
 
 use scene::BenchScene;
 use table::Table;
@@ -99,6 +100,7 @@ const SOFTWARE_FRAMES: usize = 5;
 
 fn main() -> Result<()> {
     let args = Args::parse();
+    args.out.iter().try_for_each(|out| check_place(out))?;
     let choice = if args.software { AdapterChoice::Software } else { AdapterChoice::Any };
     let gpu = pollster::block_on(Gpu::headless(choice))?;
     ensure!(
@@ -155,7 +157,7 @@ fn main() -> Result<()> {
         add(rays::time(&bench, &args.scenes)?);
     }
     if let Some(out) = &args.out {
-        std::fs::write(out, &text).with_context(|| format!("{}: cannot be written", out.display()))?;
+        write_whole(out, text.as_bytes())?;
     }
     Ok(())
 }

@@ -25,8 +25,9 @@ mod town;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::{Parser, ValueEnum};
+use shadowfit_study::{check_place, make_folder, write_whole};
 
 use picture::Picture;
 use table::Table;
@@ -105,6 +106,8 @@ struct Found {
 fn main() -> Result<()> {
     let args = Args::parse();
     let extent = if args.quick { Extent::QUICK } else { Extent::FULL };
+    args.out.iter().try_for_each(|out| check_place(out))?;
+    args.pictures.iter().try_for_each(|folder| make_folder(folder))?;
     let mut text = String::new();
     for part in Part::value_variants().iter().copied().filter(|part| args.only.is_empty() || args.only.contains(part)) {
         let Found { table, pictures } = part.measure(&extent)?;
@@ -113,13 +116,12 @@ fn main() -> Result<()> {
         for picture in &pictures {
             let _ = writeln!(text, "![{}]({PICTURES}/{}.svg)\n", picture.title, picture.file);
             if let Some(folder) = &args.pictures {
-                std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
                 picture.write(folder)?;
             }
         }
     }
     if let Some(out) = &args.out {
-        std::fs::write(out, &text).with_context(|| format!("{}: cannot be written", out.display()))?;
+        write_whole(out, text.as_bytes())?;
     }
     Ok(())
 }

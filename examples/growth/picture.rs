@@ -6,6 +6,7 @@ use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use shadowfit_study::write_whole;
 use shadowfit_truth::peers::readable;
 
 use crate::plotting::{
@@ -70,10 +71,14 @@ impl Picture {
     pub(crate) fn write(&self, folder: &Path) -> Result<()> {
         register();
         let file = folder.join(self.file).with_extension("svg");
-        let area = SVGBackend::new(&file, SIZE).into_drawing_area();
-        self.draw(&area)
-            .and_then(|()| area.present())
-            .map_err(|error| anyhow!("{}: cannot be drawn: {error}", file.display()))
+        let mut svg = String::new();
+        {
+            let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+            self.draw(&area)
+                .and_then(|()| area.present())
+                .map_err(|error| anyhow!("{}: cannot be drawn: {error}", file.display()))?;
+        }
+        write_whole(&file, svg.as_bytes())
     }
 
     fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {

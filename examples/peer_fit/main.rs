@@ -13,7 +13,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use shadowfit::PRESETS;
 use shadowfit_params::{BoxSource, NAMED_INPUTS};
-use shadowfit_study::NamedTechnique;
+use shadowfit_study::{NamedTechnique, check_place, write_whole};
 use shadowfit_truth::peers::Scenarios;
 
 #[path = "../shared/geometry.rs"]
@@ -99,8 +99,9 @@ fn run(args: &Args) -> Result<()> {
         args.fit
     );
     let source = args.geometry.as_ref().filter(|_| needs);
+    check_place(out)?;
     let (file, times) = runner::run(&scenarios, &named, source)?;
-    file.write(out)?;
+    write_whole(out, file.to_json(out)?.as_bytes())?;
     let [median, slowest, first] = [times.median, times.slowest, times.first].map(|nanoseconds| nanoseconds * 1e-3);
     println!(
         "{}: {} frames, {median:.1} µs for the median frame, {slowest:.1} µs for the slowest, {first:.1} µs for the \

@@ -48,7 +48,11 @@ use interrupt::{INTERRUPTED, Interrupt};
 const BAD_INPUT: u8 = 2;
 
 #[derive(Parser)]
-#[command(about = "Measures how wrong shadows are, against ray-traced truth")]
+#[command(
+    about = "Measures how wrong shadows are, against ray-traced truth",
+    after_help = "Exit codes: 0; 2 after bad input, or where a file cannot be written; 130 after Ctrl-C, when what was \
+                  finished has been written."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -1,8 +1,7 @@
 //! `report peers`: the measures of fit files and of the pictures that they give, as a table for people and one for
 //! programs.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
@@ -11,7 +10,7 @@ use shadowfit::settings::{BiasSettings, MapFormat, MapSelection};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
-use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
+use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View, make_folder, write_whole};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitMap, Frame, Ranking, Scenarios, overall_markdown, to_json, to_markdown};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -59,6 +58,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         files.push(file);
     }
     let mut pictures = if args.no_render { None } else { Some(Pictures::new(&ranking, &files, args)?) };
+    make_folder(&args.out)?;
     measure(&mut ranking, args, pictures.as_mut(), interrupt)?;
     let tables = ranking.tables();
     print!("{}", overall_markdown(&tables));
@@ -85,9 +85,8 @@ fn measure(
             pictures.draw_scene(ranking, index, &objects, (&progress, interrupt))?;
         }
         let tables = ranking.tables();
-        fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
-        write(&args.out.join("table.json"), &to_json(&tables))?;
-        write(&args.out.join("table.md"), &to_markdown(&tables))?;
+        write_whole(&args.out.join("table.json"), to_json(&tables).as_bytes())?;
+        write_whole(&args.out.join("table.md"), to_markdown(&tables).as_bytes())?;
         if interrupt.is_requested() {
             break;
         }
@@ -244,8 +243,4 @@ fn light_fit(map: &FitMap, view: &View) -> Result<LightProjection> {
     let is_reversed = matrix.row(2).truncate().dot(view.direction.as_dvec3()) < 0.0;
     let depth = if is_reversed { DepthConvention::Reversed } else { DepthConvention::ZeroToOne };
     Ok(LightProjection::from_clip_from_world(&matrix, depth, view.direction, resolution, view.camera.eye)?)
-}
-
-fn write(file: &Path, text: &str) -> Result<()> {
-    fs::write(file, text).with_context(|| format!("{}: cannot be written", file.display()))
 }

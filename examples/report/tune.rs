@@ -1,12 +1,11 @@
 //! `report tune`: the technique with the least error in a scene, within a budget.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit_study::{Budget, TuneSettings, Tuned, View, Weights, tune};
+use shadowfit_study::{Budget, TuneSettings, Tuned, View, Weights, make_folder, tune, write_whole};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -46,6 +45,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         "report tune searches all of a technique itself; leave --filter, --bias, --color-format and --set out"
     );
     let mut job = args.job.prepare()?;
+    make_folder(&args.out)?;
     let views = picked(&job.frames.iter().map(|frame| frame.view).collect::<Vec<_>>(), args.frames as usize);
     let budget = Budget { maps: args.maps, resolution: args.resolution };
     let inputs = args.job.drawing.inputs();
@@ -60,15 +60,13 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         !interrupt.is_requested()
     })?;
     bar.finish_and_clear();
-    fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
     let steps = steps(&tuned);
     for (name, text) in [
         ("technique.toml", tuned.technique.to_toml()?),
         ("technique.rs", shadowfit_params::to_rust(&tuned.technique.technique)),
         ("steps.md", steps.clone()),
     ] {
-        let file = args.out.join(name);
-        fs::write(&file, text).with_context(|| format!("{}: cannot be written", file.display()))?;
+        write_whole(&args.out.join(name), text.as_bytes())?;
     }
     print!("{steps}\n{}", shadowfit_params::to_rust(&tuned.technique.technique));
     println!("\n{}: technique.toml (for --technique), technique.rs, steps.md", args.out.display());

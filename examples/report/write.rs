@@ -4,11 +4,11 @@
 //! index.html  report.md  report.json  path.toml  pictures/*.png  plots/*.svg
 //! ```
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use image::RgbaImage;
+use shadowfit_study::{make_folder, write_whole};
 
 use crate::data::Run;
 use crate::page::page;
@@ -33,11 +33,10 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// When they cannot be made.
+    /// When they cannot be made or written to.
     pub(crate) fn create(folder: &Path) -> Result<Self> {
-        for folder in [folder.join(PICTURES), folder.join(PLOTS)] {
-            fs::create_dir_all(&folder)
-                .with_context(|| format!("{}: the folder cannot be made; choose another with -o", folder.display()))?;
+        for folder in [folder.to_owned(), folder.join(PICTURES), folder.join(PLOTS)] {
+            make_folder(&folder)?;
         }
         Ok(Self { folder: folder.to_owned() })
     }
@@ -79,19 +78,8 @@ impl Output {
         self.write(Path::new(PAGE), page(run, &plots, &self.folder)?.as_bytes())
     }
 
-    /// Writes a file beside its place first, and then moves it there.
     fn write(&self, file: &Path, bytes: &[u8]) -> Result<()> {
-        let file = self.folder.join(file);
-        let mut unfinished = file.clone().into_os_string();
-        unfinished.push(".part");
-        let written = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, &file));
-        if written.is_err() {
-            // The first error is the one worth telling.
-            let _ = fs::remove_file(&unfinished);
-        }
-        written.with_context(|| {
-            format!("{}: cannot be written; is the disk full, or the folder read-only?", file.display())
-        })
+        write_whole(&self.folder.join(file), bytes)
     }
 }
 
@@ -103,6 +91,8 @@ fn slug(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::data::FramePictures;
     use crate::data::tests::run;

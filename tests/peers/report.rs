@@ -45,7 +45,7 @@ impl Scratch {
         let scratch = Self(folder);
         scratch.file("scenarios.json", SCENARIOS.as_bytes());
         scratch.file("floor.f32", &FLOOR.map(f32::to_le_bytes).concat());
-        fit("floor/90/0").write(&scratch.0.join("fit.json")).expect("a fit file");
+        scratch.fit("fit.json", &fit("floor/90/0"));
         scratch
     }
 
@@ -54,6 +54,10 @@ impl Scratch {
         let folder = path.parent().expect("a folder");
         std::fs::create_dir_all(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
         std::fs::write(&path, bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
+
+    fn fit(&self, name: &str, fit: &FitFile) {
+        self.file(name, fit.to_json(Path::new(name)).expect("a fit file").as_bytes());
     }
 
     fn report(&self, arguments: &[&str]) -> Output {
@@ -111,7 +115,7 @@ fn bad_input_is_refused_by_file_element_and_reason() {
     scratch.file("broken.json", b"{\"peer\": 3}");
     scratch.file("short/floor.f32", &[0; 35]);
     scratch.file("moved/floor.f32", &FLOOR.map(|number| (number + 1.0).to_le_bytes()).concat());
-    fit("floor/90/1").write(&scratch.0.join("other.json")).expect("a fit file");
+    scratch.fit("other.json", &fit("floor/90/1"));
     let triangles = ["--triangles", "."];
     let cases: [(&str, &str, [&str; 2], &str); 8] = [
         ("nowhere.json", "fit.json", triangles, "nowhere.json: file: cannot be read"),
@@ -233,7 +237,7 @@ fn gpu_a_perspective_map_is_measured_and_its_picture_refused_with_the_reason() {
     let scratch = Scratch::new("warped");
     let mut warped = fit("floor/90/0");
     warped.frames[0].maps[0].view_proj[3] = 0.001;
-    warped.write(&scratch.0.join("fit.json")).expect("a fit file");
+    scratch.fit("fit.json", &warped);
     let arguments = ["scenarios.json", "fit.json", "--triangles", ".", "-o", "out"];
     let refused = scratch.report(&[&arguments[..], &["--software"]].concat());
     let message = String::from_utf8_lossy(&refused.stderr);
@@ -267,7 +271,7 @@ fn a_part_of_the_peers(scratch: &Scratch, folder: &Path) {
         used.contains(&(number - 1))
     });
     scratch.file("part.json", serde_json::to_string(&scenarios).expect("JSON").as_bytes());
-    bevy.write(&scratch.0.join("bevy.json")).expect("a fit file");
+    scratch.fit("bevy.json", &bevy);
 }
 
 #[test]

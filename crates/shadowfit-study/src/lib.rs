@@ -26,6 +26,8 @@ mod settings_file;
 mod technique_file;
 mod tune;
 mod view;
+#[cfg(not(target_family = "wasm"))]
+mod whole_file;
 mod why;
 
 pub use agreement::Agreement;
@@ -45,4 +47,6 @@ pub use settings_file::{TRANSLATED, settings_from_toml, settings_to_toml, techni
 pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune, tune_async};
 pub use view::View;
+#[cfg(not(target_family = "wasm"))]
+pub use whole_file::{check_place, make_folder, write_whole};
 pub use why::{StoredTexels, Why, WhyInput, why};

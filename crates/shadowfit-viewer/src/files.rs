@@ -3,9 +3,9 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-#[cfg(not(target_family = "wasm"))]
-use anyhow::Context;
 use anyhow::Result;
+#[cfg(not(target_family = "wasm"))]
+pub(crate) use shadowfit_study::write_whole;
 
 /// Keyword of the text of a picture that holds the viewer's settings.
 const SETTINGS_KEYWORD: &str = "shadowfit settings";
@@ -31,20 +31,6 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     crate::web::page::download(&path.file_name().unwrap_or_default().to_string_lossy(), bytes);
     Ok(())
-}
-
-/// Writes a file whole or not at all: a temporary one beside the target, which is then renamed.
-#[cfg(not(target_family = "wasm"))]
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    let unfinished = path.with_file_name(name);
-    let written = std::fs::write(&unfinished, bytes).and_then(|()| std::fs::rename(&unfinished, path));
-    if written.is_err() {
-        // The first error is the one to report.
-        let _ = std::fs::remove_file(&unfinished);
-    }
-    written.with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Encodes as small as the format allows, since pictures are written rarely and kept long; in a browser quickly, since

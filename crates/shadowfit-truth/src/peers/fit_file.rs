@@ -100,16 +100,15 @@ impl FitFile {
         Ok(fit)
     }
 
-    /// Writes a file from which [`FitFile::read`] gets the same values.
+    /// The text of a file from which [`FitFile::read`] gets the same values. `file` is named in errors.
     ///
     /// # Errors
     ///
-    /// When it cannot be written, or an element is impossible.
-    pub fn write(&self, file: &Path) -> Result<(), PeersError> {
+    /// When an element is impossible.
+    pub fn to_json(&self, file: &Path) -> Result<String, PeersError> {
         self.check().map_err(|problem| problem.at(file))?;
-        let failed = |reason: String| Problem::new("file", format!("cannot be written: {reason}")).at(file);
-        let text = serde_json::to_string(self).map_err(|error| failed(error.to_string()))?;
-        std::fs::write(file, text + "\n").map_err(|error| failed(error.to_string()))
+        let failed = |error: serde_json::Error| Problem::new("file", error.to_string()).at(file);
+        Ok(serde_json::to_string(self).map_err(failed)? + "\n")
     }
 
     /// The maps of each frame, in the order of the scenarios' frames. `file` is named in errors.
@@ -189,7 +188,7 @@ mod tests {
         let file = folder.join("fit.json");
         let mut fit = fit();
         fit.frames[0].maps[0].view_proj[5] = 0.1 + 0.2;
-        fit.write(&file).expect("written");
+        std::fs::write(&file, fit.to_json(&file).expect("a text")).expect("written");
         let read = FitFile::read(&file);
         std::fs::remove_dir_all(&folder).expect("removed");
         assert_eq!(read, Ok(fit));
