@@ -169,6 +169,21 @@ fn a_bad_line_of_a_script_is_named_and_the_exit_code_is_2() {
     assert!(viewer.log().contains("bad.txt:2: view sideways"), "{}", viewer.log());
 }
 
+#[test]
+fn settings_that_cannot_be_saved_are_told_once_and_the_viewer_goes_on() {
+    let Some(desktop) = desktop("unsaved") else { return };
+    let (script, state) = (desktop.file("wait.txt"), desktop.file("folder"));
+    std::fs::create_dir_all(&state).expect("a folder");
+    // Longer than it takes until it has tried twice.
+    std::fs::write(&script, "await loaded\nwait 12\nquit\n").expect("the script is written");
+    let (script, state) = (script.display().to_string(), state.display().to_string());
+    let mut viewer = Viewer::start(&desktop, &["--software", "--state", &state, "--script", &script]);
+    assert_eq!(viewer.exit_code(PATIENCE), Some(0), "{}", viewer.log());
+    let log = viewer.log();
+    assert!(log.contains(&state) && log.contains("it is a folder"), "{log}");
+    assert_eq!(log.matches("cannot be saved").count(), 1, "{log}");
+}
+
 /// Holds each key until the picture changes.
 fn every_fly_key_moves_the_picture(desktop: &Desktop, viewer: &Viewer) {
     // In pairs that undo each other, so that the camera stays where there is something to see.

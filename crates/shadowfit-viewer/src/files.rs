@@ -1,5 +1,8 @@
 //! Writes files as a whole, and pictures that carry their settings.
 
+#[cfg(test)]
+mod killed_tests;
+
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 

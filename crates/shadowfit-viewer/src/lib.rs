@@ -30,6 +30,8 @@ mod saved;
 mod script;
 mod source;
 mod stage;
+#[cfg(not(target_family = "wasm"))]
+mod store;
 mod tuning;
 mod undo;
 mod view_search;

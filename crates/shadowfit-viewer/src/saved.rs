@@ -1,26 +1,22 @@
-//! State that is saved from one start to the next: a readable file with a version, in the system's folder for settings.
-//!
-//! A first start without a file is ordinary. A damaged file is renamed and reported; nothing overwrites it.
+//! State that is saved from one start to the next, as a readable text with a version.
+
+mod merge;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use egui::ThemePreference;
-#[cfg(not(target_family = "wasm"))]
-use etcetera::BaseStrategy;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
-#[cfg(not(target_family = "wasm"))]
-use shadowfit_study::TRANSLATED;
 use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml, technique_to_toml};
 
-#[cfg(not(target_family = "wasm"))]
-use crate::files::write_whole;
 use crate::source::SceneSource;
+#[cfg(not(target_family = "wasm"))]
+pub(crate) use crate::store::Store;
 #[cfg(target_family = "wasm")]
 pub(crate) use crate::web::store::Store;
 
@@ -245,86 +241,12 @@ fn read_technique(table: &toml::Table) -> Result<Settings> {
     Ok(settings)
 }
 
-/// The file that everything is saved in.
-#[cfg(not(target_family = "wasm"))]
-#[derive(Clone, Debug)]
-pub(crate) struct Store {
-    path: PathBuf,
-    /// Its content, so that nothing is written without need.
-    written: Option<String>,
-}
-
-#[cfg(not(target_family = "wasm"))]
-impl Store {
-    /// The file of the user on this system; `None` where the system has no folder for settings.
-    pub(crate) fn of_person() -> Option<Self> {
-        let folders = etcetera::choose_base_strategy().ok()?;
-        Some(Self::at(folders.config_dir().join("shadowfit").join("viewer.toml")))
-    }
-
-    pub(crate) fn at(path: PathBuf) -> Self {
-        Self { path, written: None }
-    }
-
-    /// The saved state, and a message for the user. Without a file everything is as in a first start.
-    pub(crate) fn load(&mut self) -> (Option<Saved>, Option<String>) {
-        let text = match std::fs::read(&self.path) {
-            Ok(bytes) => String::from_utf8(bytes).context("it is no text"),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return (None, None),
-            Err(error) => return (None, Some(format!("{} cannot be read: {error}", self.path.display()))),
-        };
-        match text.and_then(|text| Saved::from_toml(&text)) {
-            Ok(saved) => {
-                let note = saved.is_translated.then(|| format!("The saved settings: {TRANSLATED}."));
-                (Some(saved), note)
-            }
-            Err(error) => (None, Some(self.set_aside(&error))),
-        }
-    }
-
-    /// Gives the file another name, and says so.
-    fn set_aside(&mut self, error: &anyhow::Error) -> String {
-        let aside = (1..=u16::MAX)
-            .map(|number| self.path.with_extension(format!("damaged-{number}.toml")))
-            .find(|path| !path.exists())
-            .unwrap_or_else(|| self.path.clone());
-        let what = format!("The saved settings make no sense: {error:#}.");
-        match std::fs::rename(&self.path, &aside) {
-            Ok(()) => format!("{what} They are set aside as {}, and the viewer starts afresh.", aside.display()),
-            Err(error) => {
-                // It must not be overwritten.
-                self.path = aside;
-                format!("{what} They stay where they are, since they cannot be renamed: {error}.")
-            }
-        }
-    }
-
-    /// Writes what has changed.
-    ///
-    /// # Errors
-    ///
-    /// If it cannot be written; the old file stays.
-    pub(crate) fn save(&mut self, saved: &Saved) -> Result<()> {
-        let text = saved.to_toml()?;
-        if self.written.as_ref() == Some(&text) {
-            return Ok(());
-        }
-        if let Some(folder) = self.path.parent() {
-            std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-        }
-        write_whole(&self.path, text.as_bytes())?;
-        self.written = Some(text);
-        Ok(())
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use shadowfit_params::{BoxSource, Inputs};
-
+pub(crate) mod tests {
     use super::*;
 
-    fn saved() -> Saved {
+    /// A state in which everything differs from that of a first start.
+    pub(crate) fn saved() -> Saved {
         let camera = FlyCamera { position: DVec3::new(1e5, 2.0, -3.5), yaw: 0.5, pitch: -0.25 };
         let mut saved = Saved {
             theme: Theme::Light,
@@ -342,67 +264,5 @@ mod tests {
         saved.remember(Path::new("b.glb"));
         saved.remember(Path::new("a.glb"));
         saved
-    }
-
-    #[test]
-    fn settings_of_an_earlier_version_are_translated_once_and_said_to_be() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("viewer.toml");
-        let text = saved().to_toml().expect("text");
-        let former = text.replace("[settings.input]\nboxes = \"clusters\"", "[settings.input]\nboxes = \"objects\"");
-        let former = former.replace("[settings.fit]\n", "[settings.fit]\nreceivers = \"objects\"\nneed = \"boxes\"\n");
-        std::fs::write(&path, former).expect("written");
-        let mut store = Store::at(path);
-        let (read, note) = store.load();
-        let read = read.expect("settings");
-        assert_eq!(read.settings.inputs, Inputs { boxes: BoxSource::Objects, seen: false });
-        assert_eq!(read.settings.technique, saved().settings.technique);
-        assert!(note.is_some_and(|note| note.contains("earlier version")));
-        store.save(&read).expect("written anew");
-        assert_eq!(store.load().1, None);
-    }
-
-    #[test]
-    fn everything_comes_back_at_the_next_start() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("deep").join("viewer.toml");
-        let mut store = Store::at(path.clone());
-        assert_eq!(store.load(), (None, None), "a first start is ordinary");
-        let saved = saved();
-        assert_eq!(saved.recent, [PathBuf::from("a.glb"), PathBuf::from("b.glb")]);
-        store.save(&saved).expect("written");
-        let (read, message) = Store::at(path).load();
-        let read = read.expect("what was written");
-        assert_eq!(message, None);
-        // Angles are written in degrees, which rounds them.
-        let near = |a: Option<FlyCamera>, b: Option<FlyCamera>| {
-            let (a, b) = (a.expect("a camera"), b.expect("a camera"));
-            a.position == b.position && (a.yaw - b.yaw).abs() < 1e-6 && (a.pitch - b.pitch).abs() < 1e-6
-        };
-        assert!(near(read.camera, saved.camera) && near(read.bookmarks[0].camera(), saved.camera));
-        assert!(read.bookmarks[0].is_of(3, &saved.scene), "{:?}", read.bookmarks);
-        let first = SceneSource::from_text("some/town.glb");
-        assert!(!read.bookmarks[0].is_of(3, &first), "a bookmark is of one of the file's scenes");
-        let same = Saved { camera: saved.camera, bookmarks: saved.bookmarks.clone(), ..read };
-        assert_eq!(same, saved);
-    }
-
-    #[test]
-    fn a_damaged_file_is_set_aside_and_told_and_never_overwritten() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("viewer.toml");
-        let damaged = ["", "version = 99", "version = 1\n[settings.bias]\nconstant = \"x\"", "\u{0}\u{1}", "version"];
-        for (round, text) in damaged.into_iter().enumerate() {
-            std::fs::write(&path, text).expect("written");
-            let mut store = Store::at(path.clone());
-            let (read, message) = store.load();
-            let message = message.expect("a person is told");
-            assert!(read.is_none() && message.contains("damaged"), "{message}");
-            let aside = folder.path().join(format!("viewer.damaged-{}.toml", round + 1));
-            assert_eq!(std::fs::read_to_string(aside).expect("it is there"), text);
-            store.save(&saved()).expect("a new one");
-        }
-        std::fs::write(&path, [0xff, 0xfe, 0x00]).expect("written");
-        assert!(Store::at(path).load().1.expect("no text").contains("no text"));
     }
 }

@@ -166,10 +166,10 @@ impl Viewer {
         });
         self.saved.camera = Some(self.stage.camera);
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
-        if let Err(error) = store.save(&self.saved) {
-            // Reported once, and not every few seconds.
-            self.say(format!("Settings cannot be saved: {error:#}"));
-            self.store = None;
+        if let Some(message) = store.keep(&self.saved) {
+            // Whoever started it in a terminal sees it there, too: at the end the panel is gone.
+            eprintln!("{message}");
+            self.say(message);
         }
     }
 }

@@ -1,7 +1,6 @@
 //! State that is saved from one visit to the next: the same text as in the file of the window's viewer, in the browser's
 //! local storage.
 
-use anyhow::Result;
 use shadowfit_study::TRANSLATED;
 
 use super::page;
@@ -36,17 +35,17 @@ impl Store {
         }
     }
 
-    /// Saves what has changed.
-    ///
-    /// # Errors
-    ///
-    /// If it has no text.
-    pub(crate) fn save(&mut self, saved: &Saved) -> Result<()> {
-        let text = saved.to_toml()?;
-        if self.written.as_ref() != Some(&text) {
-            page::tell("keep", &text);
-            self.written = Some(text);
+    /// Saves what has changed. Returns a message for the user if it has no text.
+    pub(crate) fn keep(&mut self, saved: &Saved) -> Option<String> {
+        match saved.to_toml() {
+            Ok(text) => {
+                if self.written.as_ref() != Some(&text) {
+                    page::tell("keep", &text);
+                    self.written = Some(text);
+                }
+                None
+            }
+            Err(error) => Some(format!("The settings cannot be saved: {error:#}.")),
         }
-        Ok(())
     }
 }

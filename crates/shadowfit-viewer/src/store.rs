@@ -1,0 +1,358 @@
+//! The file in which the viewer keeps its state from one start to the next.
+//!
+//! A first start without a file is ordinary. A damaged file is renamed and reported; nothing overwrites it. Several
+//! viewers may have the file open: one that writes reads first what others wrote, and changes only what it changed itself.
+
+use std::ffi::OsString;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use etcetera::BaseStrategy;
+use shadowfit_study::TRANSLATED;
+
+use crate::files::write_whole;
+use crate::saved::Saved;
+
+/// How long another viewer is waited for that writes the file: less than a person notices often.
+const PATIENCE: Duration = Duration::from_millis(300);
+/// How often it is asked meanwhile.
+const ASK_AGAIN: Duration = Duration::from_millis(10);
+
+/// The file that everything is saved in.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Store {
+    /// `None` where the system has no folder for settings.
+    path: Option<PathBuf>,
+    /// What this viewer had when it last read or wrote the file.
+    known: Saved,
+    /// Whether the file has that.
+    is_written: bool,
+    /// Whether it could not be written the last time.
+    failed: bool,
+}
+
+impl Store {
+    /// The file of the user on this system.
+    #[expect(clippy::unnecessary_wraps, reason = "a viewer may have no store, when it was told to keep nothing")]
+    pub(crate) fn of_person() -> Option<Self> {
+        let folders = etcetera::choose_base_strategy().ok();
+        let path = folders.map(|folders| folders.config_dir().join("shadowfit").join("viewer.toml"));
+        Some(Self { path, ..Self::default() })
+    }
+
+    pub(crate) fn at(path: PathBuf) -> Self {
+        Self { path: Some(path), ..Self::default() }
+    }
+
+    /// The saved state, and a message for the user. Without a file everything is as in a first start.
+    pub(crate) fn load(&mut self) -> (Option<Saved>, Option<String>) {
+        let Some(path) = &self.path else {
+            let message = "Settings are not kept: this user has no home folder. Set HOME, or give a file with --state.";
+            return (None, Some(message.to_owned()));
+        };
+        match read(path) {
+            Ok(None) => (None, None),
+            Ok(Some(Ok(saved))) => {
+                (self.known, self.is_written) = (saved.clone(), !saved.is_translated);
+                let note = saved.is_translated.then(|| format!("The saved settings: {TRANSLATED}."));
+                (Some(saved), note)
+            }
+            Ok(Some(Err(error))) => (None, Some(self.set_aside(&error, "the viewer starts afresh"))),
+            Err(error) => {
+                let advice = "The viewer starts afresh; give another file with --state.";
+                (None, Some(format!("The saved settings cannot be read: {}: {error}. {advice}", path.display())))
+            }
+        }
+    }
+
+    /// Gives the file another name, and says so.
+    fn set_aside(&mut self, error: &anyhow::Error, then: &str) -> String {
+        let Some(path) = &mut self.path else { return String::new() };
+        let aside = (1..=u16::MAX)
+            .map(|number| path.with_extension(format!("damaged-{number}.toml")))
+            .find(|path| !path.exists())
+            .unwrap_or_else(|| path.clone());
+        let what = format!("The saved settings make no sense: {error:#}.");
+        match fs::rename(&path, &aside) {
+            Ok(()) => format!("{what} They are set aside as {}, and {then}.", aside.display()),
+            Err(error) => {
+                // It must not be overwritten.
+                *path = aside;
+                format!("{what} They stay where they are, since they cannot be renamed: {error}.")
+            }
+        }
+    }
+
+    /// Saves what has changed. Returns a message for the user where there is something new to tell: that it cannot be
+    /// saved, which is tried again the next time, or that it can be again.
+    pub(crate) fn keep(&mut self, saved: &Saved) -> Option<String> {
+        match self.save(saved) {
+            Ok(note) => {
+                let can_again = std::mem::take(&mut self.failed);
+                note.or_else(|| can_again.then(|| "The settings are saved again.".to_owned()))
+            }
+            Err(error) => {
+                let is_known = std::mem::replace(&mut self.failed, true);
+                (!is_known)
+                    .then(|| format!("The settings cannot be saved: {error:#}. The viewer goes on and tries again."))
+            }
+        }
+    }
+
+    /// Writes what this viewer changed over what is in the file now. Returns a message where that was damaged and has
+    /// been set aside.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be written; the old file stays.
+    pub(crate) fn save(&mut self, saved: &Saved) -> Result<Option<String>> {
+        let Some(path) = self.path.clone() else { return Ok(None) };
+        if self.is_written && *saved == self.known {
+            return Ok(None);
+        }
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
+        }
+        let _lock = lock(&path);
+        let there = read(&path).with_context(|| format!("{} cannot be read", path.display()))?;
+        let (merged, note) = match there {
+            None => (saved.clone(), None),
+            Some(Ok(theirs)) => (saved.over(&self.known, theirs), None),
+            Some(Err(error)) => (saved.clone(), Some(self.set_aside(&error, "those of this viewer are saved"))),
+        };
+        write_whole(self.path.as_ref().unwrap_or(&path), merged.to_toml()?.as_bytes())?;
+        (self.known, self.is_written) = (saved.clone(), true);
+        Ok(note)
+    }
+}
+
+/// The state in a file, or why its content makes no sense; nothing where there is no file.
+fn read(path: &Path) -> io::Result<Option<Result<Saved>>> {
+    match fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Ok(there) if there.is_dir() => return Err(io::Error::other("it is a folder")),
+        // Devices may have no end.
+        Ok(there) if !there.is_file() => return Err(io::Error::other("it is no ordinary file")),
+        known => known?,
+    };
+    let text = String::from_utf8(fs::read(path)?).context("it is no text");
+    Ok(Some(text.and_then(|text| Saved::from_toml(&text))))
+}
+
+/// Keeps other viewers from writing the file until the lock is dropped. `None` where files cannot be locked, or another
+/// viewer does not let go: what is written is whole then, too, but may miss what that one writes meanwhile.
+fn lock(path: &Path) -> Option<File> {
+    let mut name = OsString::from(".");
+    name.push(path.file_name()?);
+    name.push(".lock");
+    let file = File::options().create(true).truncate(false).write(true).open(path.with_file_name(name)).ok()?;
+    for _ in 0..PATIENCE.as_millis() / ASK_AGAIN.as_millis() {
+        match file.try_lock() {
+            Ok(()) => return Some(file),
+            Err(TryLockError::WouldBlock) => std::thread::sleep(ASK_AGAIN),
+            Err(TryLockError::Error(_)) => return None,
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use shadowfit::Technique;
+    use shadowfit_params::{BoxSource, Inputs};
+    use shadowfit_render::FlyCamera;
+    use shadowfit_study::NamedTechnique;
+
+    use super::*;
+    use crate::saved::tests::saved;
+    use crate::saved::{Bookmark, Theme};
+    use crate::source::SceneSource;
+
+    #[test]
+    fn settings_of_an_earlier_version_are_translated_once_and_said_to_be() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.toml");
+        let text = saved().to_toml().expect("text");
+        let former = text.replace("[settings.input]\nboxes = \"clusters\"", "[settings.input]\nboxes = \"objects\"");
+        let former = former.replace("[settings.fit]\n", "[settings.fit]\nreceivers = \"objects\"\nneed = \"boxes\"\n");
+        fs::write(&path, former).expect("written");
+        let mut store = Store::at(path);
+        let (read, note) = store.load();
+        let read = read.expect("settings");
+        assert_eq!(read.settings.inputs, Inputs { boxes: BoxSource::Objects, seen: false });
+        assert_eq!(read.settings.technique, saved().settings.technique);
+        assert!(note.is_some_and(|note| note.contains("earlier version")));
+        store.save(&read).expect("written anew");
+        assert_eq!(store.load().1, None);
+    }
+
+    #[test]
+    fn everything_comes_back_at_the_next_start() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("deep").join("viewer.toml");
+        let mut store = Store::at(path.clone());
+        assert_eq!(store.load(), (None, None), "a first start is ordinary");
+        let saved = saved();
+        assert_eq!(saved.recent, [PathBuf::from("a.glb"), PathBuf::from("b.glb")]);
+        store.save(&saved).expect("written");
+        let (read, message) = Store::at(path).load();
+        let read = read.expect("what was written");
+        assert_eq!(message, None);
+        // Angles are written in degrees, which rounds them.
+        let near = |a: Option<FlyCamera>, b: Option<FlyCamera>| {
+            let (a, b) = (a.expect("a camera"), b.expect("a camera"));
+            a.position == b.position && (a.yaw - b.yaw).abs() < 1e-6 && (a.pitch - b.pitch).abs() < 1e-6
+        };
+        assert!(near(read.camera, saved.camera) && near(read.bookmarks[0].camera(), saved.camera));
+        assert!(read.bookmarks[0].is_of(3, &saved.scene), "{:?}", read.bookmarks);
+        let first = SceneSource::from_text("some/town.glb");
+        assert!(!read.bookmarks[0].is_of(3, &first), "a bookmark is of one of the file's scenes");
+        let same = Saved { camera: saved.camera, bookmarks: saved.bookmarks.clone(), ..read };
+        assert_eq!(same, saved);
+    }
+
+    #[test]
+    fn a_damaged_file_is_set_aside_and_told_and_never_overwritten() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.toml");
+        let damaged = ["", "version = 99", "version = 1\n[settings.bias]\nconstant = \"x\"", "\u{0}\u{1}", "version"];
+        for (round, text) in damaged.into_iter().enumerate() {
+            fs::write(&path, text).expect("written");
+            let mut store = Store::at(path.clone());
+            let (read, message) = store.load();
+            let message = message.expect("a person is told");
+            assert!(read.is_none() && message.contains("damaged"), "{message}");
+            let aside = folder.path().join(format!("viewer.damaged-{}.toml", round + 1));
+            assert_eq!(fs::read_to_string(aside).expect("it is there"), text);
+            store.save(&saved()).expect("a new one");
+        }
+        fs::write(&path, [0xff, 0xfe, 0x00]).expect("written");
+        assert!(Store::at(path).load().1.expect("no text").contains("no text"));
+    }
+
+    /// Two viewers of the same file, which begin with the same state, and a third one's look at it.
+    struct Two {
+        folder: tempfile::TempDir,
+        stores: [Store; 2],
+        states: [Saved; 2],
+    }
+
+    impl Two {
+        fn new(start: Option<Saved>) -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("viewer.toml");
+            if let Some(start) = start {
+                Store::at(path.clone()).save(&start).expect("written");
+            }
+            let mut stores = [Store::at(path.clone()), Store::at(path)];
+            let states = stores.each_mut().map(|store| store.load().0.unwrap_or_default());
+            Self { folder, stores, states }
+        }
+
+        fn save(&mut self, viewer: usize) {
+            assert_eq!(self.stores[viewer].keep(&self.states[viewer]), None);
+        }
+
+        fn file(&self) -> Saved {
+            Store::at(self.folder.path().join("viewer.toml")).load().0.expect("a file")
+        }
+    }
+
+    fn camera() -> FlyCamera {
+        FlyCamera { position: DVec3::ONE, yaw: 0.0, pitch: 0.0 }
+    }
+
+    fn preset(name: &str) -> NamedTechnique {
+        NamedTechnique { name: name.to_owned(), ..Technique::preset("calm-4").expect("a preset").into() }
+    }
+
+    fn preset_names(saved: &Saved) -> Vec<&str> {
+        let mut names: Vec<_> = saved.presets.iter().map(|preset| preset.name.as_str()).collect();
+        names.sort_unstable();
+        names
+    }
+
+    #[test]
+    fn two_viewers_keep_what_the_other_one_added_changed_and_deleted() {
+        for start in [Some(saved()), None] {
+            let mut two = Two::new(start.clone());
+            two.states[0].presets.push(preset("of one"));
+            two.states[0].theme = Theme::Dark;
+            two.states[0].remember(Path::new("one.glb"));
+            two.states[0].settings.technique.bias.constant = 0.75;
+            two.save(0);
+            let bookmark = Bookmark::new(7, &SceneSource::default(), camera());
+            two.states[1].presets.push(preset("of two"));
+            two.states[1].bookmarks.push(bookmark.clone());
+            two.states[1].remember(Path::new("two.glb"));
+            two.states[1].settings.technique.bias.slope = 2.5;
+            two.save(1);
+            two.states[0].presets.push(preset("of one, later"));
+            two.save(0);
+            let file = two.file();
+            let names: Vec<_> = preset_names(&file).into_iter().filter(|name| name.starts_with("of")).collect();
+            assert_eq!(names, ["of one", "of one, later", "of two"]);
+            assert_eq!((file.theme, file.bookmarks.contains(&bookmark)), (Theme::Dark, true));
+            assert_eq!(file.recent[..2], [PathBuf::from("two.glb"), PathBuf::from("one.glb")]);
+            let bias = file.settings.technique.bias;
+            assert_eq!((bias.constant, bias.slope), (0.75, 2.5));
+            two.states[1].presets.retain(|preset| preset.name != "of two");
+            two.save(1);
+            two.states[0].theme = Theme::Light;
+            two.save(0);
+            assert!(!preset_names(&two.file()).contains(&"of two"), "what one deletes, the other does not bring back");
+        }
+    }
+
+    #[test]
+    fn settings_and_camera_go_with_the_scene_of_the_viewer_that_changed_it() {
+        let mut two = Two::new(Some(saved()));
+        two.states[0].scene = SceneSource::from_text("plain");
+        two.states[0].camera = Some(camera());
+        two.states[0].settings.light.hour = Some(12.0);
+        two.states[0].other = None;
+        two.states[1].settings.technique.bias.constant = 0.75;
+        two.save(1);
+        two.save(0);
+        let file = two.file();
+        assert_eq!((&file.scene, file.other), (&SceneSource::from_text("plain"), None));
+        assert_eq!(file.settings, two.states[0].settings, "settings suit the scene that they were made for");
+        two.states[1].presets.push(preset("of two"));
+        two.save(1);
+        assert_eq!(two.file().scene, SceneSource::from_text("plain"));
+    }
+
+    #[test]
+    fn what_another_program_damaged_meanwhile_is_set_aside() {
+        let mut two = Two::new(Some(saved()));
+        fs::write(two.folder.path().join("viewer.toml"), "version = ").expect("written");
+        two.states[0].theme = Theme::Dark;
+        let message = two.stores[0].keep(&two.states[0]).expect("a message");
+        assert!(message.contains("viewer.damaged-1.toml"), "{message}");
+        let aside = fs::read_to_string(two.folder.path().join("viewer.damaged-1.toml"));
+        assert_eq!((aside.expect("it is there").as_str(), two.file().theme), ("version = ", Theme::Dark));
+    }
+
+    #[test]
+    fn what_cannot_be_saved_is_told_once_and_tried_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.toml");
+        fs::create_dir(&path).expect("a folder");
+        let mut store = Store::at(path.clone());
+        let (none, message) = store.load();
+        assert!(none.is_none() && message.is_some_and(|message| message.contains("it is a folder")));
+        let message = store.keep(&saved()).expect("a message");
+        assert!(message.contains("viewer.toml") && message.contains("it is a folder"), "{message}");
+        assert_eq!(store.keep(&saved()), None);
+        fs::remove_dir(&path).expect("removed");
+        assert_eq!(store.keep(&saved()).as_deref(), Some("The settings are saved again."));
+        assert!(path.is_file());
+        let mut nowhere = Store::default();
+        assert!(nowhere.load().1.is_some_and(|message| message.contains("--state")));
+        assert_eq!(nowhere.keep(&saved()), None);
+    }
+}
