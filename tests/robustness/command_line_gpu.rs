@@ -193,8 +193,12 @@ fn the_picture_set_is_whole_and_what_was_saved_stays_as_it_was() {
     assert!(!said.contains("plain"), "the scene of the last time is not restored: {said}");
     assert_eq!(std::fs::read_to_string(&kept).expect("it is there"), text);
     let files = scratch.files();
+    for number in 1..=shadowfit_viewer::PICTURES {
+        let line = format!("  {number}/{} ", shadowfit_viewer::PICTURES);
+        assert!(said.contains(&line), "each picture is told: {said}");
+    }
     let (pictures, others): (Vec<_>, Vec<_>) = files.iter().partition(|path| path.starts_with(scratch.0.join("out")));
-    assert!(pictures.len() >= 18, "{} pictures", pictures.len());
+    assert_eq!(pictures.len(), shadowfit_viewer::PICTURES);
     assert!(pictures.iter().all(|path| path.extension().is_some_and(|extension| extension == "png")));
     assert_eq!(others, [&kept]);
 }

@@ -19,7 +19,11 @@ use crate::source::{OPTION_PREFIX, SceneSource};
 /// Fly through a scene under one sun, and show, measure and fix shadow acne, aliasing and clipping holes.
 #[derive(Clone, Debug, Default, Parser)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
-#[command(name = "viewer", version, after_help = "Press H in the window for its keys.")]
+#[command(
+    name = "viewer",
+    version,
+    after_help = "Press H in the window for its keys. Exit codes: 0, or 2 where something was refused or cannot be done."
+)]
 pub struct Arguments {
     /// Scene: a glTF file (.gltf or .glb), or one of the built-in scenes courtyard, plain, arcade and forest. Without one
     /// the viewer opens the scene of the last time, and the courtyard at first.

@@ -2,14 +2,16 @@
 
 mod sample;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use egui::{Pos2, RawInput, Rect, vec2};
+use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit_egui::Artefact;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::Gpu;
+use shadowfit_study::make_folder;
 
 use crate::cli::Arguments;
 use crate::files::write_png;
@@ -19,6 +21,10 @@ use crate::source::SceneSource;
 use crate::stage::Stage;
 use crate::viewer::{Renewals, Start, Viewer, compared_with};
 
+/// Number of pictures of a scene.
+pub const PICTURES: usize = 24;
+/// How often the bar tells how much time has passed.
+const TICK: Duration = Duration::from_millis(250);
 /// Samples per pixel of headless pictures.
 const SAMPLES: u32 = 4;
 /// Time of the animation at which the pictures are taken, in seconds.
@@ -30,10 +36,10 @@ const SETTLING: u32 = 4;
 /// Format of headless frames.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Renders the pictures that the arguments ask for and prints their paths. Notes of the import go to the standard
-/// error. Nothing is restored from the last time, and nothing is saved for the next one.
+/// Renders the pictures that the arguments ask for and prints each one's name when it is written. Notes of the import go
+/// to the standard error. Nothing is restored from the last time, and nothing is saved for the next one.
 pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    make_folder(folder)?;
     if arguments.script.is_some() {
         return play(arguments, folder);
     }
@@ -51,19 +57,43 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     stage.settings = settings;
     stage.animation = arguments.animation;
     stage.set_home();
+    let mut progress = Progress::begin(PICTURES, &stage.scene().name, &stage, folder)?;
     let gpu = stage.gpu().clone();
-    let written = gpu.unless_lost(|| render_pictures(&mut stage, folder, arguments.size()));
-    let written =
-        written.context("the graphics device was lost; start again, with smaller pictures if it was too slow")??;
-    tell(&written, &stage.scene().name, &stage, folder);
+    let size = arguments.size();
+    gpu.unless_lost(|| render_pictures(&mut stage, folder, size, &mut |path| progress.wrote(path)))
+        .context("the graphics device was lost; start again, with smaller pictures if it was too slow")??;
     Ok(())
 }
 
-/// Prints which pictures were written.
-fn tell(written: &[PathBuf], name: &str, stage: &Stage, folder: &Path) {
-    println!("{} pictures of {name} by {}, in {}:", written.len(), stage.gpu().name(), folder.display());
-    for path in written {
-        println!("  {}", path.file_name().unwrap_or_default().to_string_lossy());
+/// Tells of pictures while they are rendered: each one's name on the standard output as soon as it is written, and how
+/// long the rest will take on the standard error, if that is a terminal.
+struct Progress {
+    bar: ProgressBar,
+    count: usize,
+    written: usize,
+}
+
+impl Progress {
+    fn begin(count: usize, name: &str, stage: &Stage, folder: &Path) -> Result<Self> {
+        let noun = if count == 1 { "picture" } else { "pictures" };
+        println!("{count} {noun} of {name} by {}, in {}:", stage.gpu().name(), folder.display());
+        let bar = ProgressBar::new(count as u64);
+        bar.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} pictures, {elapsed} so far, {eta} left")?);
+        bar.enable_steady_tick(TICK);
+        Ok(Self { bar, count, written: 0 })
+    }
+
+    fn wrote(&mut self, path: &Path) {
+        self.written += 1;
+        self.bar.inc(1);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        self.bar.suspend(|| println!("  {}/{} {name}", self.written, self.count));
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }
 
@@ -121,22 +151,24 @@ fn input(size: [u32; 2], clock: f64) -> RawInput {
 
 /// Pictures on their way into a folder.
 struct Album<'a> {
+    /// What is told of each picture that is written.
+    tell: &'a mut dyn FnMut(&Path),
     stage: &'a mut Stage,
     interface: Interface,
     folder: &'a Path,
     size: [u32; 2],
     canvas: Canvas,
-    written: Vec<PathBuf>,
 }
 
 /// Renders the views of a stage into a folder, which is made if it is missing: every view, the inset, two techniques side
-/// by side, each artefact shown, marked and fixed, and the whole interface dark and light. Returns the files.
+/// by side, each artefact shown, marked and fixed, and the whole interface dark and light. `tell` is called with the path
+/// of each of these [`PICTURES`] files when it is written.
 ///
 /// # Errors
 ///
 /// If a file cannot be written.
-pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Result<Vec<PathBuf>> {
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2], tell: &mut dyn FnMut(&Path)) -> Result<()> {
+    make_folder(folder)?;
     stage.reset();
     stage.wait_for_rays();
     if stage.settings.view.play {
@@ -146,18 +178,19 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Resu
     let interface = Interface::new(stage, FORMAT);
     // Nothing is caught half faded in.
     interface.context.all_styles_mut(|style| style.animation_time = 0.0);
-    let mut album = Album { stage, interface, folder, size, canvas, written: Vec::new() };
+    let mut album = Album { tell, stage, interface, folder, size, canvas };
     album.views()?;
     album.artefacts()?;
     album.windows()?;
     album.stage.reset();
-    Ok(album.written)
+    Ok(())
 }
 
 impl Album<'_> {
     /// Every view by its name.
     fn views(&mut self) -> Result<()> {
         self.interface.bare = true;
+        self.judge_what_shows_it();
         let names = [
             "final",
             "truth",
@@ -195,6 +228,7 @@ impl Album<'_> {
             [(Artefact::Acne, "acne"), (Artefact::Aliasing, "aliasing"), (Artefact::ClippingHole, "hole")]
         {
             self.stage.show_artefact(artefact);
+            self.judge_what_shows_it();
             self.stage.settings.view.inset = InsetMaps::Off;
             self.save(name)?;
             self.stage.settings.view.marks = ErrorMarks::Outline;
@@ -205,6 +239,12 @@ impl Album<'_> {
         }
         self.stage.reset();
         Ok(())
+    }
+
+    /// Lets views be judged only where they show errors. Without panel no figures are seen, and judging a picture takes
+    /// as long as drawing it, so that the first one comes in half the time.
+    fn judge_what_shows_it(&mut self) {
+        self.stage.settings.view.judge = false;
     }
 
     /// The whole interface.
@@ -235,7 +275,7 @@ impl Album<'_> {
         }
         let path = self.folder.join(name).with_extension("png");
         write_png(&path, self.size, &self.canvas.read(self.stage.gpu())?, None)?;
-        self.written.push(path);
+        (self.tell)(&path);
         Ok(())
     }
 }

@@ -46,7 +46,7 @@ use std::process::ExitCode;
 
 pub use cli::Arguments;
 #[cfg(not(target_family = "wasm"))]
-pub use headless::render_pictures;
+pub use headless::{PICTURES, render_pictures};
 pub use shadowfit_egui::Artefact;
 pub use stage::{Shown, Stage, StageError};
 

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use shadowfit_classics::{OptionKind, Sample, SampleFigures, SampleValues, SampleVariant};
 use shadowfit_render::Gpu;
 
-use super::{SAMPLES, tell};
+use super::{Progress, SAMPLES};
 use crate::cli::Arguments;
 use crate::files::write_png;
 use crate::stage::Stage;
@@ -23,7 +23,9 @@ pub(super) fn run(
     let mut stage = Stage::new(gpu, sample.scene(), SAMPLES)?;
     stage.wait_for_rays();
     let size = arguments.size.unwrap_or(sample.size);
-    let mut written = Vec::new();
+    let pictures = if named.is_some() { Vec::new() } else { pictures(sample) };
+    let count = if named.is_some() { 1 } else { pictures.len() + sample.variants.len() };
+    let mut progress = Progress::begin(count, sample.title, &stage, folder)?;
     let mut save =
         |stage: &mut Stage, variant: Option<&'static SampleVariant>, name: &str, options: &[(&str, &str)]| {
             stage.set_sample(sample, variant);
@@ -33,21 +35,21 @@ pub(super) fn run(
             arguments.apply_what_is_there(&mut stage.settings)?;
             let path = folder.join(name).with_extension("png");
             write_picture(stage, &path, size)?;
-            written.push(path);
+            progress.wrote(&path);
             anyhow::Ok(())
         };
     let file = |variant: &SampleVariant| format!("{}-{}", sample.id, variant.id);
     if let Some(variant) = named {
         save(&mut stage, named, &file(variant), &[])?;
     } else {
-        for (name, options) in pictures(sample) {
+        for (name, options) in pictures {
             save(&mut stage, None, &name, &options)?;
         }
         for variant in sample.variants {
             save(&mut stage, Some(variant), &file(variant), &[])?;
         }
     }
-    tell(&written, sample.title, &stage, folder);
+    drop(progress);
     if sample.is_measurable {
         tell_figures(arguments, (sample, named), size)?;
     }
