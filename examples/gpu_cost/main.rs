@@ -156,8 +156,5 @@ fn main() -> Result<()> {
     if wants(Part::Rays) {
         add(rays::time(&bench, &args.scenes)?);
     }
-    if let Some(out) = &args.out {
-        write_whole(out, text.as_bytes())?;
-    }
-    Ok(())
+    args.out.iter().try_for_each(|out| write_whole(out, text.as_bytes()))
 }

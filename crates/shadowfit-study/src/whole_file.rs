@@ -21,7 +21,7 @@ use tempfile::{Builder, NamedTempFile};
 /// How the names of unfinished files end.
 const UNFINISHED: &str = ".part";
 /// Age from which on an unfinished file is one that was left behind: writing takes seconds at most.
-const LEFT_BEHIND: Duration = Duration::from_secs(60);
+const LEFT_BEHIND: Duration = Duration::from_mins(1);
 /// Bytes of a name that its unfinished file has too: names may be 255 bytes long.
 const LONGEST: usize = 200;
 /// Links that are followed at most, as on Linux.
@@ -48,7 +48,7 @@ pub fn make_folder(folder: &Path) -> Result<()> {
         _ => error,
     });
     made.map_err(|error| refusal(folder, "the folder cannot be made", &error))?;
-    let probe = tempfile::tempfile_in(folder);
+    let probe = tempfile::tempfile_in(folder_of(&folder.join("file")));
     probe.map(drop).map_err(|error| refusal(folder, "the folder cannot be written to", &error))
 }
 

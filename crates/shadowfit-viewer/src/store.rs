@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use etcetera::BaseStrategy;
-use shadowfit_study::TRANSLATED;
+use shadowfit_study::{TRANSLATED, make_folder};
 
 use crate::files::write_whole;
 use crate::saved::Saved;
@@ -113,9 +113,7 @@ impl Store {
         if self.is_written && *saved == self.known {
             return Ok(None);
         }
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
-        }
+        make_folder(path.parent().unwrap_or(Path::new("")))?;
         let _lock = lock(&path);
         let there = read(&path).with_context(|| format!("{} cannot be read", path.display()))?;
         let (merged, note) = match there {

@@ -109,7 +109,7 @@ fn a_writer_that_is_killed_200_times_leaves_the_old_files_or_the_new_ones() {
 /// What was left unfinished goes with the next writing, once it is old.
 fn leaves_nothing_but_its_files(folder: &Path) {
     let files = || fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
-    let an_hour_ago = SystemTime::now() - Duration::from_secs(3600);
+    let an_hour_ago = SystemTime::now() - Duration::from_hours(1);
     for unfinished in files().filter(|path| path.extension().is_some_and(|extension| extension == "part")) {
         File::options()
             .write(true)
