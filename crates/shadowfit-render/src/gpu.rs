@@ -141,7 +141,7 @@ impl Gpu {
     }
 
     /// Submits work. Where the CPU itself draws, that may take until what was submitted before is drawn, which
-    /// [`waited`](crate::waited) tells apart.
+    /// [`own_time`](crate::own_time) leaves out.
     pub fn submit(&self, commands: impl IntoIterator<Item = wgpu::CommandBuffer>) {
         let commands: Vec<wgpu::CommandBuffer> = commands.into_iter().collect();
         crate::wait::waiting(|| self.queue.submit(commands));

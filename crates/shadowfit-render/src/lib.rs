@@ -67,4 +67,4 @@ pub use uniform::{
     Atmosphere, BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform,
     MaterialUniform, QuadVertex,
 };
-pub use wait::waited;
+pub use wait::{Spent, own_time};

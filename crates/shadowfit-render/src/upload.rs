@@ -7,6 +7,8 @@ use crate::{DeviceFault, Gpu};
 
 /// Bytes that are on their way at a time: each of them is held twice meanwhile.
 const PIECE: usize = 16 << 20;
+/// Bytes of an empty buffer.
+const LEAST: u64 = 4;
 
 /// What a scene is uploaded through.
 pub(crate) struct Upload<'a> {
@@ -37,7 +39,6 @@ impl<'a> Upload<'a> {
                 mapped_at_creation: false,
             })
         };
-        const LEAST: u64 = 4;
         let Some(buffer) = self.make(|| empty((bytes.len() as u64).max(LEAST))) else { return empty(LEAST) };
         for (index, piece) in bytes.chunks(PIECE).enumerate() {
             self.gpu.queue.write_buffer(&buffer, (index * PIECE) as u64, piece);

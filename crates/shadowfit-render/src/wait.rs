@@ -1,4 +1,4 @@
-//! How long a thread waits for the GPU.
+//! How much a thread does, and how long it waits for the GPU.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -6,18 +6,71 @@ use std::time::Duration;
 use web_time::Instant;
 
 std::thread_local! {
-    static WAITED: Cell<Duration> = const { Cell::new(Duration::ZERO) };
+    static WAITED: Cell<Spent> = const { Cell::new(Spent::ZERO) };
+}
+
+/// Time that a thread has spent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spent {
+    /// By the wall's clock.
+    pub wall: Duration,
+    /// In which a core worked for it; the same as the wall's on systems that do not tell.
+    pub cpu: Duration,
+}
+
+impl Spent {
+    const ZERO: Self = Self { wall: Duration::ZERO, cpu: Duration::ZERO };
+
+    /// Both together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self { wall: self.wall + other.wall, cpu: self.cpu + other.cpu }
+    }
+
+    fn less(self, other: Self) -> Self {
+        Self { wall: self.wall.saturating_sub(other.wall), cpu: self.cpu.saturating_sub(other.cpu) }
+    }
+}
+
+/// Times work.
+#[derive(Clone, Copy, Debug)]
+struct Clock {
+    begin: Instant,
+    cpu: Option<Duration>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { begin: Instant::now(), cpu: cpu() }
+    }
+
+    fn spent(self) -> Spent {
+        let wall = self.begin.elapsed();
+        let worked = self.cpu.zip(cpu()).map(|(begin, end)| end.saturating_sub(begin));
+        Spent { wall, cpu: worked.unwrap_or(wall) }
+    }
+}
+
+/// How long a core has worked for this thread; `None` on systems that do not tell.
+fn cpu() -> Option<Duration> {
+    #[cfg(target_os = "linux")]
+    return rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime).try_into().ok();
+    #[cfg(not(target_os = "linux"))]
+    None
 }
 
 /// Does something that waits for the GPU.
 pub(crate) fn waiting<T>(wait: impl FnOnce() -> T) -> T {
-    let begin = Instant::now();
+    let clock = Clock::start();
     let result = wait();
-    WAITED.set(WAITED.get() + begin.elapsed());
+    WAITED.set(WAITED.get().plus(clock.spent()));
     result
 }
 
-/// How long this thread has waited for the GPU so far, in read-backs and submissions, to be told apart from its own work.
-pub fn waited() -> Duration {
-    WAITED.get()
+/// Does something, and returns how long that took this thread without its waits for the GPU, in read-backs and
+/// submissions.
+pub fn own_time<T>(work: impl FnOnce() -> T) -> (T, Spent) {
+    let (clock, waited) = (Clock::start(), WAITED.get());
+    let done = work();
+    (done, clock.spent().less(WAITED.get().less(waited)))
 }

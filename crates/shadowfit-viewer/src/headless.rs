@@ -5,7 +5,7 @@ mod sample;
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Result, anyhow};
+use anyhow::{Context, Result, anyhow};
 use egui::{Pos2, RawInput, Rect, vec2};
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit_egui::Artefact;

@@ -13,6 +13,8 @@ mod effect;
 mod export;
 mod files;
 mod fitted;
+#[cfg(not(target_family = "wasm"))]
+mod frame_log;
 #[cfg(all(feature = "gamepad", not(target_family = "wasm")))]
 mod gamepad;
 #[cfg(not(target_family = "wasm"))]

@@ -36,11 +36,10 @@ pub(crate) struct Store {
 
 impl Store {
     /// The file of the user on this system.
-    #[expect(clippy::unnecessary_wraps, reason = "a viewer may have no store, when it was told to keep nothing")]
-    pub(crate) fn of_person() -> Option<Self> {
+    pub(crate) fn of_person() -> Self {
         let folders = etcetera::choose_base_strategy().ok();
         let path = folders.map(|folders| folders.config_dir().join("shadowfit").join("viewer.toml"));
-        Some(Self { path, ..Self::default() })
+        Self { path, ..Self::default() }
     }
 
     pub(crate) fn at(path: PathBuf) -> Self {

@@ -398,6 +398,11 @@ impl Viewer {
             || self.measuring.is_running()
     }
 
+    /// Whether a scene is being loaded.
+    pub(crate) fn is_loading(&self) -> bool {
+        self.loading.is_some()
+    }
+
     /// Whether the script has ended and every scene that it opened is there.
     pub(crate) fn has_played(&self) -> bool {
         self.player.is_done() && self.loading.is_none() && self.saving.is_empty()

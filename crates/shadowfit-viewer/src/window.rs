@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow};
 use shadowfit_egui::Command;
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_render::{AdapterChoice, Gpu, Spent, own_time};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
@@ -13,6 +13,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use crate::cli::Arguments;
+use crate::frame_log::FrameLog;
 use crate::saved::Store;
 use crate::stage::Stage;
 use crate::viewer::{Renewals, Start, Viewer};
@@ -20,8 +21,6 @@ use crate::viewer::{Renewals, Start, Viewer};
 /// Samples per pixel: software rasterisers pay for each.
 const GPU_SAMPLES: u32 = 4;
 const SOFTWARE_SAMPLES: u32 = 1;
-/// Frames between two lines of `--log-frames`.
-const LOG_EVERY: u64 = 60;
 
 /// Runs the viewer in a window until it is closed.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -55,18 +54,7 @@ struct Running {
     adapter: AdapterChoice,
     renewals: Renewals,
     last_frame: Instant,
-    log: Option<Log>,
-}
-
-/// The figures that `--log-frames` prints.
-struct Log {
-    start: Instant,
-    frames: u64,
-    is_ready: bool,
-    /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
-    longest: Duration,
-    /// The same since the start.
-    longest_of_all: Duration,
+    log: Option<FrameLog>,
 }
 
 /// The surface that frames are presented on.
@@ -138,7 +126,9 @@ impl App {
                 None if running.viewer.player.failed => Err(anyhow!("the script did not end as it should")),
                 None => result,
             };
-            running.tell_longest();
+            if let Some(log) = &running.log {
+                log.end();
+            }
         } else {
             self.result = result;
         }
@@ -157,11 +147,11 @@ impl Running {
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::empty(gpu, samples)?;
         stage.read_depths();
-        let log = arguments.log_frames.then(|| Log::new(begin));
+        let log = arguments.log_frames.then(|| FrameLog::new(begin));
         let store = match (&arguments.state, arguments.no_state) {
             (_, true) => None,
             (Some(path), _) => Some(Store::at(path.clone())),
-            (None, false) => Store::of_person(),
+            (None, false) => Some(Store::of_person()),
         };
         let viewer = Viewer::new(stage, surface.configuration.format, start, store);
         let egui = egui_state(&window, &viewer);
@@ -226,18 +216,17 @@ impl Running {
                 self.viewer.ask(command);
             }
         }
-        let begin = Instant::now();
-        let waited = shadowfit_render::waited();
         let raw_input = self.egui.take_egui_input(&self.window);
-        let (layout, output) = self.viewer.frame(raw_input, seconds);
+        let was_loading = self.viewer.is_loading();
+        let ((layout, output), laid_out) = own_time(|| self.viewer.frame(raw_input, seconds));
         self.egui.handle_platform_output(&self.window, output);
         let Some((surface, size)) = texture else {
             // Nothing else holds such frames up.
             return std::thread::sleep(HIDDEN_FRAME);
         };
         let view = surface.texture.create_view(&Default::default());
-        self.viewer.paint(&layout, &view, *size);
-        self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
+        let ((), painted) = own_time(|| self.viewer.paint(&layout, &view, *size));
+        self.log_frame(laid_out.plus(painted), was_loading);
         self.window.pre_present_notify();
         if let Some((surface, _)) = texture.take() {
             self.viewer.stage.gpu().queue.present(surface);
@@ -266,39 +255,14 @@ impl Running {
         Ok(())
     }
 
-    fn log_frame(&mut self, busy: Duration) {
-        let Some(log) = &mut self.log else { return };
-        log.frames += 1;
-        log.longest = log.longest.max(busy);
-        log.longest_of_all = log.longest_of_all.max(busy);
-        let title = self.viewer.title();
-        if !log.is_ready && self.viewer.is_ready() {
-            log.is_ready = true;
-            eprintln!("ready: {title} after {:.2} s", log.start.elapsed().as_secs_f32());
-        }
-        if log.frames.is_multiple_of(LOG_EVERY) {
-            let frame = self.viewer.interface.frame_ms.unwrap_or(0.0);
-            eprintln!("frame {}: {frame:.1} ms, longest block {:.1} ms", log.frames, ms(log.longest));
-            log.longest = Duration::ZERO;
+    /// Notes a frame's own time for `--log-frames`.
+    fn log_frame(&mut self, own: Spent, is_loading: bool) {
+        let ready = self.viewer.is_ready().then(|| self.viewer.title());
+        let frame_ms = self.viewer.interface.frame_ms.unwrap_or(0.0);
+        if let Some(log) = &mut self.log {
+            log.frame(own, frame_ms, is_loading, ready);
         }
     }
-
-    /// Prints the last line of `--log-frames`.
-    fn tell_longest(&self) {
-        if let Some(log) = &self.log {
-            eprintln!("{} frames, longest block {:.1} ms", log.frames, ms(log.longest_of_all));
-        }
-    }
-}
-
-impl Log {
-    fn new(start: Instant) -> Self {
-        Self { start, frames: 0, is_ready: false, longest: Duration::ZERO, longest_of_all: Duration::ZERO }
-    }
-}
-
-fn ms(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e3
 }
 
 impl Surface {

@@ -1,0 +1,109 @@
+//! The figures of `--log-frames`: when the first scene was there, how long frames take, and how much memory is held.
+
+use std::time::{Duration, Instant};
+
+use shadowfit_render::Spent;
+
+use crate::monkey::memory;
+
+/// Frames between two lines.
+const LOG_EVERY: u64 = 60;
+/// Least time of a frame that is told from others, in milliseconds.
+const LEAST_MS: f64 = 0.01;
+/// Factor from one class of times to the next.
+const STEP: f64 = 1.02;
+/// Number of classes: up to some minutes.
+const CLASSES: usize = 900;
+
+/// What was seen of the frames since the start. It takes no more memory however many there are.
+pub(crate) struct FrameLog {
+    start: Instant,
+    frames: u64,
+    is_ready: bool,
+    /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
+    longest: Duration,
+    /// The same since the start.
+    longest_of_all: Duration,
+    /// Frames by the time that a core worked for them, without those in which a scene was loaded.
+    classes: Vec<u64>,
+}
+
+impl FrameLog {
+    pub(crate) fn new(start: Instant) -> Self {
+        let (longest, longest_of_all) = (Duration::ZERO, Duration::ZERO);
+        Self { start, frames: 0, is_ready: false, longest, longest_of_all, classes: vec![0; CLASSES] }
+    }
+
+    /// Notes a frame, whose own time is without waits for the GPU. `ready` is the window's title once there is a scene.
+    pub(crate) fn frame(&mut self, own: Spent, frame_ms: f32, is_loading: bool, ready: Option<String>) {
+        self.frames += 1;
+        self.longest = self.longest.max(own.wall);
+        self.longest_of_all = self.longest_of_all.max(own.wall);
+        if !is_loading {
+            self.classes[class(ms(own.cpu))] += 1;
+        }
+        if let Some(title) = ready.filter(|_| !self.is_ready) {
+            self.is_ready = true;
+            eprintln!("ready: {title} after {:.2} s", self.start.elapsed().as_secs_f32());
+        }
+        if self.frames.is_multiple_of(LOG_EVERY) {
+            let seconds = self.start.elapsed().as_secs();
+            let memory = memory().map_or_else(String::new, |bytes| format!(", {:.0} MB", bytes as f64 / 1e6));
+            let longest = ms(self.longest);
+            eprintln!("frame {} at {seconds} s: {frame_ms:.1} ms, longest block {longest:.1} ms{memory}", self.frames);
+            self.longest = Duration::ZERO;
+        }
+    }
+
+    /// Prints the last lines.
+    pub(crate) fn end(&self) {
+        eprintln!("{} frames, longest block {:.1} ms", self.frames, ms(self.longest_of_all));
+        let [median, late] = [0.5, 0.999].map(|share| self.quantile(share));
+        eprintln!("own CPU time of frames without loads: median {median:.2} ms, 99.9% below {late:.2} ms");
+    }
+
+    /// The time that a share of the frames stays below, in milliseconds.
+    fn quantile(&self, share: f64) -> f64 {
+        let all: u64 = self.classes.iter().sum();
+        let mut below = 0;
+        let reached = self.classes.iter().position(|frames| {
+            below += frames;
+            below as f64 >= share * all as f64
+        });
+        LEAST_MS * STEP.powf(reached.unwrap_or(0) as f64 + 1.0)
+    }
+}
+
+/// The class of a time in milliseconds.
+fn class(ms: f64) -> usize {
+    let class = (ms / LEAST_MS).max(1.0).log(STEP);
+    (class as usize).min(CLASSES - 1)
+}
+
+fn ms(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_frames_without_loads() {
+        let mut log = FrameLog::new(Instant::now());
+        for frame in 1..=2000_u64 {
+            let time = if frame > 1997 { Duration::from_millis(50) } else { Duration::from_micros(frame) };
+            let own = Spent { wall: time, cpu: time };
+            log.frame(own, 1.0, false, None);
+            log.frame(Spent { wall: Duration::from_secs(1), cpu: Duration::from_secs(1) }, 1.0, true, None);
+        }
+        let near = |share, expected: f64| {
+            let found = log.quantile(share);
+            assert!((found / expected - 1.0).abs() < STEP - 0.99, "{share}: {found} ms for {expected}");
+        };
+        near(0.5, 1.0);
+        near(0.9, 1.8);
+        near(0.999, 50.0);
+        assert_eq!(log.longest_of_all, Duration::from_secs(1));
+    }
+}
