@@ -5,9 +5,9 @@
 //! with a generous limit.
 
 mod desktop;
+mod hours;
 mod shot;
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use desktop::{Desktop, Viewer, missing_tools};
@@ -67,46 +67,6 @@ fn desktop(test: &str) -> Option<Desktop> {
     None
 }
 
-/// How long the monkey is at it, in seconds; `SHADOWFIT_MONKEY_SECONDS` sets another time, such as ten minutes.
-const MONKEY_SECONDS: u32 = 25;
-/// Growth of memory from one visit of a scene to the next that is no leak, in MB: what drivers and allocators keep.
-const MONKEY_GROWTH: f64 = 96.0;
-/// The same for a short run, whose first part is over before all that is made once has been made: pipelines, the textures
-/// of scenes, the maps of a second technique.
-const SHORT_GROWTH: f64 = 1000.0;
-/// Seconds from which on a run is not short.
-const LONG: u32 = 300;
-
-#[test]
-fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak() {
-    let Some(desktop) = desktop("monkey") else { return };
-    let seconds = std::env::var("SHADOWFIT_MONKEY_SECONDS").ok().and_then(|text| text.parse().ok());
-    let seconds: u32 = seconds.unwrap_or(MONKEY_SECONDS);
-    let files = crate::support::assets().unwrap_or_else(|| few_files(&desktop));
-    let script = desktop.file("monkey.txt");
-    let text = format!(
-        "await loaded\nset map.resolution 512\nset view.judge on\nmonkey {seconds} 1 {}\nquit\n",
-        files.display()
-    );
-    std::fs::write(&script, text).expect("the script is written");
-    let state = desktop.file("state.toml");
-    let (script, state) = (script.display().to_string(), state.display().to_string());
-    let arguments = ["--size", "960x600", "--software", "--script", &script, "--state", &state, "--log-frames"];
-    let mut viewer = Viewer::start(&desktop, &arguments);
-    let limit = PATIENCE * 4 + Duration::from_secs(u64::from(seconds) * 3);
-    assert_eq!(viewer.exit_code(limit), Some(0), "the viewer fell over, or never ended\n{}", viewer.log());
-    let log = viewer.log();
-    println!("{log}");
-    for word in ["panicked", "validation", "Validation"] {
-        assert!(!log.contains(word), "{log}");
-    }
-    let report = log.lines().find(|line| line.starts_with("monkey:")).unwrap_or_else(|| panic!("no report\n{log}"));
-    let growth = report.rsplit("growth ").next().and_then(|text| text.trim_end_matches(" MB").parse::<f64>().ok());
-    let growth = growth.unwrap_or_else(|| panic!("no growth was measured: {report}"));
-    let most = if seconds < LONG { SHORT_GROWTH } else { MONKEY_GROWTH };
-    assert!(growth < most, "memory grows: {report}");
-}
-
 #[test]
 fn a_lost_device_is_told_once_and_the_window_comes_back_as_it_was() {
     let Some(desktop) = desktop("lost") else { return };
@@ -134,29 +94,6 @@ fn a_lost_device_is_told_once_and_the_window_comes_back_as_it_was() {
     assert!(log.contains("lost again") && log.contains("--software") && !log.contains("panicked"), "{log}");
     let [before, after] = [before, after].map(|path| image::open(path).expect("a picture").to_rgb8());
     assert!(before == after, "the picture is another one after the loss");
-}
-
-/// A folder with files to drop where there are no others: a scene, a technique, and what looks like a scene and is none.
-fn few_files(desktop: &Desktop) -> PathBuf {
-    /// A triangle, ten metres wide.
-    const SCENE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[10,1,10]}],
-        "bufferViews":[{"buffer":0,"byteLength":36}],
-        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAgQQAAAAAAAAAAAAAAAAAAgD8AACBB"}]}"#;
-    let folder = desktop.file("files");
-    std::fs::create_dir_all(&folder).expect("a folder for the files");
-    let files: [(&str, &[u8]); 5] = [
-        ("triangle.gltf", SCENE.as_bytes()),
-        ("filter.toml", b"[map]\nfilter = \"pcf_3x3\"\n"),
-        ("cut.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f"),
-        ("empty.glb", b""),
-        ("text.gltf", b"no scene"),
-    ];
-    for (name, bytes) in files {
-        std::fs::write(folder.join(name), bytes).expect("the file is written");
-    }
-    folder
 }
 
 #[test]

@@ -1,0 +1,132 @@
+//! The viewer for as long as one likes: random actions, a flight with everything on, and scene after scene. Seconds in
+//! environment variables make hours of the moments that an ordinary run takes.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::desktop::{Desktop, Viewer};
+use super::{PATIENCE, desktop};
+
+/// Growth of memory that is no leak, in MB: what drivers and allocators keep.
+const GROWTH: f64 = 96.0;
+/// The same for a short run, whose first part is over before all that is made once has been made: pipelines, the textures
+/// of scenes, the maps of a second technique.
+const SHORT_GROWTH: f64 = 1000.0;
+/// Seconds from which on a run is not short.
+const LONG: u32 = 300;
+/// Share of a run after which memory is looked at first.
+const WARM_UP: f64 = 0.25;
+
+/// A number of seconds or scenes in an environment variable, or that of an ordinary run.
+fn asked(variable: &str, usual: u32) -> u32 {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+}
+
+/// Plays a script of about so many seconds in the viewer, which must end well, and returns what it says.
+fn play(desktop: &Desktop, text: &str, seconds: u32) -> String {
+    let (script, state) = (desktop.file("script.txt"), desktop.file("state.toml"));
+    std::fs::write(&script, text).expect("the script is written");
+    let (script, state) = (script.display().to_string(), state.display().to_string());
+    let arguments = ["--size", "640x400", "--software", "--script", &script, "--state", &state, "--log-frames"];
+    let mut viewer = Viewer::start(desktop, &arguments);
+    let limit = PATIENCE * 4 + Duration::from_secs(u64::from(seconds) * 3);
+    assert_eq!(viewer.exit_code(limit), Some(0), "the viewer fell over, or never ended\n{}", viewer.log());
+    let log = viewer.log();
+    println!("{log}");
+    for word in ["panicked", "validation", "Validation", "error:", "no memory left"] {
+        assert!(!log.contains(word), "{word}\n{log}");
+    }
+    log
+}
+
+/// Fails where memory grows from a quarter of the run to its end.
+fn assert_flat(log: &str, seconds: u32) {
+    let place = |line: &str| {
+        let (frame, rest) = line.strip_prefix("frame ")?.split_once(" at ")?;
+        let memory = rest.rsplit(", ").next()?.strip_suffix(" MB")?;
+        Some((frame.parse::<f64>().ok()?, memory.parse::<f64>().ok()?))
+    };
+    let memory: Vec<(f64, f64)> = log.lines().filter_map(place).collect();
+    let Some((last, _)) = memory.last() else { panic!("no memory was told\n{log}") };
+    let after_warm_up = || memory.iter().filter(|(frame, _)| *frame >= last * WARM_UP).map(|(_, memory)| *memory);
+    // A scene that is being exchanged is there twice, so the least of a part counts.
+    let half = after_warm_up().count().div_ceil(2);
+    let least = |part: Vec<f64>| part.into_iter().fold(f64::INFINITY, f64::min);
+    let (before, after) =
+        (least(after_warm_up().take(half).collect()), least(after_warm_up().skip(half / 2).collect()));
+    let most = if seconds < LONG { SHORT_GROWTH } else { GROWTH };
+    println!("memory: {before:.0} MB, later {after:.0} MB");
+    assert!(after - before < most, "memory grows from {before:.0} to {after:.0} MB");
+}
+
+#[test]
+fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak() {
+    let Some(desktop) = desktop("monkey") else { return };
+    let seconds = asked("SHADOWFIT_MONKEY_SECONDS", 25);
+    let files = crate::support::assets().unwrap_or_else(|| few_files(&desktop));
+    let files = files.display();
+    let text = format!("await loaded\nset map.resolution 512\nset view.judge on\nmonkey {seconds} 1 {files}\nquit\n");
+    let log = play(&desktop, &text, seconds);
+    let report = log.lines().find(|line| line.starts_with("monkey:")).unwrap_or_else(|| panic!("no report\n{log}"));
+    let growth = report.rsplit("growth ").next().and_then(|text| text.trim_end_matches(" MB").parse::<f64>().ok());
+    let growth = growth.unwrap_or_else(|| panic!("no growth was measured: {report}"));
+    let most = if seconds < LONG { SHORT_GROWTH } else { GROWTH };
+    assert!(growth < most, "memory grows: {report}");
+}
+
+/// Lines of a flight around a place, of twenty seconds.
+const ROUND: [&str; 8] =
+    ["hold w 3", "hold Right 2", "hold d 3", "hold Left 4", "hold a 3", "hold Right 2", "hold s 3", "reset-camera"];
+const ROUND_SECONDS: u32 = 20;
+
+#[test]
+fn a_flight_with_everything_on_takes_no_more_memory_and_no_more_time_in_the_end() {
+    let Some(desktop) = desktop("flight") else { return };
+    let seconds = asked("SHADOWFIT_FLIGHT_SECONDS", ROUND_SECONDS);
+    let everything =
+        "await loaded\nset map.resolution 512\nset view.judge on\nset view.marks outline\nsun\ncompare on\n";
+    let round = ROUND.map(|line| format!("{line}\n")).concat();
+    let rounds = round.repeat(seconds.div_ceil(ROUND_SECONDS) as usize);
+    let log = play(&desktop, &format!("{everything}{rounds}quit\n"), seconds);
+    assert_flat(&log, seconds);
+    assert!(log.contains("own CPU time of frames without loads"), "{log}");
+}
+
+#[test]
+fn a_scene_after_the_other_takes_no_more_memory_than_the_first_ones() {
+    let Some(desktop) = desktop("scenes") else { return };
+    let switches = asked("SHADOWFIT_SCENE_SWITCHES", 8);
+    let scenes = ["courtyard", "plain", "xna-shadow-mapping", "arcade", "terrain-vehicles", "forest"];
+    let lines = scenes.iter().cycle().take(switches as usize);
+    let lines: Vec<String> = lines.map(|scene| format!("open {scene}\nawait loaded\nframes 12\n")).collect();
+    let lines = lines.concat();
+    let log = play(
+        &desktop,
+        &format!("await loaded\nset map.resolution 512\n{lines}open plain\nawait loaded\nquit\n"),
+        3 * switches,
+    );
+    assert_flat(&log, 3 * switches);
+}
+
+/// A folder with files to drop where there are no others: a scene, a technique, and what looks like a scene and is none.
+fn few_files(desktop: &Desktop) -> PathBuf {
+    /// A triangle, ten metres wide.
+    const SCENE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[10,1,10]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAgQQAAAAAAAAAAAAAAAAAAgD8AACBB"}]}"#;
+    let folder = desktop.file("files");
+    std::fs::create_dir_all(&folder).expect("a folder for the files");
+    let files: [(&str, &[u8]); 5] = [
+        ("triangle.gltf", SCENE.as_bytes()),
+        ("filter.toml", b"[map]\nfilter = \"pcf_3x3\"\n"),
+        ("cut.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f"),
+        ("empty.glb", b""),
+        ("text.gltf", b"no scene"),
+    ];
+    for (name, bytes) in files {
+        std::fs::write(folder.join(name), bytes).expect("the file is written");
+    }
+    folder
+}
