@@ -11,9 +11,12 @@ mod random;
 mod run;
 mod windows;
 
+pub mod chunk;
+
 use std::sync::OnceLock;
 
-use numbers::{ByKind, Numbers};
+use numbers::ByKind;
+use random::Random;
 
 /// Number of fits.
 pub const FITS: u32 = 10_000;
@@ -56,10 +59,9 @@ pub fn outcome() -> Outcome {
 
 /// The hashes over the numbers that fits give.
 pub fn numbers() -> NumbersByKind {
-    let new = Numbers::new();
-    let mut numbers = ByKind { one_map: new, slices: new, windows: new };
-    numbers::add(FITS, &mut numbers.one_map, &mut numbers.slices);
-    windows::add(FITS, &mut numbers);
+    let mut numbers = ByKind::new();
+    numbers::add(Random::new(2), FITS, &mut numbers);
+    windows::add(Random::new(3), FITS, |random| !random.once_in(3), &mut numbers);
     NumbersByKind { one_map: numbers.one_map.value(), slices: numbers.slices.value(), windows: numbers.windows.value() }
 }
 

@@ -18,9 +18,9 @@ use crate::random::Random;
 const FRAMES: u32 = 6;
 
 /// Adds the numbers of so many fits: single maps, and slices read by view depth.
-pub(crate) fn add(fits: u32, one_map: &mut Numbers, slices: &mut Numbers) {
+pub(crate) fn add(random: Random, fits: u32, numbers: &mut ByKind) {
     let storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
-    let mut run = Run { random: Random::new(2), one_map, slices, storage };
+    let mut run = Run { random, one_map: &mut numbers.one_map, slices: &mut numbers.slices, storage };
     let mut done = 0;
     while done < fits {
         // What is refused gives no number.
@@ -108,17 +108,32 @@ pub(crate) struct ByKind {
     pub(crate) windows: Numbers,
 }
 
+impl ByKind {
+    pub(crate) fn new() -> Self {
+        let new = Numbers::new();
+        Self { one_map: new, slices: new, windows: new }
+    }
+}
+
 /// FNV-1a over the bits of numbers (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash algorithm").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Numbers(u64);
+pub(crate) struct Numbers {
+    hash: u64,
+    are_finite: bool,
+}
 
 impl Numbers {
     pub(crate) fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
+        Self { hash: 0xcbf2_9ce4_8422_2325, are_finite: true }
     }
 
     pub(crate) fn value(self) -> u64 {
-        self.0
+        self.hash
+    }
+
+    /// Whether all of them were.
+    pub(crate) fn are_finite(self) -> bool {
+        self.are_finite
     }
 
     /// One of several maps.
@@ -135,27 +150,29 @@ impl Numbers {
 
     pub(crate) fn bits(&mut self, bits: u64) {
         for byte in bits.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+            self.hash = (self.hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
     }
 
     pub(crate) fn f32s(&mut self, numbers: &[f32]) {
         for number in numbers {
+            self.are_finite &= number.is_finite();
             self.bits(u64::from(number.to_bits()));
         }
     }
 
     fn f64s(&mut self, numbers: &[f64]) {
         for number in numbers {
+            self.are_finite &= number.is_finite();
             self.bits(number.to_bits());
         }
     }
 
-    fn place(&mut self, place: DVec3) {
+    pub(crate) fn place(&mut self, place: DVec3) {
         self.f64s(&place.to_array());
     }
 
-    fn matrix(&mut self, matrix: &Mat4) {
+    pub(crate) fn matrix(&mut self, matrix: &Mat4) {
         self.f32s(&matrix.to_cols_array());
     }
 

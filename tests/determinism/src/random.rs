@@ -13,6 +13,11 @@ impl Random {
         Self(seed)
     }
 
+    /// A stream of its own for each index.
+    pub(crate) fn stream(seed: u64, index: u64) -> Self {
+        Self(Self(Self(seed).next() ^ index).next())
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

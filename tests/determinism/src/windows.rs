@@ -12,24 +12,28 @@ use crate::random::Random;
 /// Frames of a camera's flight.
 const FRAMES: u32 = 6;
 
-/// Adds the numbers of so many fits.
-pub(crate) fn add(fits: u32, numbers: &mut ByKind) {
-    let mut random = Random::new(3);
+/// Adds the numbers of so many fits. `are_windows` says of each flight whether its maps are windows.
+pub(crate) fn add(mut random: Random, fits: u32, are_windows: fn(&mut Random) -> bool, numbers: &mut ByKind) {
     let mut storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
     let mut done = 0;
     while done < fits {
         // What is refused gives no number.
-        done += flight(&mut random, numbers, &mut storage).unwrap_or(0);
+        done += flight(&mut random, are_windows, numbers, &mut storage).unwrap_or(0);
     }
 }
 
 /// Fits the frames of one flight through a random scene; gives how many that were.
-fn flight(random: &mut Random, numbers: &mut ByKind, storage: &mut [DVec2]) -> Result<u32, FitError> {
+fn flight(
+    random: &mut Random,
+    are_windows: fn(&mut Random) -> bool,
+    numbers: &mut ByKind,
+    storage: &mut [DVec2],
+) -> Result<u32, FitError> {
     let mut scene = Scene::new(random)?;
     scene.views = vec![scene.camera.frustum()?];
     let mut settings = by_coverage(technique(random, &scene.camera));
     let mut knows_grid = true;
-    let numbers = if !random.once_in(3) {
+    let numbers = if are_windows(random) {
         settings = settings.with_maps(settings.maps.as_windows());
         knows_grid = random.pick(&[true, true, false]);
         settings = settings.with_count(1 + random.below(8));

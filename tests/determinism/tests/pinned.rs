@@ -1,5 +1,6 @@
 //! The hash over all fits on the machine that runs the tests.
 
+use shadowfit_determinism::chunk::{self, Kind};
 use shadowfit_determinism::{FITS, HASH, NUMBERS, Outcome, numbers, outcome};
 
 #[test]
@@ -14,4 +15,14 @@ fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
 fn the_same_settings_give_the_same_numbers_as_ever() {
     let numbers = numbers();
     assert_eq!(numbers, NUMBERS, "engines get other numbers: {numbers:#018x?}");
+}
+
+#[test]
+fn random_fits_are_finite_and_their_hash_follows_from_seed_and_chunk() {
+    for kind in [Kind::Slices, Kind::Windows] {
+        let run = |seed, index| chunk::run(kind, seed, index).expect("finite numbers");
+        let hash = run(1, 0);
+        assert_eq!(run(1, 0), hash);
+        assert!(run(1, 1) != hash && run(2, 0) != hash);
+    }
 }

@@ -54,7 +54,7 @@ pub(super) fn determinism(_: &Machine) -> Result<()> {
         println!("same bits without SIMD; not built for WebAssembly: rustup has no {WASM_TARGET}");
         return Ok(());
     }
-    process::run(process::cargo("build").args(["--package", DETERMINISM, "--target", WASM_TARGET]))?;
+    process::run(process::cargo("build").args(["--package", DETERMINISM, "--lib", "--target", WASM_TARGET]))?;
     if !process::succeeds(Command::new("node").arg("--version")) {
         println!("same bits without SIMD; built for WebAssembly, but not run there: node is missing");
         return Ok(());
