@@ -6,6 +6,7 @@
 mod artefacts;
 mod conventions;
 mod fits;
+mod fuzz_corpus;
 mod golden;
 mod growth_gpu;
 mod integration;

@@ -44,6 +44,13 @@ mod tally;
 mod tracer;
 mod truth;
 
+#[cfg(any(test, fuzzing))]
+#[doc(hidden)]
+pub mod fuzzed {
+    //! What fuzzing feeds; no other build has it.
+    pub use crate::peers::fuzzed::fit_file;
+}
+
 pub use ambient::{AmbientSettings, AmbientTruth};
 pub use area::{AreaTally, area};
 pub use camera::PixelCamera;

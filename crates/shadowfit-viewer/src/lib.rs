@@ -15,6 +15,9 @@ mod files;
 mod fitted;
 #[cfg(not(target_family = "wasm"))]
 mod frame_log;
+#[cfg(any(test, fuzzing))]
+#[doc(hidden)]
+pub mod fuzzed;
 #[cfg(all(feature = "gamepad", not(target_family = "wasm")))]
 mod gamepad;
 #[cfg(not(target_family = "wasm"))]

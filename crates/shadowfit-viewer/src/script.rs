@@ -226,6 +226,11 @@ pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
     let name = path.display();
     let bytes = files::read(path).with_context(|| format!("the script {name} cannot be read"))?;
     let text = String::from_utf8(bytes).with_context(|| format!("the script {name} is no text"))?;
+    lines(&name.to_string(), &text)
+}
+
+/// Reads the text of a script of a name.
+pub(crate) fn lines(name: &str, text: &str) -> Result<Vec<Line>> {
     let mut lines = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split_once(" #").map_or(line, |(line, _)| line).trim();
@@ -238,7 +243,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
 }
 
 /// Reads a line.
-fn parse(line: &str) -> Result<Step> {
+pub(crate) fn parse(line: &str) -> Result<Step> {
     let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let action = ACTIONS.iter().find(|action| action.name == name).ok_or_else(|| {
         let names: Vec<&str> = ACTIONS.iter().map(|action| action.name).collect();

@@ -16,11 +16,15 @@
 //! into the shown layer; the static casters' own layer follows in the next frame that keeps the map.
 
 mod casters;
-#[cfg(test)]
+#[cfg(any(test, fuzzing))]
 mod fixtures;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod fuzzed;
 #[cfg(test)]
 mod histories;
 mod identity;
+#[cfg(any(test, fuzzing))]
+mod model;
 mod plan;
 mod price;
 mod schedule;

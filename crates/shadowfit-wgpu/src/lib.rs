@@ -99,6 +99,13 @@ mod sun_frame;
 mod sun_shadows;
 mod uniform;
 
+#[cfg(any(test, fuzzing))]
+#[doc(hidden)]
+pub mod fuzzed {
+    //! What fuzzing feeds; no other build has it.
+    pub use crate::cache::fuzzed::cache_plan;
+}
+
 pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use cached_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
 pub use culling::CullingPiece;

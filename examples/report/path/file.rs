@@ -313,6 +313,29 @@ fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or_else(|_| f64::from(value))
 }
 
+/// Reads what a fuzzer takes for a path: it is refused, or written so that it reads back the same, as TOML and as JSON.
+#[cfg(any(test, fuzzing))]
+pub(crate) fn camera_path(data: &[u8]) {
+    /// Longer paths take long to write and tell nothing new.
+    const MOST_FRAMES: usize = 1000;
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    for format in [Format::Toml, Format::Json] {
+        let Ok(path) = CameraPath::parse(text, format, 1.5) else { continue };
+        if path.frames.len() > MOST_FRAMES {
+            continue;
+        }
+        for (file, format) in [("path.toml", Format::Toml), ("path.json", Format::Json)] {
+            let written = path.to_text(Path::new(file)).expect("what was read can be written");
+            let read = CameraPath::parse(&written, format, 1.5).unwrap_or_else(|error| panic!("{error:#}: {written}"));
+            assert_eq!(read, path, "{written}");
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/fuzz/src/corpus.rs"]
+mod corpus;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -343,6 +366,11 @@ forward = [0.0, 0.0, 2.0]
         assert!(GOOD.contains(from), "{from}");
         parsed(&GOOD.replacen(from, to, 1))
             .map_or_else(|error| format!("{error:#}"), |path| format!("accepted: {path:?}"))
+    }
+
+    #[test]
+    fn what_fuzzing_took_for_paths_is_refused_or_read_back_the_same() {
+        corpus::replay("camera_path", camera_path);
     }
 
     #[test]

@@ -136,7 +136,7 @@ impl FitFile {
             .collect()
     }
 
-    fn check(&self) -> Result<(), Problem> {
+    pub(super) fn check(&self) -> Result<(), Problem> {
         for (index, frame) in self.frames.iter().enumerate() {
             for (number, map) in frame.maps.iter().enumerate() {
                 map.check(&|field| format!("frames[{index}] (\"{}\").maps[{number}].{field}", frame.id))?;

@@ -11,6 +11,8 @@ mod cells;
 mod closed_form;
 mod error;
 mod fit_file;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod fuzzed;
 mod measure;
 mod ranking;
 mod scenarios;

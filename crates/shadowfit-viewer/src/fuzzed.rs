@@ -1,0 +1,50 @@
+//! What a fuzzer takes for the viewer's files; no build but its own and that of the tests has this.
+
+#[cfg(test)]
+#[path = "../../../tests/fuzz/src/corpus.rs"]
+mod corpus;
+
+use crate::link::Link;
+use crate::saved::Saved;
+use crate::script;
+
+/// Reads what the viewer saved: it is refused, or written so that it reads back the same.
+///
+/// # Panics
+///
+/// When it is neither.
+pub fn saved_toml(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let Ok(mut saved) = Saved::from_toml(text) else { return };
+    let written = saved.to_toml().expect("what was read can be written");
+    saved.is_translated = false;
+    let read = Saved::from_toml(&written).unwrap_or_else(|error| panic!("{error:#}: {written}"));
+    assert_eq!(read, saved, "{written}");
+}
+
+/// Reads a script, and each of its lines as a link.
+///
+/// # Panics
+///
+/// When a link does not come back from its own text.
+pub fn script(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let _ = script::lines("fuzzed", text);
+    for line in text.lines() {
+        let _ = script::parse(line);
+        let Ok(mut link) = Link::parse(line) else { continue };
+        let read = Link::parse(&link.to_fragment()).unwrap_or_else(|error| panic!("{error:#}: {link:?}"));
+        link.notes.clear();
+        assert_eq!(read, link);
+    }
+}
+
+#[test]
+fn what_fuzzing_took_for_saved_files_is_refused_or_read_back_the_same() {
+    corpus::replay("settings_toml", saved_toml);
+}
+
+#[test]
+fn what_fuzzing_took_for_scripts_and_links_is_refused_or_read_back_the_same() {
+    corpus::replay("script", script);
+}

@@ -1,0 +1,19 @@
+//! The files of a fuzz target, as ordinary tests read them.
+
+use std::path::Path;
+
+/// Runs a target on each file of its corpus; there must be some.
+pub(crate) fn replay(target: &str, run: impl Fn(&[u8])) {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // From the root of the repository, or from a crate of it.
+    let folder = [".", "../.."].map(|root| crates.join(root).join("tests/fuzz/corpus").join(target));
+    let folder = folder.iter().find(|folder| folder.is_dir()).expect("a folder of the target's files");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let file = entry.expect("a file").path();
+        println!("{}", file.display());
+        run(&std::fs::read(&file).expect("a file"));
+        count += 1;
+    }
+    assert!(count > 0, "{} has no files", folder.display());
+}

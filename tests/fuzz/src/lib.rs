@@ -1,0 +1,54 @@
+//! What fuzzing feeds: a function for each target, which panics when a promise is broken.
+//!
+//! Those of this folder use nothing but what is public, and the tests of the workspace run them over the files of
+//! `corpus`, too. What only the inside of a crate can reach stands in a module `fuzzed` of that crate, with its own test.
+
+#[path = "../../../examples/report/path"]
+mod path {
+    //! Enough of the report's camera paths to read their files.
+
+    #[expect(dead_code, reason = "reports read files, and this reads their content")]
+    pub(crate) mod file;
+
+    use shadowfit::PerspectiveCamera;
+    use shadowfit_params::tool::LightSettings;
+
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) struct CameraPath {
+        pub(crate) frames: Vec<PathFrame>,
+        pub(crate) light: Option<LightSettings>,
+    }
+
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) struct PathFrame {
+        pub(crate) camera: PerspectiveCamera,
+        pub(crate) group: String,
+    }
+}
+
+mod bytes;
+mod finite;
+mod fit_input;
+mod gltf_import;
+mod saved_json;
+mod settings_toml;
+mod technique_toml;
+
+pub use fit_input::fit_input;
+pub use gltf_import::gltf_import;
+pub use saved_json::saved_json;
+pub use shadowfit_truth::fuzzed::fit_file;
+pub use shadowfit_viewer::fuzzed::script;
+pub use shadowfit_wgpu::fuzzed::cache_plan;
+pub use technique_toml::technique_toml;
+
+/// Settings, and all that the viewer saves.
+pub fn settings_toml(data: &[u8]) {
+    settings_toml::settings_toml(data);
+    shadowfit_viewer::fuzzed::saved_toml(data);
+}
+
+/// Paths of cameras.
+pub fn camera_path(data: &[u8]) {
+    path::file::camera_path(data);
+}
