@@ -2,8 +2,13 @@
 
 use glam::{DVec3, Mat4, Vec3};
 
+use crate::import::MAX_COORDINATE;
 use crate::sample::{Sample, sample};
 use crate::{Node, Scene, Transform};
+
+/// Greatest weight of a morph target. With it, displacements that are as long as files may have them, moved by matrices
+/// as large as poses have them, stay far from the end of f32.
+pub(crate) const MAX_MORPH_WEIGHT: f32 = 1e6;
 
 /// One primitive drawn at one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -59,8 +64,8 @@ impl Scene {
     }
 
     /// The scene at a time of an animation (an index into [`Scene::animations`]), in seconds, which is wrapped to the
-    /// animation's duration; at rest for `None` and for an animation that does not exist. A time that is not finite
-    /// counts as 0.
+    /// animation's duration; at rest for `None`, for an animation that does not exist, and while one throws anything
+    /// farther than f32 can compute with. A time that is not finite counts as 0.
     pub fn pose(&self, animation: Option<usize>, seconds: f32) -> Pose {
         let mut locals: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
         let mut morph_weights: Vec<_> = self.nodes.iter().map(|n| self.rest_weights(n)).collect();
@@ -79,7 +84,17 @@ impl Scene {
                 }
             }
         }
-        Pose { world_from_node: self.compose(&locals), morph_weights }
+        let pose = Pose { world_from_node: self.compose(&locals), morph_weights };
+        if animation.is_none() || self.is_within_reach(&pose) { pose } else { self.pose(None, 0.0) }
+    }
+
+    /// Whether matrices and weights are so small that what they move is finite. A file is checked at rest when it is
+    /// loaded; between keys, below moving parents, an animation may reach anything.
+    fn is_within_reach(&self, pose: &Pose) -> bool {
+        let is_small = |matrix: &Mat4| matrix.to_cols_array().iter().all(|element| element.abs() <= MAX_COORDINATE);
+        pose.world_from_node.iter().all(is_small)
+            && self.skins.iter().all(|skin| pose.world_from_mesh_by_joint(skin).iter().all(is_small))
+            && pose.morph_weights.iter().flatten().all(|weight| weight.abs() <= MAX_MORPH_WEIGHT)
     }
 
     /// Whether `node` is `root` or a descendant of it; both are indices into [`Scene::nodes`].
@@ -176,5 +191,23 @@ fn looped(seconds: f32, duration: f32) -> f32 {
 fn overwrite(target: &mut [f32], source: &[f32]) {
     for (to, &from) in target.iter_mut().zip(source) {
         *to = from;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Animation, Channel, ChannelValues, Interpolation};
+
+    #[test]
+    fn what_an_animation_throws_beyond_f32_rests() {
+        let triangle = [Vec3::X * 10.0, Vec3::Y, Vec3::Z];
+        let mut scene = Scene::from_objects("thrown", &[vec![triangle]]);
+        let values = ChannelValues::Scale(vec![Vec3::ONE, Vec3::splat(2.0), Vec3::splat(3e38)]);
+        let (times, interpolation) = (vec![0.0, 1.0, 2.0], Interpolation::Step);
+        let channels = vec![Channel { node: 0, times, interpolation, values }];
+        scene.animations.push(Animation { name: String::new(), duration: 3.0, channels });
+        assert_eq!(scene.pose(Some(0), 1.5).triangles(&scene)[0].vertices, triangle.map(|corner| corner * 2.0));
+        assert_eq!(scene.pose(Some(0), 2.5), scene.pose(None, 0.0));
     }
 }

@@ -38,7 +38,7 @@ pub use self::decode::decode_image;
 use self::image::Images;
 pub use self::image::{DecodeImage, DecodedImage};
 use self::material::Materials;
-use self::mesh::MAX_COORDINATE;
+pub(crate) use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
 pub use self::size::SceneSize;
@@ -233,9 +233,7 @@ fn load_mesh(
     notes: &mut Notes,
 ) -> Result<Mesh, Problem> {
     let morph_weights = json.weights.clone().unwrap_or_default();
-    if !morph_weights.iter().all(|weight| weight.is_finite()) {
-        return Err(Problem::new(format!("{element}.weights"), "a morph weight is not finite"));
-    }
+    nodes::check_weights(&morph_weights, element)?;
     let mut primitives = Vec::new();
     for (index, primitive) in json.primitives.iter().enumerate() {
         let element = format!("{element}.primitives[{index}]");

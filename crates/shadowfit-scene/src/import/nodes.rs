@@ -4,6 +4,7 @@ use glam::{Mat4, Quat, Vec3};
 use gltf::json::{Index, Root, scene};
 
 use crate::error::{Problem, entry};
+use crate::pose::MAX_MORPH_WEIGHT;
 use crate::{Node, Transform};
 
 /// Nodes that belong to the chosen scene.
@@ -71,9 +72,7 @@ fn node(index: usize, json: &scene::Node, parent: Option<usize>) -> Result<Node,
         return Err(Problem::new(format!("nodes[{index}]"), "its transform is not finite"));
     }
     let weights = json.weights.clone().unwrap_or_default();
-    if !weights.iter().all(|weight| weight.is_finite()) {
-        return Err(Problem::new(format!("nodes[{index}].weights"), "a morph weight is not finite"));
-    }
+    check_weights(&weights, &format!("nodes[{index}]"))?;
     let name = json.name.clone().unwrap_or_default();
     Ok(Node { name, parent, rest, mesh: None, skin: None, morph_weights: weights })
 }
@@ -88,4 +87,12 @@ fn transform(json: &scene::Node) -> Transform {
         scale: json.scale.map_or(Vec3::ONE, Vec3::from_array),
         matrix,
     }
+}
+
+/// Refuses weights of morph targets that f32 cannot compute with.
+pub(super) fn check_weights(weights: &[f32], element: &str) -> Result<(), Problem> {
+    let wrong = weights.iter().find(|weight| !weight.is_finite() || weight.abs() > MAX_MORPH_WEIGHT);
+    let Some(weight) = wrong else { return Ok(()) };
+    let reason = format!("a morph weight is {weight:e}, not between -{MAX_MORPH_WEIGHT:e} and {MAX_MORPH_WEIGHT:e}");
+    Err(Problem::new(format!("{element}.weights"), reason))
 }
