@@ -46,14 +46,18 @@ pub fn run(kind: Kind, seed: u64, index: u64) -> Result<u64, String> {
         return Err("a number is not finite".to_owned());
     }
     let mut chunk = Numbers::new();
-    all.into_iter().for_each(|numbers| chunk.bits(numbers.value()));
+    for numbers in all {
+        chunk.bits(numbers.value());
+    }
     Ok(chunk.value())
 }
 
 /// One hash of those of all chunks, in their order.
 pub fn of_all(hashes: impl IntoIterator<Item = u64>) -> u64 {
     let mut all = Numbers::new();
-    hashes.into_iter().for_each(|hash| all.bits(hash));
+    for hash in hashes {
+        all.bits(hash);
+    }
     all.value()
 }
 

@@ -2,8 +2,8 @@
 
 use shadowfit::glam::{DVec3, Mat4, UVec2, Vec3};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitError, FitInput, FittedMaps, LightProjection, PerspectiveCamera, ShadowFitter,
-    SpotLight, Technique,
+    Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FittedMaps, LightProjection, PerspectiveCamera,
+    ShadowFitter, SpotLight, Technique,
 };
 
 /// Fits a frame, and checks all that is said of it.
@@ -12,7 +12,7 @@ pub(crate) fn fit(fitter: &mut ShadowFitter, input: &FitInput) -> Result<(), Fit
     let maps = *fitter.fit(input)?;
     check_maps(&maps);
     let volumes = maps.caster_volumes(input.views, &technique)?;
-    for plane in volumes.iter().flat_map(|volume| volume.active_planes()) {
+    for plane in volumes.iter().flat_map(CasterVolume::active_planes) {
         assert!(plane.is_finite(), "{technique:?}: a plane of casters is {plane}");
     }
     Ok(())
