@@ -20,7 +20,8 @@ pub const TRANSLATED: &str = "it was saved by an earlier version, and has been t
 /// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
 /// `settings.`.
 ///
-/// Numbers that are not finite are left out.
+/// Numbers that are not finite are left out. Those out of their range, such as the near plane of a tiny scene, are written
+/// as the nearest one within, which can be read.
 pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
     write_settings(settings, prefix, |_| true)
 }
@@ -49,6 +50,7 @@ pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Resul
 
 /// The tables of some groups.
 pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Group) -> bool) -> String {
+    let settings = &within_ranges(settings);
     let mut text = String::new();
     for group in Group::ALL.into_iter().filter(|group| has(*group)) {
         let _ = writeln!(text, "[{prefix}{}]", group.id());
@@ -60,6 +62,19 @@ pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Gro
         text.push('\n');
     }
     text
+}
+
+/// Settings with each finite number in its parameter's range.
+fn within_ranges(settings: &Settings) -> Settings {
+    let mut within = *settings;
+    for parameter in PARAMETERS {
+        let Kind::Number(range) = &parameter.kind else { continue };
+        let is_out = |number: &f64| number.is_finite() && !(range.min..=range.max).contains(number);
+        if parameter.number(settings).is_some_and(|number| is_out(&number)) {
+            parameter.copy(&mut within, settings);
+        }
+    }
+    within
 }
 
 /// Sets the parameters of some groups from a table. Any other group is an error, and the settings are unchanged then.
@@ -157,6 +172,16 @@ mod tests {
 
     fn table(text: &str) -> toml::Table {
         toml::from_str(text).expect("TOML")
+    }
+
+    #[test]
+    fn a_number_out_of_its_range_is_written_as_the_nearest_one_within() {
+        let mut settings = Settings::default();
+        settings.camera.near = 0.004;
+        let file: toml::Table = toml::from_str(&settings_to_toml(&settings, "")).expect("TOML");
+        let mut read = Settings::default();
+        settings_from_toml(&file, &mut read).expect("it can be read");
+        assert_eq!(read.camera.near, 0.01);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use shadowfit_classics::SampleValues;
 use shadowfit_egui::Command;
+use shadowfit_params::Kind;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
@@ -113,7 +114,7 @@ impl Viewer {
         arguments.apply_what_is_there(&mut home)?;
         self.stage.settings = home;
         self.stage.set_home();
-        let mut settings = if source == self.source { kept } else { of_scene(&kept, &home) };
+        let mut settings = if source == self.source { with_own_near(kept, &home) } else { of_scene(&kept, &home) };
         // Arguments win over saved settings.
         let technique = arguments.apply(&mut settings)?;
         self.stage.settings = settings;
@@ -172,6 +173,18 @@ impl Viewer {
             self.say(message);
         }
     }
+}
+
+/// Settings of the same scene. A file holds no nearer near plane than the parameter's range has, but a tiny scene may.
+fn with_own_near(mut kept: Settings, home: &Settings) -> Settings {
+    let least = shadowfit_params::parameter("camera.near").and_then(|near| match &near.kind {
+        Kind::Number(range) => Some(range.min as f32),
+        _ => None,
+    });
+    if least.is_some_and(|least| kept.camera.near == least && home.camera.near < least) {
+        kept.camera.near = home.camera.near;
+    }
+    kept
 }
 
 /// Settings of another scene, with the lengths and the light of this one.
