@@ -66,6 +66,7 @@ impl FitState {
     /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of slices outside 2..=8, an overlap or λ outside 0..=1,
     /// a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and hold settings, softness, fade, depth steps or rays that are out of range;
     /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
+    /// [`FitError::NotFinite`] for biases that are not finite, or not at the size of a map's texels;
     /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightProjection::is_empty). An error leaves the fitter as it was.
     pub fn fit(
@@ -145,7 +146,7 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
     let PlacedMap { volume, near, far, covered_near } = placed;
     map.projection =
         LightProjection::from_volume(frame.content.origin, volume, frame.rule.resolution, frame.rule.convention)?;
-    map.bias = Bias::from_texels(&frame.technique.bias, frame.technique.format, &map.projection);
+    map.bias = Bias::from_texels(&frame.technique.bias, frame.technique.format, &map.projection).checked()?;
     map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
     (map.near, map.far, map.covered_near) = (*near, *far, *covered_near);
     Ok(())

@@ -106,6 +106,11 @@ pub(super) enum Event {
     InvalidateAll,
 }
 
+/// Whether an object is at a place, where the same box then stands for the same shape.
+fn is_there(object: &Object, centre: DVec3) -> bool {
+    (object.centre - centre).length() < 0.01
+}
+
 /// The casters that a sample holds: a bit for each of the last 128 static ones that came, and for each place of the
 /// last frames of those that move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -217,15 +222,18 @@ impl World {
                 let (bit, number) = (self.next_bit(), self.number(*number));
                 let (centre, half) = at(place);
                 let object = &mut self.objects[number];
-                // The same box stands for the same shape.
-                if (object.centre - PLACE - centre).length() > 0.01 {
+                if !is_there(object, PLACE + centre) {
                     (object.centre, object.half, object.bit) = (PLACE + centre, half, bit);
                 }
             }
             Event::PlaceAll(by) => {
+                let before = self.objects.clone();
                 for number in 0..self.objects.len() {
-                    self.objects[number].centre.x += by;
-                    self.objects[number].bit = self.next_bit();
+                    let object = &mut self.objects[number];
+                    object.centre.x += by;
+                    let Object { centre, half, .. } = *object;
+                    let former = before.iter().find(|former| former.half == half && is_there(former, centre));
+                    self.objects[number].bit = former.map_or_else(|| self.next_bit(), |former| former.bit);
                 }
             }
             Event::Reshape(number) => {
