@@ -253,10 +253,10 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
             depth_rounding,
             point_reach,
             unsure_maps,
-            unknown_count,
             sun_tangent,
             padding_0,
             padding_1,
+            padding_2,
             points,
             unknown,
         }

@@ -40,6 +40,7 @@ use crate::undo::{History, State};
 
 #[cfg(not(target_family = "wasm"))]
 pub(crate) use commands::compared_with;
+#[cfg(not(target_family = "wasm"))]
 pub(crate) use faults::Renewals;
 use saving::Saving;
 pub(crate) use start::Start;

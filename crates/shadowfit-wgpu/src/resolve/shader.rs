@@ -77,7 +77,8 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
     let list = LIST.replace("LIST_COUNT", "atomic<u32>");
     let pass =
         [include_str!("../shaders/resolve_classify.wgsl"), include_str!("../shaders/resolve_soft.wgsl")].concat();
-    [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass.replace("COMPARE", closer)].concat()
+    let pass = pass.replace("COMPARE", closer).replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string());
+    [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass].concat()
 }
 
 /// The WGSL of the passes that bound a map's depths: entry points `gather_blocks` and `join_blocks`.

@@ -48,10 +48,10 @@ impl Source {
             depth_rounding: rounding(texture.format()),
             point_reach,
             unsure_maps: unknown.maps,
-            unknown_count: unknown.count as u32,
             sun_tangent: if descriptor.filter.is_soft() { descriptor.softness.tangent() } else { 0.0 },
             padding_0: 0,
             padding_1: 0,
+            padding_2: 0,
             points,
             unknown: unknown.boxes,
         };

@@ -31,10 +31,10 @@ pub struct ResolveUniform {
     pub depth_rounding: [f32; 2],
     pub point_reach: f32,
     pub unsure_maps: u32,
-    pub unknown_count: u32,
     pub sun_tangent: f32,
     pub padding_0: u32,
     pub padding_1: u32,
+    pub padding_2: u32,
     pub points: [[f32; 4]; MAX_POINTS],
     pub unknown: [UnknownUniform; MAX_UNKNOWN],
 }

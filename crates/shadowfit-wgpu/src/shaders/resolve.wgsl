@@ -35,13 +35,14 @@ struct Resolve {
     point_reach: f32,
     // Maps, by the bits of their layers, that are not sure anywhere.
     unsure_maps: u32,
-    unknown_count: u32,
     // Tangent of the sun's angular radius; 0 for a point.
     sun_tangent: f32,
     padding_0: u32,
     padding_1: u32,
+    padding_2: u32,
     // xy: from the pixel's first sample, in pixels; zw: from the sun's centre, in its radii.
     points: array<vec4<f32>, MAX_POINTS>,
+    // Those in use first; behind them boxes that say nothing.
     unknown: array<Unknown, MAX_UNKNOWN>,
 }
 

@@ -87,9 +87,15 @@ fn meets(unknown: Unknown, position: vec3<f32>) -> bool {
 // The bits of the maps that are not sure of a point; of all of them, and the highest bit, where the filter decides.
 fn unsure_maps(position: vec3<f32>) -> u32 {
     var maps = resolve.unsure_maps;
-    for (var box = 0u; box < resolve.unknown_count; box += 1u) {
+    // Until a box that says nothing, and not for a number of them: software rasterisers build a shader for each dispatch
+    // where uniforms alone end a loop.
+    for (var box = 0u; box < MAX_UNKNOWNu; box += 1u) {
+        let under = resolve.unknown[box].maps | (resolve.unknown[box].is_filtered << 31u);
+        if under == 0u {
+            break;
+        }
         if meets(resolve.unknown[box], position) {
-            maps |= resolve.unknown[box].maps | (resolve.unknown[box].is_filtered << 31u);
+            maps |= under;
         }
     }
     return maps;
