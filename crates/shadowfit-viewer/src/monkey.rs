@@ -1,10 +1,10 @@
 //! Random actions: keys, clicks, drags, turns of the wheel, resizes and dropped files, good and hostile. They prove that
-//! the viewer survives them, and measure its memory with the same scene before and after.
+//! the viewer survives them, and measure its memory with the same scene and settings before and after.
 
 use std::path::PathBuf;
 
 use egui::{Event, Key};
-use shadowfit_egui::{Chord, Command, Toggle};
+use shadowfit_egui::{Chord, Command};
 
 use crate::effect::{Activity, Effect};
 use crate::script::Monkey;
@@ -124,12 +124,13 @@ impl MonkeyRun {
         true
     }
 
-    /// Releases all keys and goes back to the scene with which memory is measured.
+    /// Releases all keys and goes back to the scene and the settings with which memory is measured: maps alone may take a
+    /// gigabyte.
     fn rest(&mut self, phase: Phase, effects: &mut Vec<Effect>) {
         effects.extend(self.held.drain(..).map(|chord| Effect::Key(chord, false)));
         effects.push(Effect::Resize(SIZES[0]));
         let open = Command::Open(SceneSource::default().text());
-        effects.extend([Command::Compare(Toggle::Off), Command::CancelTune, open].map(Effect::Run));
+        effects.extend([Command::CancelTune, Command::Reset, open].map(Effect::Run));
         self.phase = phase;
     }
 

@@ -148,6 +148,12 @@ struct Head {
     bookmark: Vec<Bookmark>,
 }
 
+/// A text as a key, which values' quotes over several lines cannot be.
+fn key(text: &str) -> Result<String> {
+    let line = toml::to_string(&toml::Table::from_iter([(text.to_owned(), toml::Value::from(0))]))?;
+    Ok(line.strip_suffix(" = 0\n").context("a key is a line")?.to_owned())
+}
+
 impl Saved {
     /// Puts a file at the front of those that were opened last.
     pub(crate) fn remember(&mut self, path: &Path) {
@@ -174,7 +180,7 @@ impl Saved {
         if !self.sample.is_empty() {
             text.push_str("[sample]\n\n");
             for (option, value) in &self.sample {
-                let _ = writeln!(text, "{option} = {}", toml::Value::from(value.as_str()));
+                let _ = writeln!(text, "{} = {}", key(option)?, toml::Value::from(value.as_str()));
             }
             text.push('\n');
         }
@@ -183,7 +189,7 @@ impl Saved {
             text.push_str(&technique_to_toml(&other, self.settings.inputs, "other."));
         }
         for preset in &self.presets {
-            let name = toml::Value::from(preset.name.as_str());
+            let name = key(&preset.name)?;
             let _ = writeln!(text, "[presets.{name}]\n");
             text.push_str(&technique_to_toml(&preset.technique, preset.inputs, &format!("presets.{name}.")));
         }

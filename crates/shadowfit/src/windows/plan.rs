@@ -145,7 +145,7 @@ impl Planner<'_> {
     /// Moves each window that no longer holds most of what it could. `holds` has the shares of the cost
     /// that windows held when their best places were last looked for: one window is looked at in each
     /// turn, and those that hold less than they did.
-    pub(super) fn keep(&self, plan: &mut Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
+    pub(super) fn keep(&self, plan: &mut Plan, best: &Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
         for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
             let all = self.cells.sum(&self.cells.cost, &left, |cost, left| cost * left);
@@ -154,10 +154,12 @@ impl Planner<'_> {
             if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
                 let mut moved = *plan;
                 moved.rects[i] = self.kept(&plan.rects[i], &left);
-                // Two windows do not change places for what a coarser one holds already.
+                // For what a coarser window holds already, two do not change places, and none leaves the place that it has
+                // in the best plan: it would be put back again and again.
                 let way = (moved.rects[i].min - plan.rects[i].min).abs();
                 let is_leap = way.cmpgt(plan.rects[i].size * 0.5).any();
-                if !is_leap || self.cost(&moved) < self.cost(plan) {
+                let is_best = (plan.steps[i], plan.rects[i]) == (best.steps[i], best.rects[i]);
+                if !(is_leap || is_best) || self.cost(&moved) < self.cost(plan) {
                     *plan = moved;
                 }
                 *holds = share(&plan.rects[i]);

@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
     /// Moves the drawn windows as little as they can be, and replaces some where the best plan is better by enough.
     fn draw(&mut self, is_told: bool) {
         let Progress { next, holds, age, .. } = &mut self.progress;
-        self.planner.keep(&mut self.drawn, holds, *next);
+        self.planner.keep(&mut self.drawn, &self.best, holds, *next);
         let most = SERVES + SERVES_LONGER * (1.0 - f32::from(*age) / f32::from(OLD));
         let (followed, goes_on) = if is_told {
             (self.planner.follow_at_once(self.drawn, &self.best), false)
