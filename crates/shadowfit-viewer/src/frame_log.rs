@@ -22,7 +22,9 @@ pub(crate) struct FrameLog {
     is_ready: bool,
     /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
     longest: Duration,
-    /// The same since the start.
+    /// Longest time that a core worked for one since then.
+    most_cpu: Duration,
+    /// Longest time of `longest` since the start.
     longest_of_all: Duration,
     /// Frames by the time that a core worked for them, without those in which a scene was loaded.
     classes: Vec<u64>,
@@ -30,14 +32,15 @@ pub(crate) struct FrameLog {
 
 impl FrameLog {
     pub(crate) fn new(start: Instant) -> Self {
-        let (longest, longest_of_all) = (Duration::ZERO, Duration::ZERO);
-        Self { start, frames: 0, is_ready: false, longest, longest_of_all, classes: vec![0; CLASSES] }
+        let [longest, most_cpu, longest_of_all] = [Duration::ZERO; 3];
+        Self { start, frames: 0, is_ready: false, longest, most_cpu, longest_of_all, classes: vec![0; CLASSES] }
     }
 
     /// Notes a frame, whose own time is without waits for the GPU. `ready` is the window's title once there is a scene.
     pub(crate) fn frame(&mut self, own: Spent, frame_ms: f32, is_loading: bool, ready: Option<String>) {
         self.frames += 1;
         self.longest = self.longest.max(own.wall);
+        self.most_cpu = self.most_cpu.max(own.cpu);
         self.longest_of_all = self.longest_of_all.max(own.wall);
         if !is_loading {
             self.classes[class(ms(own.cpu))] += 1;
@@ -49,9 +52,13 @@ impl FrameLog {
         if self.frames.is_multiple_of(LOG_EVERY) {
             let seconds = self.start.elapsed().as_secs();
             let memory = memory().map_or_else(String::new, |bytes| format!(", {:.0} MB", bytes as f64 / 1e6));
-            let longest = ms(self.longest);
-            eprintln!("frame {} at {seconds} s: {frame_ms:.1} ms, longest block {longest:.1} ms{memory}", self.frames);
-            self.longest = Duration::ZERO;
+            let [longest, most_cpu] = [self.longest, self.most_cpu].map(ms);
+            eprintln!(
+                "frame {} at {seconds} s: {frame_ms:.1} ms, longest block {longest:.1} ms, own CPU time up to {most_cpu:.1} \
+                 ms{memory}",
+                self.frames
+            );
+            (self.longest, self.most_cpu) = (Duration::ZERO, Duration::ZERO);
         }
     }
 

@@ -277,7 +277,8 @@ fn lowered(mut volume: CasterVolume, fit: &LightProjection, depth: f64) -> Caste
     let planes = volume.planes.iter_mut().take(volume.count as usize);
     for plane in planes.filter(|plane| !stored.active_planes().contains(plane)) {
         let upward = f64::from(plane.truncate().dot(to_light).max(0.0));
-        plane.w += (upward * depth) as f32;
+        // Biases may be of any size, planes stay finite.
+        plane.w = (plane.w + (upward * depth) as f32).min(f32::MAX);
     }
     volume
 }
