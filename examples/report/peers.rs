@@ -58,7 +58,6 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         files.push(file);
     }
     let mut pictures = if args.no_render { None } else { Some(Pictures::new(&ranking, &files, args)?) };
-    make_folder(&args.out)?;
     measure(&mut ranking, args, pictures.as_mut(), interrupt)?;
     let tables = ranking.tables();
     print!("{}", overall_markdown(&tables));
@@ -79,6 +78,8 @@ fn measure(
     for (index, scene) in scenarios.scenes.iter().enumerate() {
         progress.set_message(scene.name.clone());
         let objects = args.geometry.read(scene)?;
+        // A scene that cannot be read leaves no folder, and one that cannot be made is told before anything is measured.
+        make_folder(&args.out)?;
         let tracer = Tracer::new(objects.iter().flatten().copied());
         ranking.measure_scene(index, &tracer, args.stride, &|| progress.inc(1));
         if let Some(pictures) = &mut pictures {

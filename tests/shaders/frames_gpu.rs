@@ -100,7 +100,7 @@ fn statistics_and_times_of_a_frame_have_what_its_probe_drew() {
 fn a_probe_of_other_maps_leaves_the_times_of_the_picture_as_they_are() {
     let (mut pictures, seen) = Pictures::new(&technique(), 1);
     let targets = ProbeTargets::new(&pictures.gpu.device, SIZE);
-    // Each probe ends the frame of one before it, so that the second and the third tell of the first two.
+    // Each probe ends the frame of one before it, so that later ones tell of it.
     let probe = |pictures: &mut Pictures| {
         pictures.renderer.draw_probe(&pictures.gpu, &mut pictures.scene, &seen.frame(), &targets).expect("a probe");
         targets.read(&pictures.gpu).expect("it is finished");
@@ -108,10 +108,11 @@ fn a_probe_of_other_maps_leaves_the_times_of_the_picture_as_they_are() {
     };
     pictures.draw(&seen.frame());
     pictures.read();
-    probe(&mut pictures);
-    let [first, second] = [(); 2].map(|()| probe(&mut pictures));
-    assert!(first.scene_ms.is_some() && first.shadow_ms.is_some() && first.probe_ms.is_none(), "{first:?}");
-    let second = [second, probe(&mut pictures)].into_iter().find(|times| times.probe_ms.is_some()).expect("a probe");
+    // How many frames late times are is the device's affair.
+    let told = [(); 4].map(|()| probe(&mut pictures));
+    let first = told.iter().find(|times| times.scene_ms.is_some()).expect("a picture");
+    assert!(first.shadow_ms.is_some() && first.probe_ms.is_none(), "{told:?}");
+    let second = told.iter().find(|times| times.probe_ms.is_some()).expect("a probe");
     assert_eq!((second.scene_ms, second.maps_ms), (first.scene_ms, first.maps_ms));
     // A picture that draws its maps itself is a frame without the probe; the further one tells of it.
     pictures.draw(&seen.frame());
