@@ -5,7 +5,7 @@ use shadowfit::glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit::settings::{FilterKind, MapSelection};
 use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_render::{
-    Culling, Frame, Inset, JudgedPicture, Marks, Overlay, ProbeTargets, Quad, Statistics, classes_texture,
+    Culling, Frame, Inset, JudgedPicture, Marks, Overlay, PassTimes, ProbeTargets, Quad, Statistics, classes_texture,
 };
 use shadowfit_scene::Scene;
 
@@ -110,10 +110,10 @@ fn a_probe_of_other_maps_leaves_the_times_of_the_picture_as_they_are() {
     pictures.read();
     // How many frames late times are is the device's affair.
     let told = [(); 4].map(|()| probe(&mut pictures));
-    let first = told.iter().find(|times| times.scene_ms.is_some()).expect("a picture");
-    assert!(first.shadow_ms.is_some() && first.probe_ms.is_none(), "{told:?}");
-    let second = told.iter().find(|times| times.probe_ms.is_some()).expect("a probe");
-    assert_eq!((second.scene_ms, second.maps_ms), (first.scene_ms, first.maps_ms));
+    let of_picture = |times: &PassTimes| (times.scene_ms, times.shadow_ms, times.maps_ms);
+    let [.., before, last] = &told;
+    assert!(last.probe_ms.is_some() && last.scene_ms.is_some() && last.shadow_ms.is_some(), "{told:?}");
+    assert_eq!(of_picture(before), of_picture(last), "{told:?}");
     // A picture that draws its maps itself is a frame without the probe; the further one tells of it.
     pictures.draw(&seen.frame());
     pictures.read();

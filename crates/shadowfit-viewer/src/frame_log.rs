@@ -6,8 +6,8 @@ use shadowfit_render::Spent;
 
 use crate::monkey::memory;
 
-/// Frames between two lines.
-const LOG_EVERY: u64 = 60;
+/// Frames between two lines, and the time that they are not farther apart than.
+const LOG_EVERY: (u64, Duration) = (60, Duration::from_secs(4));
 /// Least time of a frame that is told from others, in milliseconds.
 const LEAST_MS: f64 = 0.01;
 /// Factor from one class of times to the next.
@@ -18,6 +18,7 @@ const CLASSES: usize = 900;
 /// What was seen of the frames since the start. It takes no more memory however many there are.
 pub(crate) struct FrameLog {
     start: Instant,
+    last_line: Instant,
     frames: u64,
     is_ready: bool,
     /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
@@ -33,7 +34,16 @@ pub(crate) struct FrameLog {
 impl FrameLog {
     pub(crate) fn new(start: Instant) -> Self {
         let [longest, most_cpu, longest_of_all] = [Duration::ZERO; 3];
-        Self { start, frames: 0, is_ready: false, longest, most_cpu, longest_of_all, classes: vec![0; CLASSES] }
+        Self {
+            start,
+            last_line: start,
+            frames: 0,
+            is_ready: false,
+            longest,
+            most_cpu,
+            longest_of_all,
+            classes: vec![0; CLASSES],
+        }
     }
 
     /// Notes a frame, whose own time is without waits for the GPU. `ready` is the window's title once there is a scene.
@@ -49,7 +59,7 @@ impl FrameLog {
             self.is_ready = true;
             eprintln!("ready: {title} after {:.2} s", self.start.elapsed().as_secs_f32());
         }
-        if self.frames.is_multiple_of(LOG_EVERY) {
+        if self.frames.is_multiple_of(LOG_EVERY.0) || self.last_line.elapsed() >= LOG_EVERY.1 {
             let seconds = self.start.elapsed().as_secs();
             let memory = memory().map_or_else(String::new, |bytes| format!(", {:.0} MB", bytes as f64 / 1e6));
             let [longest, most_cpu] = [self.longest, self.most_cpu].map(ms);
@@ -58,7 +68,7 @@ impl FrameLog {
                  ms{memory}",
                 self.frames
             );
-            (self.longest, self.most_cpu) = (Duration::ZERO, Duration::ZERO);
+            (self.longest, self.most_cpu, self.last_line) = (Duration::ZERO, Duration::ZERO, Instant::now());
         }
     }
 
