@@ -31,11 +31,11 @@
 //! the sum of s^(-3/2) over the points inside, those in finer windows left out, is greatest, whatever
 //! its texels; all places are compared by sums over a raster. The sizes are searched one at a time, frame
 //! after frame, in a background plan, and in a second one that is restarted regularly. A window that is drawn
-//! moves as little as it can, when it holds less than 99.3% of what it could. One of them is replaced by its
-//! counterpart in the background plan when all of them together cost 1.35 times as much as the plan; this limit
-//! falls to 1.1 within a second (at 60 frames a second) after the last replacement. Where it takes several to gain,
-//! the others follow in the next frames; several are replaced at once only in the frame in which the first demand
-//! grid arrives.
+//! moves as little as it can, when it holds less than 99.3% of what it could, but not away from where the background
+//! plan has it if all together would cost more. One of them is replaced by its counterpart in that plan when all
+//! of them together cost 1.35 times as much as the plan; this limit falls to 1.1 within a second (at 60 frames a
+//! second) after the last replacement. Where it takes several to gain, the others follow in the next frames;
+//! several are replaced at once only in the frame in which the first demand grid arrives.
 //!
 //! **Whole.** The last window holds the boxes of all receivers in view, and every window's depth range
 //! holds all receivers' and casters' boxes over it, seen or not: what stands still need not be drawn
