@@ -97,6 +97,27 @@ fn a_lost_device_is_told_once_and_the_window_comes_back_as_it_was() {
 }
 
 #[test]
+fn a_surface_that_has_no_texture_for_a_frame_has_one_later() {
+    let Some(desktop) = desktop("refused") else { return };
+    let (script, before, after) = (desktop.file("refuse.txt"), desktop.file("before.png"), desktop.file("after.png"));
+    let still = "await loaded\nset view.judge off\ntechnique stable-4\nframes 4\n";
+    let refused = ["lost", "outdated", "timeout", "occluded", "lost"].map(|answer| {
+        // What the surface is made anew with is not what it had when it was made first.
+        format!("refuse-frame {answer}\nframes 3\nresize 700 500\nrefuse-frame {answer}\nresize 960 600\nframes 4\n")
+    });
+    let (refused, [shown, later]) = (refused.concat(), [&before, &after].map(|path| path.display()));
+    std::fs::write(&script, format!("{still}picture {shown}\n{refused}picture {later}\nquit\n")).expect("a script");
+    let script = script.display().to_string();
+    let mut viewer = Viewer::start(&desktop, &[&ARGUMENTS[..], &["--script", &script]].concat());
+    assert_eq!(viewer.exit_code(PATIENCE * 2), Some(0), "{}", viewer.log());
+    let log = viewer.log();
+    assert!(!log.contains("panicked") && !log.to_lowercase().contains("validation"), "{log}");
+    let [before, after] = [before, after].map(|path| image::open(path).expect("a picture").to_rgb8());
+    assert_eq!(before.dimensions(), after.dimensions());
+    assert!(before == after, "the picture is another one after what the surface refused");
+}
+
+#[test]
 fn a_bad_line_of_a_script_is_named_and_the_exit_code_is_2() {
     let Some(desktop) = desktop("bad-script") else { return };
     let script = desktop.file("bad.txt");

@@ -7,7 +7,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync, existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { after, before, describe, test } from 'node:test';
+import { after, afterEach, before, describe, test } from 'node:test';
 import { chromium } from 'playwright-core';
 
 const { PAGE, NATIVE, BROWSER, ASSETS, LONG } = process.env;
@@ -42,6 +42,7 @@ class Viewer {
       acceptDownloads: true,
       permissions: ['clipboard-read', 'clipboard-write'],
     });
+    context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     const viewer = new Viewer();
     // Pictures are compared in a page of their own: that takes longer than the tasks of the viewer's page may.
@@ -206,6 +207,13 @@ for (const api of ['webgpu', 'webgl2']) {
       viewer = await Viewer.open(browser, { api });
     });
     after(async () => browser?.close());
+    // What a test has left open is closed, so that the next one has the software GPU for itself.
+    afterEach(async () => {
+      await Promise.all(browser.contexts().filter((context) => context !== viewer.context).map((context) => context.close()));
+      if (viewer.page.url() === 'about:blank') {
+        await viewer.wake();
+      }
+    });
 
     test('the page loads with its API and shows a picture', async () => {
       assert.equal(await viewer.page.evaluate(() => document.documentElement.dataset.api), api);

@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex};
-use std::thread::sleep;
+use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
 use super::shot::Shot;
@@ -104,6 +104,7 @@ pub(super) struct Viewer {
     program: Running,
     display: String,
     log: Arc<Mutex<Vec<String>>>,
+    reader: Option<JoinHandle<()>>,
     window: String,
 }
 
@@ -118,10 +119,17 @@ impl Viewer {
         }
         // The size of the screen in millimetres is made up, so the scale must not be taken from it.
         command.env("WINIT_X11_SCALE_FACTOR", "1");
+        // Where it is missing, the graphics driver complains in the log.
+        command.env("XDG_RUNTIME_DIR", &home);
+        // What is freed is given back: the C library would keep hundreds of megabytes of it for what its threads may ask for
+        // next, and nobody could tell those from a leak.
+        for (variable, value) in [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "131072")] {
+            command.env(variable, value);
+        }
         let mut program =
             Running(command.stdin(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the viewer starts"));
-        let log = collect_lines(program.0.stderr.take().expect("the errors are piped"));
-        Self { program, display: desktop.display.clone(), log, window: String::new() }
+        let (log, reader) = collect_lines(program.0.stderr.take().expect("the errors are piped"));
+        Self { program, display: desktop.display.clone(), log, reader: Some(reader), window: String::new() }
     }
 
     /// Waits until the viewer's standard error holds a line with `word` in it.
@@ -184,8 +192,12 @@ impl Viewer {
 
     /// The exit code, `None` when the viewer does not end within `limit` or a signal ends it.
     pub(super) fn exit_code(&mut self, limit: Duration) -> Option<i32> {
-        until(limit, || self.program.0.try_wait().expect("the viewer can be waited for"))
-            .and_then(|status| status.code())
+        let status = until(limit, || self.program.0.try_wait().expect("the viewer can be waited for"))?;
+        // All that it said has been read then.
+        if let Some(reader) = self.reader.take() {
+            reader.join().expect("the log's thread does not panic");
+        }
+        status.code()
     }
 
     /// What the viewer said on its standard error.
@@ -225,13 +237,13 @@ fn until<T>(limit: Duration, mut look: impl FnMut() -> Option<T>) -> Option<T> {
 }
 
 /// Reads lines on a thread of their own, so that the writer never waits for a full pipe.
-fn collect_lines(source: ChildStderr) -> Arc<Mutex<Vec<String>>> {
+fn collect_lines(source: ChildStderr) -> (Arc<Mutex<Vec<String>>>, JoinHandle<()>) {
     let lines = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&lines);
-    std::thread::spawn(move || {
+    let reader = std::thread::spawn(move || {
         for line in BufReader::new(source).lines().map_while(Result::ok) {
             sink.lock().expect("no other thread panics with the log in hand").push(line);
         }
     });
-    lines
+    (lines, reader)
 }

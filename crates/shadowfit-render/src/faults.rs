@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Gpu;
+use crate::wait::making;
 
 /// Most faults that wait to be taken: one often brings others in each frame.
 const MOST_FAULTS: usize = 8;
@@ -136,11 +137,11 @@ impl Gpu {
     /// [`DeviceFault`]; what was made meanwhile is gone.
     pub fn try_making<T>(&self, make: impl FnOnce() -> T) -> Result<T, DeviceFault> {
         if cfg!(target_family = "wasm") {
-            return Ok(make());
+            return Ok(making(make));
         }
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let made = make();
+        let made = making(make);
         let [validation, memory] = [validation, memory].map(|scope| pollster::block_on(scope.pop()));
         // What is used in vain after the memory was gone is no fault of its own.
         match memory.or(validation) {

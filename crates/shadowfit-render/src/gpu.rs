@@ -132,6 +132,8 @@ impl Gpu {
                 label: Some("shadowfit"),
                 required_features: adapter.features() & wanted.features,
                 required_limits: wanted.limits.clone().unwrap_or_else(|| usual_limits(&adapter)),
+                // Maps and scenes come and go: what is left in a block of 128 MiB and more keeps the whole of it.
+                memory_hints: wgpu::MemoryHints::MemoryUsage,
                 ..Default::default()
             })
             .await

@@ -4,6 +4,7 @@ use core::mem::offset_of;
 
 use crate::target::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::uniform::InstanceData;
+use crate::wait::making;
 
 /// Makes modules, layouts and pipelines.
 #[derive(Clone, Copy, Debug)]
@@ -97,10 +98,8 @@ impl<'a> Shape<'a> {
 impl Maker<'_> {
     /// A module of WGSL.
     pub fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        })
+        let source = wgpu::ShaderSource::Wgsl(source.into());
+        making(|| self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source }))
     }
 
     /// The layout of bind groups in their order.
@@ -116,7 +115,7 @@ impl Maker<'_> {
     /// A pipeline.
     pub fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
         let compilation_options = wgpu::PipelineCompilationOptions { constants: shape.constants, ..Default::default() };
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        let descriptor = wgpu::RenderPipelineDescriptor {
             label: Some(shape.label),
             layout: Some(shape.layout),
             vertex: wgpu::VertexState {
@@ -136,7 +135,8 @@ impl Maker<'_> {
             }),
             multiview_mask: None,
             cache: None,
-        })
+        };
+        making(|| self.device.create_render_pipeline(&descriptor))
     }
 }
 

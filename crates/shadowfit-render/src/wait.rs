@@ -7,6 +7,8 @@ use web_time::Instant;
 
 std::thread_local! {
     static WAITED: Cell<Spent> = const { Cell::new(Spent::ZERO) };
+    /// How many things were made that later frames use again.
+    static MADE: Cell<u64> = const { Cell::new(0) };
 }
 
 /// Time that a thread has spent.
@@ -16,19 +18,23 @@ pub struct Spent {
     pub wall: Duration,
     /// In which a core worked for it; the same as the wall's on systems that do not tell.
     pub cpu: Duration,
+    /// Whether something was made in it that later frames use again: pipelines, shadow maps, buffers of a scene.
+    pub is_making: bool,
 }
 
 impl Spent {
-    const ZERO: Self = Self { wall: Duration::ZERO, cpu: Duration::ZERO };
+    const ZERO: Self = Self { wall: Duration::ZERO, cpu: Duration::ZERO, is_making: false };
 
     /// Both together.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
-        Self { wall: self.wall + other.wall, cpu: self.cpu + other.cpu }
+        let is_making = self.is_making || other.is_making;
+        Self { wall: self.wall + other.wall, cpu: self.cpu + other.cpu, is_making }
     }
 
     fn less(self, other: Self) -> Self {
-        Self { wall: self.wall.saturating_sub(other.wall), cpu: self.cpu.saturating_sub(other.cpu) }
+        let [wall, cpu] = [self.wall.saturating_sub(other.wall), self.cpu.saturating_sub(other.cpu)];
+        Self { wall, cpu, is_making: self.is_making }
     }
 }
 
@@ -47,7 +53,7 @@ impl Clock {
     fn spent(self) -> Spent {
         let wall = self.begin.elapsed();
         let worked = self.cpu.zip(cpu()).map(|(begin, end)| end.saturating_sub(begin));
-        Spent { wall, cpu: worked.unwrap_or(wall) }
+        Spent { wall, cpu: worked.unwrap_or(wall), is_making: false }
     }
 }
 
@@ -67,10 +73,17 @@ pub(crate) fn waiting<T>(wait: impl FnOnce() -> T) -> T {
     result
 }
 
+/// Makes something that later frames use again.
+pub(crate) fn making<T>(make: impl FnOnce() -> T) -> T {
+    MADE.set(MADE.get() + 1);
+    make()
+}
+
 /// Does something, and returns how long that took this thread without its waits for the GPU, in read-backs and
 /// submissions.
 pub fn own_time<T>(work: impl FnOnce() -> T) -> (T, Spent) {
-    let (clock, waited) = (Clock::start(), WAITED.get());
+    let (clock, waited, made) = (Clock::start(), WAITED.get(), MADE.get());
     let done = work();
-    (done, clock.spent().less(WAITED.get().less(waited)))
+    let spent = clock.spent().less(WAITED.get().less(waited));
+    (done, Spent { is_making: MADE.get() != made, ..spent })
 }

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use egui::{Event, Modifiers, PointerButton, Pos2};
 use shadowfit_egui::{Chord, Command};
 
+use crate::script::Refusal;
+
 /// Something that happens in a frame because a script asks for it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
@@ -20,6 +22,8 @@ pub(crate) enum Effect {
     Drop(PathBuf),
     /// Destroys the graphics device.
     LoseDevice,
+    /// Lets the window's surface refuse the next frame.
+    Refuse(Refusal),
     /// Prints a line to the standard error.
     Print(String),
 }

@@ -27,8 +27,10 @@ pub(crate) struct FrameLog {
     most_cpu: Duration,
     /// Longest time of `longest` since the start.
     longest_of_all: Duration,
-    /// Frames by the time that a core worked for them, without those in which a scene was loaded.
+    /// Frames by the time that a core worked for them, without those in which a scene was loaded or something made.
     classes: Vec<u64>,
+    /// Number of those, and the longest time that a core worked for one.
+    loads: (u64, Duration),
 }
 
 impl FrameLog {
@@ -43,6 +45,7 @@ impl FrameLog {
             most_cpu,
             longest_of_all,
             classes: vec![0; CLASSES],
+            loads: (0, Duration::ZERO),
         }
     }
 
@@ -52,7 +55,9 @@ impl FrameLog {
         self.longest = self.longest.max(own.wall);
         self.most_cpu = self.most_cpu.max(own.cpu);
         self.longest_of_all = self.longest_of_all.max(own.wall);
-        if !is_loading {
+        if is_loading || own.is_making {
+            self.loads = (self.loads.0 + 1, self.loads.1.max(own.cpu));
+        } else {
             self.classes[class(ms(own.cpu))] += 1;
         }
         if let Some(title) = ready.filter(|_| !self.is_ready) {
@@ -76,7 +81,9 @@ impl FrameLog {
     pub(crate) fn end(&self) {
         eprintln!("{} frames, longest block {:.1} ms", self.frames, ms(self.longest_of_all));
         let [median, late] = [0.5, 0.999].map(|share| self.quantile(share));
+        let (loads, longest) = (self.loads.0, ms(self.loads.1));
         eprintln!("own CPU time of frames without loads: median {median:.2} ms, 99.9% below {late:.2} ms");
+        eprintln!("{loads} frames loaded a scene or made pipelines or maps: own CPU time up to {longest:.2} ms");
     }
 
     /// The time that a share of the frames stays below, in milliseconds.
@@ -110,9 +117,11 @@ mod tests {
         let mut log = FrameLog::new(Instant::now());
         for frame in 1..=2000_u64 {
             let time = if frame > 1997 { Duration::from_millis(50) } else { Duration::from_micros(frame) };
-            let own = Spent { wall: time, cpu: time };
+            let own = Spent { wall: time, cpu: time, is_making: false };
             log.frame(own, 1.0, false, None);
-            log.frame(Spent { wall: Duration::from_secs(1), cpu: Duration::from_secs(1) }, 1.0, true, None);
+            let long = Spent { wall: Duration::from_secs(1), cpu: Duration::from_secs(1), is_making: false };
+            log.frame(long, 1.0, true, None);
+            log.frame(Spent { is_making: true, ..long }, 1.0, false, None);
         }
         let near = |share, expected: f64| {
             let found = log.quantile(share);
@@ -121,6 +130,6 @@ mod tests {
         near(0.5, 1.0);
         near(0.9, 1.8);
         near(0.999, 50.0);
-        assert_eq!(log.longest_of_all, Duration::from_secs(1));
+        assert_eq!((log.longest_of_all, log.loads), (Duration::from_secs(1), (4000, Duration::from_secs(1))));
     }
 }

@@ -7,7 +7,7 @@ use egui::{Event, Key};
 use shadowfit_egui::{Chord, Command};
 
 use crate::effect::{Activity, Effect};
-use crate::script::Monkey;
+use crate::script::{Monkey, Refusal};
 use crate::source::SceneSource;
 
 /// Seconds from one action to the next, on average.
@@ -16,6 +16,8 @@ const PACE: f32 = 0.06;
 const WARM_UP: f32 = 0.25;
 /// Sizes of windows, in pixels.
 const SIZES: [[u32; 2]; 6] = [[1280, 720], [640, 360], [960, 600], [1, 1], [333, 777], [1024, 300]];
+/// What the window's surface may refuse a frame with.
+const REFUSALS: [Refusal; 4] = [Refusal::Lost, Refusal::Outdated, Refusal::Timeout, Refusal::Occluded];
 /// Largest file that is dropped, in bytes: larger ones take so long to load that nothing else is tried.
 const LARGEST: u64 = 20_000_000;
 /// Seconds without actions before memory is measured.
@@ -158,6 +160,7 @@ impl MonkeyRun {
             94 => effects.extend(self.random.pick(&SIZES).map(|size| Effect::Resize(*size))),
             95 => effects.extend(self.random.pick(&self.files).map(|file| Effect::Drop(file.clone()))),
             96 => effects.push(Effect::Input(Event::Text("1.5e3".to_owned()))),
+            97 => effects.extend(self.random.pick(&REFUSALS).map(|refusal| Effect::Refuse(*refusal))),
             _ => effects.extend(self.held.drain(..).map(|chord| Effect::Key(chord, false))),
         }
     }

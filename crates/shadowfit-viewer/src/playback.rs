@@ -138,6 +138,7 @@ fn start(step: Step, effects: &mut Vec<Effect>) -> Option<Ongoing> {
         Step::Wheel(notches) => effects.push(Effect::wheel(notches)),
         Step::Resize(size) => effects.push(Effect::Resize(size)),
         Step::LoseDevice => effects.push(Effect::LoseDevice),
+        Step::Refuse(refusal) => effects.push(Effect::Refuse(refusal)),
         Step::Drop(path) => effects.push(Effect::Drop(path.into())),
         Step::Wait(seconds) => return Some(Ongoing::Seconds(seconds)),
         Step::Frames(frames) => return (frames > 0).then_some(Ongoing::Frames(frames)),

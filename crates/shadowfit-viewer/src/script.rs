@@ -56,6 +56,8 @@ pub(crate) enum Step {
     Await(Awaited),
     /// Loses the device.
     LoseDevice,
+    /// Lets the window's surface refuse a texture.
+    Refuse(Refusal),
     /// Plays random actions.
     Monkey(Monkey),
 }
@@ -77,6 +79,15 @@ pub(crate) enum Awaited {
     Judged,
     /// No search for a technique is running.
     Tuned,
+}
+
+/// Why the window's surface has no texture for a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Refusal {
+    Lost,
+    Outdated,
+    Timeout,
+    Occluded,
 }
 
 /// Random actions.
@@ -214,6 +225,12 @@ pub(crate) const ACTIONS: &[Action] = &[
     step("lose-device", "", "destroys the graphics device, as if its driver had been reset", |words| {
         words.nothing().map(|()| Step::LoseDevice)
     }),
+    step(
+        "refuse-frame",
+        "lost|outdated|timeout|occluded",
+        "lets the window's surface refuse the next frame with this answer",
+        |words| words.refusal().map(Step::Refuse),
+    ),
     plain("quit", "quits the viewer", Command::Quit),
 ];
 
@@ -314,6 +331,16 @@ impl Words<'_> {
     fn awaited(self) -> Result<Awaited> {
         let words = [("loaded", Awaited::Loaded), ("judged", Awaited::Judged), ("tuned", Awaited::Tuned)];
         self.one_of(&words, "cannot be awaited")
+    }
+
+    fn refusal(self) -> Result<Refusal> {
+        let words = [
+            ("lost", Refusal::Lost),
+            ("outdated", Refusal::Outdated),
+            ("timeout", Refusal::Timeout),
+            ("occluded", Refusal::Occluded),
+        ];
+        self.one_of(&words, "is no answer of a surface")
     }
 
     fn monkey(self) -> Result<Monkey> {
@@ -448,6 +475,7 @@ mod tests {
             "SECONDS" | "SHARE" | "NOTCHES" | "N" => "1",
             "dark|light|system" => "light",
             "loaded|judged|tuned" => "judged",
+            "lost|outdated|timeout|occluded" => "timeout",
             "SECONDS SEED [FOLDER]" => "1 2",
             other => panic!("no example for {other}"),
         };

@@ -33,6 +33,7 @@ use crate::loading::Loading;
 use crate::playback::Player;
 use crate::sample_figures::Measuring;
 use crate::saved::{Saved, Store};
+use crate::script::Refusal;
 use crate::source::SceneSource;
 use crate::stage::Stage;
 use crate::tuning::Tuning;
@@ -129,6 +130,8 @@ pub(crate) struct WindowRequests {
     /// A new size, in pixels.
     pub(crate) resize: Option<[u32; 2]>,
     pub(crate) new_title: bool,
+    /// What the window's surface shall refuse the next frame with, in place of its texture.
+    pub(crate) refusal: Option<Refusal>,
 }
 
 impl Viewer {
@@ -312,6 +315,7 @@ impl Viewer {
                 Effect::Resize(size) => self.window_requests.resize = Some(size),
                 Effect::Drop(path) => self.commands.push_back(request(Command::OpenFile(path))),
                 Effect::LoseDevice => self.stage.gpu().device.destroy(),
+                Effect::Refuse(refusal) => self.window_requests.refusal = Some(refusal),
                 Effect::Print(text) => eprintln!("{text}"),
             }
         }

@@ -15,6 +15,7 @@ use winit::window::{Window, WindowId};
 use crate::cli::Arguments;
 use crate::frame_log::FrameLog;
 use crate::saved::Store;
+use crate::script::Refusal;
 use crate::stage::Stage;
 use crate::viewer::{Renewals, Start, Viewer};
 
@@ -69,6 +70,8 @@ struct Surface {
     size: Option<[u32; 2]>,
     /// Whether the window has an area to draw on.
     has_area: bool,
+    /// What a script lets it answer in place of its next texture.
+    refusal: Option<Refusal>,
 }
 
 impl ApplicationHandler for App {
@@ -201,6 +204,7 @@ impl Running {
         if requests.new_title {
             self.window.set_title(&self.viewer.title());
         }
+        self.surface.refusal = requests.refusal;
         Ok(requests.quit.then_some(()))
     }
 
@@ -274,7 +278,8 @@ impl Surface {
         let configuration = configured(&handle, &gpu, window.inner_size())?;
         let has_area = has_area(window.inner_size());
         let size = Some([configuration.width, configuration.height]);
-        Ok((Self { instance, window, handle, is_stale: false, configuration, size, has_area }, gpu))
+        let (is_stale, refusal) = (false, None);
+        Ok((Self { instance, window, handle, is_stale, configuration, size, has_area, refusal }, gpu))
     }
 
     /// Notes a new size of the window.
@@ -308,7 +313,14 @@ impl Surface {
             self.resize(gpu, self.window.inner_size());
         }
         let Some(size) = self.size.filter(|_| self.has_area) else { return Ok(None) };
-        match self.handle.get_current_texture() {
+        let answer = match self.refusal.take() {
+            None => self.handle.get_current_texture(),
+            Some(Refusal::Lost) => Current::Lost,
+            Some(Refusal::Outdated) => Current::Outdated,
+            Some(Refusal::Timeout) => Current::Timeout,
+            Some(Refusal::Occluded) => Current::Occluded,
+        };
+        match answer {
             Current::Success(texture) => Ok(Some((texture, size))),
             Current::Suboptimal(texture) => {
                 // This texture can still be shown; the next one should fit again.
