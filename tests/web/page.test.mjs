@@ -400,15 +400,22 @@ for (const api of ['webgpu', 'webgl2']) {
         screen.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
       /// Puts fingers down and moves them at once, as hands do: those that rest ask for a menu. They stay until they are seen.
       const gesture = async (fingers, fact, before) => {
-        let by = 0;
-        const move = () => touch('touchMove', fingers(by += 8));
-        await touch('touchStart', fingers(by));
-        for (let step = 0; step < 4; step += 1) {
-          await move();
+        // A busy browser may take the first ones for fingers that rest, and tell no more of them: hands try again.
+        for (let tries = 5; ; tries -= 1) {
+          let by = 0;
+          const move = () => touch('touchMove', fingers(by += 8));
+          await touch('touchStart', fingers(by));
+          for (let step = 0; step < 4; step += 1) {
+            await move();
+          }
+          const isSeen = async (now) => `${now[fact]}` !== `${before[fact]}` || void await move();
+          const seen = phone.untilFacts(isSeen, fact, tries > 1 ? 10_000 : PATIENCE);
+          const facts = await (tries > 1 ? seen.catch(() => undefined) : seen);
+          await touch('touchEnd', []);
+          if (facts) {
+            return facts;
+          }
         }
-        const facts = await phone.untilFacts(async (now) => `${now[fact]}` !== `${before[fact]}` || void await move(), fact);
-        await touch('touchEnd', []);
-        return facts;
       };
       const turned = await gesture((by) => [[150 + by, 150]], 'angles', await phone.facts());
       const there = await gesture((by) => [[190 - by, 150], [210 + by, 150]], 'position', turned);
