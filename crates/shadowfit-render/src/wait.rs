@@ -18,7 +18,7 @@ pub struct Spent {
     pub wall: Duration,
     /// In which a core worked for it; the same as the wall's on systems that do not tell.
     pub cpu: Duration,
-    /// Whether something was made in it that later frames use again: pipelines, shadow maps, buffers of a scene.
+    /// Whether something was made in it that later frames use again: pipelines, targets, buffers of a scene.
     pub is_making: bool,
 }
 

@@ -83,7 +83,7 @@ impl FrameLog {
         let [median, late] = [0.5, 0.999].map(|share| self.quantile(share));
         let (loads, longest) = (self.loads.0, ms(self.loads.1));
         eprintln!("own CPU time of frames without loads: median {median:.2} ms, 99.9% below {late:.2} ms");
-        eprintln!("{loads} frames loaded a scene or made pipelines or maps: own CPU time up to {longest:.2} ms");
+        eprintln!("{loads} frames loaded a scene or made pipelines: own CPU time up to {longest:.2} ms");
     }
 
     /// The time that a share of the frames stays below, in milliseconds.
