@@ -4,10 +4,11 @@
 
 use shadowfit::Technique;
 use shadowfit::{Maps, OneMap};
-use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::{Class, Judged};
 use shadowfit_viewer::{Artefact, Stage};
+
+use crate::support::software_gpu;
 
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [640, 360];
@@ -19,8 +20,7 @@ const TECHNIQUES: [&str; 3] = ["windows-4", "calm-4", "xna-1"];
 const CURED: f64 = 0.001;
 
 fn stage(technique: &str) -> Stage {
-    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
-    let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(software_gpu(), default_scene(), 1).expect("the default scene");
     stage.settings.technique = Technique::preset(technique).expect("a preset");
     stage
 }

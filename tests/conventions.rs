@@ -15,11 +15,6 @@ use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, MapView, RESOLUTIONS, 
 
 use crate::support::software_gpu;
 
-const FIT_ONCE: &str = include_str!("../examples/fit_once.rs");
-const README: &str = include_str!("../README.md");
-const CORE_README: &str = include_str!("../crates/shadowfit/README.md");
-const CORE_DOCS: &str = include_str!("../crates/shadowfit/src/lib.rs");
-
 /// The depth conventions that wgpu draws.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
 
@@ -148,39 +143,13 @@ fn with_extent_of(technique: &Technique, other: &Technique) -> Technique {
 }
 
 #[test]
-fn the_core_the_shadow_map_and_the_docs_recommend_the_same_technique() {
+fn the_core_the_shadow_map_and_the_list_of_techniques_recommend_the_same_one() {
     let recommended = Technique::default();
     assert_eq!(Technique::preset(Preset::RECOMMENDED), Some(recommended));
     assert_eq!(NamedTechnique::default().technique, recommended);
     assert_eq!(FitSettings::default().map, recommended.fit);
     assert_eq!(ShadowMapDescriptor::default(), ShadowMapDescriptor::from(&recommended));
     assert_eq!(recommended.border(), 3.0, "the reach of PCF 5×5");
-    for (name, text) in [
-        ("README.md", README),
-        ("the core's README.md", CORE_README),
-        ("fit_once", FIT_ONCE),
-        ("engine_integration", include_str!("../examples/engine_integration.rs")),
-    ] {
-        assert!(text.contains("Technique::default()"), "{name} begins elsewhere");
-    }
-}
-
-/// The first code block of a page.
-fn first_example<'a>(page: impl Iterator<Item = &'a str>) -> String {
-    let code = page.skip_while(|line| !line.starts_with("```")).skip(1).take_while(|line| !line.starts_with("```"));
-    code.collect::<Vec<_>>().join("\n")
-}
-
-#[test]
-fn the_readmes_the_core_s_docs_and_the_example_begin_with_the_same_code_and_the_default_technique() {
-    let example = &FIT_ONCE[FIT_ONCE.find("use shadowfit").expect("the example uses shadowfit")..];
-    assert!(example.contains("Technique::default()"));
-    for readme in [README, CORE_README] {
-        assert_eq!(first_example(readme.lines()), example.trim_end());
-    }
-    let docs =
-        CORE_DOCS.lines().map(|line| line.trim_start_matches("//!")).map(|line| line.strip_prefix(' ').unwrap_or(line));
-    assert_eq!(first_example(docs), example.trim_end());
 }
 
 #[test]

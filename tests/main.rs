@@ -1,7 +1,8 @@
-//! Scratch-level tests: what no crate can prove alone.
+//! Scratch-level tests: facts that no crate can prove alone.
 //!
 //! Tests that need a graphics device have `gpu` or `golden` in their path, by which `cargo xtask test` leaves them out
-//! where there is none.
+//! where there is none, and runs them in one process where there is one. Tests with `own_process` in their path get a
+//! process of their own.
 
 mod artefacts;
 mod conventions;
@@ -15,7 +16,6 @@ mod recipes;
 mod reports_gpu;
 mod robustness;
 mod samples;
-mod shaders;
 mod support;
 mod truth;
 mod window;

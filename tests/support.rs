@@ -8,6 +8,8 @@ use shadowfit::glam::Vec3;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::{Lens, Scene};
 use shadowfit_study::View;
+/// The software adapter's device, which all tests of the process share.
+pub(crate) use shadowfit_testing::renderer_gpu as software_gpu;
 
 /// A glTF file of two triangles, with lines that are skipped and an image that is missing.
 pub(crate) const SCENE_WITH_NOTES: &str = r#"{
@@ -26,9 +28,8 @@ pub(crate) const SCENE_WITH_NOTES: &str = r#"{
 pub(crate) const NOTES: [&str; 2] =
     ["images[0]: replaced by a placeholder: ", "meshes[0].primitives[1]: lines skipped: only triangles are drawn"];
 
-/// The software adapter, whatever GPU is present: its pictures are nearly the same on every machine. Tests that the
-/// machine cannot run are left out by name before they start, so that here its absence is a failure.
-pub(crate) fn software_gpu() -> Gpu {
+/// The software adapter, opened again for a test that loses the device or replaces its error handler.
+pub(crate) fn fresh_gpu() -> Gpu {
     pollster::block_on(Gpu::headless(AdapterChoice::Software))
         .unwrap_or_else(|error| panic!("this test draws, and {error}"))
 }

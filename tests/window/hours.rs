@@ -60,6 +60,7 @@ fn assert_flat(log: &str, seconds: u32) {
 }
 
 #[test]
+#[ignore = "plays for long: cargo xtask test --all"]
 fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak() {
     let Some(desktop) = desktop("monkey") else { return };
     let seconds = asked("SHADOWFIT_MONKEY_SECONDS", 25);
@@ -80,6 +81,7 @@ const ROUND: [&str; 8] =
 const ROUND_SECONDS: u32 = 20;
 
 #[test]
+#[ignore = "plays for long: cargo xtask test --all"]
 fn a_flight_with_everything_on_takes_no_more_memory_and_no_more_time_in_the_end() {
     let Some(desktop) = desktop("flight") else { return };
     let seconds = asked("SHADOWFIT_FLIGHT_SECONDS", ROUND_SECONDS);
@@ -93,6 +95,7 @@ fn a_flight_with_everything_on_takes_no_more_memory_and_no_more_time_in_the_end(
 }
 
 #[test]
+#[ignore = "plays for long: cargo xtask test --all"]
 fn a_scene_after_the_other_takes_no_more_memory_than_the_first_ones() {
     let Some(desktop) = desktop("scenes") else { return };
     let switches = asked("SHADOWFIT_SCENE_SWITCHES", 8);

@@ -94,11 +94,11 @@ impl Gpu {
         Self::of_adapter(adapter, &Wanted::default()).await
     }
 
-    /// The graphics instance: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others; in browsers what the
-    /// features of this crate name.
+    /// Opens the graphics API: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others. In browsers the features
+    /// of this crate name it. With both of them it is WebGPU, unless the browser has none.
     pub fn instance() -> wgpu::Instance {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        let of_browser = if cfg!(feature = "webgl") { wgpu::Backends::GL } else { wgpu::Backends::BROWSER_WEBGPU };
+        let of_browser = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
         let usual = if cfg!(target_family = "wasm") { of_browser } else { wgpu::Backends::PRIMARY };
         descriptor.backends = wgpu::Backends::from_env().unwrap_or(usual);
         wgpu::Instance::new(descriptor)

@@ -185,9 +185,10 @@ mod tests {
     use glam::{DVec3, Vec3};
     use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
     use shadowfit_params::{BoxSource, Inputs};
-    use shadowfit_render::{AdapterChoice, Gpu, Renderer};
+    use shadowfit_render::{Gpu, Renderer};
     use shadowfit_scene::Scene;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_testing::renderer_gpu;
     use shadowfit_truth::Class;
     use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -210,7 +211,7 @@ mod tests {
 
     impl Drawn {
         fn new() -> Self {
-            let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+            let gpu = renderer_gpu();
             let technique = Technique::preset("focused-4").expect("a preset").with_resolution(256, 256);
             let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(&technique), 1).expect("a renderer");
             let scene = PreparedScene::new(&gpu, renderer.material_layout(), default_scene()).expect("the scene");

@@ -136,8 +136,9 @@ pub fn see_by_rays(
 
 #[cfg(test)]
 mod tests {
-    use shadowfit_render::{AdapterChoice, Gpu, Renderer};
+    use shadowfit_render::Renderer;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_testing::renderer_gpu;
     use shadowfit_wgpu::ShadowMapDescriptor;
 
     use crate::PreparedScene;
@@ -147,7 +148,7 @@ mod tests {
     use super::*;
 
     fn scene() -> PreparedScene {
-        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let gpu = renderer_gpu();
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
         PreparedScene::new(&gpu, renderer.material_layout(), default_scene()).expect("the default scene")
     }

@@ -308,12 +308,13 @@ impl PosedScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shadowfit_render::{AdapterChoice, Renderer};
+    use shadowfit_render::Renderer;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_testing::renderer_gpu;
     use shadowfit_wgpu::ShadowMapDescriptor;
 
     fn prepared(scene: Scene) -> (Gpu, Result<PreparedScene, PrepareError>) {
-        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let gpu = renderer_gpu();
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
         let prepared = PreparedScene::new(&gpu, renderer.material_layout(), scene);
         (gpu, prepared)

@@ -304,8 +304,8 @@ mod tests {
     use glam::{DVec3, Vec3};
     use shadowfit::PerspectiveCamera;
     use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
-    use shadowfit_render::{AdapterChoice, Gpu};
     use shadowfit_scene::Scene;
+    use shadowfit_testing::renderer_gpu;
     use shadowfit_truth::ClassTally;
 
     use super::*;
@@ -370,9 +370,8 @@ mod tests {
     }
 
     fn comparison() -> Comparison {
-        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
         let judging = Judging { size: [96, 54], ..Judging::default() };
-        Comparison::new(gpu, scene(), judging).expect("a scene")
+        Comparison::new(renderer_gpu(), scene(), judging).expect("a scene")
     }
 
     /// Coarse maps without a bias, which have acne.

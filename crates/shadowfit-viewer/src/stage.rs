@@ -22,7 +22,7 @@ mod edges_tests;
 #[cfg(test)]
 mod live_tests;
 #[cfg(all(test, target_os = "linux"))]
-mod memory_tests;
+mod own_process_memory_tests;
 
 use core::fmt;
 

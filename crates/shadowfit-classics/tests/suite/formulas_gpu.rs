@@ -4,8 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec2, Vec3};
 use shadowfit_classics::occlusion::formula;
 use shadowfit_render::Gpu;
-
-use crate::scenes::software_gpu;
+use shadowfit_testing::renderer_gpu;
 
 /// Number of cases; a few times 16, the number of random vectors and of points.
 const CASES: u32 = 192;
@@ -173,7 +172,7 @@ fn occlusion_is_the_same_in_wgsl_and_rust() {
     let cases: Vec<Case> = (0..CASES).map(case).collect();
     let mut worst = 0.0_f32;
     let mut hidden = 0;
-    for (case, answer) in cases.iter().zip(ask(&software_gpu(), &cases)) {
+    for (case, answer) in cases.iter().zip(ask(&renderer_gpu(), &cases)) {
         let expected = twin(case);
         for (found, expected) in answer.iter().flatten().zip(expected.iter().flatten()) {
             worst = worst.max((found - expected).abs());

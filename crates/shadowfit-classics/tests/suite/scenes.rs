@@ -5,18 +5,13 @@ use shadowfit::PerspectiveCamera;
 use shadowfit_classics::occlusion::{
     OcclusionFrame, OcclusionLight, OcclusionPasses, OcclusionSettings, OcclusionView,
 };
-use shadowfit_render::{AdapterChoice, Gpu, GpuScene, RenderTarget, Renderer};
+use shadowfit_render::{Gpu, GpuScene, RenderTarget, Renderer};
 use shadowfit_scene::{Material, Mesh, Node, Primitive, Scene};
+use shadowfit_testing::renderer_gpu;
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 /// Width and height of the pictures, in pixels.
 pub(crate) const SIZE: [u32; 2] = [128, 96];
-
-/// The software adapter, whatever GPU is present.
-pub(crate) fn software_gpu() -> Gpu {
-    pollster::block_on(Gpu::headless(AdapterChoice::Software))
-        .unwrap_or_else(|error| panic!("this test draws, and {error}"))
-}
 
 /// White quadrilaterals by their corners, counter-clockwise seen from their fronts.
 pub(crate) fn scene(quads: &[[Vec3; 4]]) -> Scene {
@@ -82,7 +77,7 @@ pub(crate) struct Pictures {
 
 impl Pictures {
     pub(crate) fn new(quads: &[[Vec3; 4]], samples: u32) -> Self {
-        let gpu = software_gpu();
+        let gpu = renderer_gpu();
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
         let layout = renderer.material_layout();
         let scene = scene(quads);

@@ -7,9 +7,9 @@ use shadowfit::bias::acos_bias;
 use shadowfit_classics::headlight::real_shadow;
 use shadowfit_classics::mapped::point::image_uv;
 use shadowfit_classics::{comparison, lamp, terrain, xna};
+use shadowfit_testing::renderer_gpu;
 
 use crate::formulas_gpu::compute;
-use crate::scenes::software_gpu;
 
 /// Number of cases: a multiple of a workgroup's size.
 const CASES: u32 = 256;
@@ -132,7 +132,7 @@ fn tests_and_shadings_are_the_same_in_wgsl_and_rust() {
     let parts = PARTS.iter().flat_map(|(piece, starts)| starts.iter().map(|start| cut(piece, start)));
     let source = parts.collect::<Vec<_>>().join("\n") + ASK;
     let cases: Vec<Case> = (0..CASES).map(case).collect();
-    let answers: Vec<Answer> = compute(&software_gpu(), &source, &cases);
+    let answers: Vec<Answer> = compute(&renderer_gpu(), &source, &cases);
     let mut shadowed = [0; 3];
     for (case, answer) in cases.iter().zip(&answers) {
         let expected = twin(case);

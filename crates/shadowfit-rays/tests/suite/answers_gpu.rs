@@ -44,7 +44,7 @@ impl World {
 
 #[test]
 fn rays_through_one_mesh_are_blocked_where_brute_force_says_so() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(1);
     let triangles = random.triangles(300, 3.0);
     let mut scene = gpu.scene();
@@ -56,7 +56,7 @@ fn rays_through_one_mesh_are_blocked_where_brute_force_says_so() {
 
 #[test]
 fn turned_stretched_and_mirrored_instances_block_on_their_sides() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(2);
     let mut scene = gpu.scene();
     let world = World::new(&mut scene, &mut random, 60, 6.0);
@@ -67,7 +67,7 @@ fn turned_stretched_and_mirrored_instances_block_on_their_sides() {
 
 #[test]
 fn instances_that_moved_a_little_or_far_block_where_they_are() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(3);
     let mut scene = gpu.scene();
     let mut world = World::new(&mut scene, &mut random, 60, 6.0);
@@ -89,7 +89,7 @@ fn instances_that_moved_a_little_or_far_block_where_they_are() {
 
 #[test]
 fn a_scene_whose_origin_is_a_hundred_kilometres_away_has_the_same_answers() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(4);
     let mut scene = gpu.scene();
     let world = World::new(&mut scene, &mut random, 30, 4.0);
@@ -105,7 +105,7 @@ fn a_scene_whose_origin_is_a_hundred_kilometres_away_has_the_same_answers() {
 
 #[test]
 fn rays_aimed_at_the_middle_of_far_stretched_triangles_meet_them_and_no_box_hides_one() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(17);
     let mut scene = gpu.scene();
     let triangles = random.triangles(20, 1.0);
@@ -132,7 +132,7 @@ fn rays_aimed_at_the_middle_of_far_stretched_triangles_meet_them_and_no_box_hide
 
 #[test]
 fn rays_along_axes_meet_walls_without_thickness() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut scene = gpu.scene();
     // A square in the plane z = 0, whose box is flat.
     let corner = |x, y| Vec3::new(x, y, 0.0);
@@ -160,7 +160,7 @@ fn rays_along_axes_meet_walls_without_thickness() {
 
 #[test]
 fn nothing_blocks_in_a_scene_without_instances_that_can_be_met() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(5);
     let rays = random.rays(64, 1.0);
     let mut scene = gpu.scene();
@@ -189,7 +189,7 @@ fn nothing_blocks_in_a_scene_without_instances_that_can_be_met() {
 
 #[test]
 fn triangles_without_area_or_not_finite_block_nothing_and_hide_no_other() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(6);
     let mut triangles = random.triangles(60, 3.0);
     let rays = random.rays(1000, 4.0);
@@ -209,7 +209,7 @@ fn triangles_without_area_or_not_finite_block_nothing_and_hide_no_other() {
 
 #[test]
 fn instances_and_triangles_that_all_coincide_are_not_too_deep() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let triangle = [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 0.0, 1.0)];
     let mut scene = gpu.scene();
     let id = scene.add_mesh(&mesh(&vec![triangle; 2000])).expect("room");
@@ -220,7 +220,7 @@ fn instances_and_triangles_that_all_coincide_are_not_too_deep() {
 
 #[test]
 fn the_engines_own_wgsl_decides_which_hits_count() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let triangle = [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 0.0, 1.0)];
     let above = triangle.map(|corner| corner + Vec3::Y);
     let mut scene = gpu.scene();

@@ -73,7 +73,7 @@ const ROUNDING: f32 = 1e-3;
 
 #[test]
 fn a_triangle_blocks_where_base_vertex_and_image_alpha_reach_the_cutoff() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(7);
     let images = [[5, 3], [4, 4]].map(|size| Image::new(&mut random, size));
     let points = points(&mut random, 400);
@@ -110,7 +110,7 @@ fn a_triangle_blocks_where_base_vertex_and_image_alpha_reach_the_cutoff() {
 
 #[test]
 fn one_material_gives_holes_to_all_triangles_of_a_mesh() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut scene = gpu.scene();
     // Opaque on the right half.
     let image = scene.add_image(AlphaImage::new(2, 1, &[0, 255]).expect("two texels")).expect("room");
@@ -130,10 +130,4 @@ fn one_material_gives_holes_to_all_triangles_of_a_mesh() {
     let other = scene.add_image(AlphaImage::new(2, 1, &[255, 0]).expect("two texels")).expect("room");
     assert!(other != image);
     assert_eq!(gpu.blocked(&scene, &rays), [true, true, false, false]);
-}
-
-#[test]
-fn images_without_texels_or_with_too_few_are_refused() {
-    assert_eq!(AlphaImage::new(0, 4, &[]).err(), Some(RayError::Image { width: 0, height: 4, bytes: 0 }));
-    assert!(AlphaImage::new(2, 2, &[0; 3]).is_err() && AlphaImage::new(1, 2, &[0; 2]).is_ok());
 }

@@ -1,9 +1,8 @@
 //! The device of the tests, and rays that are asked on it.
 
-use std::sync::OnceLock;
-
 use shadowfit_rays::glam::Vec3;
 use shadowfit_rays::{RayScene, RayWgslOptions, rays_wgsl};
+use shadowfit_testing::{TestGpu, open_software_gpu, software_gpu};
 
 /// A device and its queue.
 pub(crate) struct Gpu {
@@ -11,28 +10,20 @@ pub(crate) struct Gpu {
     pub(crate) queue: wgpu::Queue,
 }
 
-/// A device of the software adapter with WebGPU's default limits, the same one for all tests. Without the adapter the
-/// test is skipped, unless a GPU is required.
-pub(crate) fn gpu() -> Option<&'static Gpu> {
-    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    GPU.get_or_init(|| with_limits(wgpu::Limits::default())).as_ref()
+/// Returns a device that tests use after each other.
+pub(crate) fn gpu() -> Gpu {
+    Gpu::from(software_gpu())
 }
 
-/// Such a device with other limits.
-pub(crate) fn with_limits(required_limits: wgpu::Limits) -> Option<Gpu> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends = wgpu::Backends::PRIMARY;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-    let Some(adapter) = adapters.into_iter().find(is_software) else {
-        assert!(std::env::var_os("SHADOWFIT_REQUIRE_GPU").is_none(), "no software adapter, such as Mesa's lavapipe");
-        println!("SKIPPED: no software adapter, such as Mesa's lavapipe");
-        return None;
-    };
-    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
-    Some(Gpu { device, queue })
+/// Opens a device with other limits.
+pub(crate) fn with_limits(limits: wgpu::Limits) -> Gpu {
+    Gpu::from(open_software_gpu(wgpu::Features::empty(), limits))
+}
+
+impl From<TestGpu> for Gpu {
+    fn from(TestGpu { device, queue, .. }: TestGpu) -> Self {
+        Self { device, queue }
+    }
 }
 
 /// An origin and a direction.

@@ -1,8 +1,8 @@
-//! Meshes on the CPU: what is refused, their order, and their memory.
+//! Meshes and images on the CPU: refused input, the order of triangles, and memory.
 
 use allocation_counter::measure;
 use shadowfit_rays::glam::Vec3;
-use shadowfit_rays::{CutMaterial, CutOut, RayError, RayMesh};
+use shadowfit_rays::{AlphaImage, CutMaterial, CutOut, RayError, RayMesh};
 
 use super::brute_force::Random;
 
@@ -45,4 +45,10 @@ fn memory_is_estimated_within_a_factor_of_one_and_a_half() {
             assert!((1.0 / 1.5..1.5).contains(&ratio), "{what} {count}: {estimate} estimated, {measured} measured");
         }
     }
+}
+
+#[test]
+fn images_without_texels_or_with_too_few_are_refused() {
+    assert_eq!(AlphaImage::new(0, 4, &[]).err(), Some(RayError::Image { width: 0, height: 4, bytes: 0 }));
+    assert!(AlphaImage::new(2, 2, &[0; 3]).is_err() && AlphaImage::new(1, 2, &[0; 2]).is_ok());
 }

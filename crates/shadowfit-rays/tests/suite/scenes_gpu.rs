@@ -13,7 +13,7 @@ fn mesh(random: &mut Random, triangles: usize) -> RayMesh {
 
 #[test]
 fn a_removed_mesh_blocks_nothing_and_its_room_is_used_again() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(10);
     let mut scene = gpu.scene();
     let triangles = random.triangles(100, 1.0);
@@ -43,7 +43,7 @@ fn a_removed_mesh_blocks_nothing_and_its_room_is_used_again() {
 
 #[test]
 fn a_mesh_of_another_shape_has_it_in_all_of_its_instances() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut random = Random(16);
     let mut scene = gpu.scene();
     let id = scene.add_mesh(&mesh(&mut random, 100)).expect("room");
@@ -80,7 +80,7 @@ fn grid(scene: &mut RayScene, random: &mut Random, side: u32) -> Vec<RayInstance
 
 #[test]
 fn frames_in_which_nothing_moved_upload_and_allocate_nothing_and_others_what_moved() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut scene = gpu.scene();
     let mut instances = grid(&mut scene, &mut Random(11), 40);
     // Never equal to itself, and yet unchanged.
@@ -100,7 +100,7 @@ fn frames_in_which_nothing_moved_upload_and_allocate_nothing_and_others_what_mov
 
 #[test]
 fn bounds_hold_all_instances_and_little_more() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut scene = gpu.scene();
     let mesh = RayMesh::from_triangles([[Vec3::ZERO, Vec3::new(1.0, 2.0, 0.0), Vec3::new(0.0, 1.0, 3.0)]]);
     let mesh = scene.add_mesh(&mesh.expect("a mesh")).expect("room");
@@ -121,7 +121,7 @@ fn what_is_larger_than_the_device_allows_is_refused_with_its_bytes_and_changes_n
         ..wgpu::Limits::downlevel_defaults()
     };
     let needed = wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..limits };
-    let Some(gpu) = with_limits(needed) else { return };
+    let gpu = with_limits(needed);
     let mut random = Random(12);
     let mut scene = gpu.scene();
     let bytes = scene.bytes();
@@ -145,7 +145,7 @@ fn what_is_larger_than_the_device_allows_is_refused_with_its_bytes_and_changes_n
 
 #[test]
 fn devices_without_storage_buffers_are_refused_with_what_they_lack() {
-    let Some(gpu) = with_limits(wgpu::Limits::downlevel_webgl2_defaults()) else { return };
+    let gpu = with_limits(wgpu::Limits::downlevel_webgl2_defaults());
     let refused = RayScene::new(&gpu.device, &gpu.queue).expect_err("no storage buffers");
     let wanted = RayError::Unsupported { buffers: 0, threads: 0, needed_buffers: 6, needed_threads: 256 };
     assert_eq!(refused, wanted);
@@ -155,7 +155,7 @@ fn devices_without_storage_buffers_are_refused_with_what_they_lack() {
 #[test]
 #[ignore = "measures the time of frames"]
 fn the_time_of_frames_with_a_thousand_movers_of_ten_thousand() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let mut scene = gpu.scene();
     let mut instances = grid(&mut scene, &mut Random(13), 100);
     let start = std::time::Instant::now();

@@ -1,21 +1,16 @@
 //! The WGSL: valid with what every WebGPU device has, and laid out as the Rust that fills it.
 
-use core::mem::offset_of;
+use std::path::Path;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
-use naga::{Module, TypeInner};
+use naga::valid::Capabilities;
 use shadowfit_rays::records::{CutOutRecord, InstanceRecord, NodeRecord, RefitUniform, TriangleRecord};
 use shadowfit_rays::{RayError, RayWgslOptions, rays_wgsl, refit_wgsl};
+use shadowfit_testing::layout;
+use shadowfit_testing::layout::assert_same;
+use shadowfit_testing::wgsl::{assert_every_file_is_used, assert_valid, parse};
 
-fn parse(name: &str, source: &str) -> Module {
-    naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)))
-}
-
-fn validate(name: &str, source: &str) -> Module {
-    let module = parse(name, source);
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-    validator.validate(&module).unwrap_or_else(|error| panic!("{name}: {error:?}"));
-    module
+fn validate(name: &str, source: &str) {
+    assert_valid(name, source, Capabilities::empty());
 }
 
 #[test]
@@ -42,47 +37,27 @@ fn texts_of_two_prefixes_stand_in_one_shader_and_bad_prefixes_are_refused() {
 
 #[test]
 fn every_wgsl_file_is_part_of_a_text() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/shaders");
-    let files: Vec<_> =
-        std::fs::read_dir(folder).expect("the folder").map(|file| file.expect("a file").path()).collect();
-    assert_eq!(files.len(), 4, "{files:?}");
-    let all = rays_wgsl(&RayWgslOptions::group(0)) + &refit_wgsl();
-    for file in files {
-        let text = std::fs::read_to_string(&file).expect("the file's text");
-        let text = text.replace("GROUP", "0").replace("MAX_DEPTH", &shadowfit_rays::MAX_DEPTH.to_string());
-        assert!(all.contains(&text), "{} is not used", file.display());
-    }
-}
-
-/// Compares a Rust struct with naga's reflection: size, names and offsets of all fields.
-macro_rules! assert_layout {
-    ($module:expr, $wgsl:literal = $rust:ident { $($field:ident),+ $(,)? }) => {{
-        // A pattern without `..` has to name every field.
-        let _ = |value: $rust| { let $rust { $($field: _),+ } = value; };
-        let fields = [$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),+];
-        let found = $module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some($wgsl));
-        let Some((_, naga::Type { inner: TypeInner::Struct { members, span }, .. })) = found else {
-            panic!("no struct {}", $wgsl)
-        };
-        let members: Vec<_> = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect();
-        assert_eq!((members.as_slice(), *span as usize), (fields.as_slice(), size_of::<$rust>()), "{}", $wgsl);
-    }};
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/shaders");
+    let texts = [rays_wgsl(&RayWgslOptions::group(0)), refit_wgsl()];
+    assert_every_file_is_used(&folder, &texts.each_ref().map(String::as_str), |file| {
+        vec![file.replace("GROUP", "0").replace("MAX_DEPTH", &shadowfit_rays::MAX_DEPTH.to_string())]
+    });
 }
 
 #[test]
 fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
     let module = parse("rays", &rays_wgsl(&RayWgslOptions::group(0)));
-    assert_layout!(module, "shadowfit_rays_Node" = NodeRecord { least, count, most, first });
-    assert_layout!(module, "shadowfit_rays_Triangle" = TriangleRecord { a, cut_out, b, index, c, padding });
-    assert_layout!(
-        module,
-        "shadowfit_rays_Instance" = InstanceRecord { row_x, row_y, row_z, root, sides, custom, padding }
-    );
-    assert_layout!(
-        module,
-        "shadowfit_rays_CutOut" =
-            CutOutRecord { uv_a, uv_b, uv_c, base_alpha, cutoff, alphas, image, wrap, nearest, padding }
-    );
-    let module = parse("refit", &refit_wgsl());
-    assert_layout!(module, "shadowfit_rays_Refit" = RefitUniform { first, count, offset, stride });
+    for layout in [
+        layout!("shadowfit_rays_Node" = NodeRecord { least, count, most, first }),
+        layout!("shadowfit_rays_Triangle" = TriangleRecord { a, cut_out, b, index, c, padding }),
+        layout!("shadowfit_rays_Instance" = InstanceRecord { row_x, row_y, row_z, root, sides, custom, padding }),
+        layout!(
+            "shadowfit_rays_CutOut" =
+                CutOutRecord { uv_a, uv_b, uv_c, base_alpha, cutoff, alphas, image, wrap, nearest, padding }
+        ),
+    ] {
+        assert_same(&module, &layout);
+    }
+    let refit = layout!("shadowfit_rays_Refit" = RefitUniform { first, count, offset, stride });
+    assert_same(&parse("refit", &refit_wgsl()), &refit);
 }

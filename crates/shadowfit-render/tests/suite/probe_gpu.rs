@@ -1,19 +1,18 @@
 //! Probes are the same whether fragments know their primitive or vertices number the triangles.
 
 use glam::{DVec3, Vec3};
-use shadowfit::Technique;
 use shadowfit_render::Probe;
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
 
 use super::devices::software_gpu;
-use super::pictures::Pictures;
+use super::pictures::{Stage, camera, cheap_technique};
 use super::sheets::sheets;
 
-/// Probes of a scene at rest by a device with the features.
-fn pictures(features: wgpu::Features, scene: &Scene, eye: DVec3) -> Pictures {
+/// A scene at rest on a device with the features.
+fn stage(features: wgpu::Features, scene: &Scene, eye: DVec3) -> Stage {
     let gpu = software_gpu(features, wgpu::Limits::default());
-    Pictures::new(gpu, &Technique::default(), 1, scene, eye)
+    Stage::on(gpu, &cheap_technique().with_resolution(512, 512), 1, scene, camera(eye, DVec3::Y))
 }
 
 /// Compares texel by texel; returns the number of triangles that are seen.
@@ -34,7 +33,7 @@ fn probes_without_the_primitive_index_are_those_with_it() {
     for (name, scene, eye) in
         [("sheets", sheets(), DVec3::new(1.0, 4.0, 6.0)), ("forest", forest, DVec3::new(4.0, 3.0, 12.0))]
     {
-        let [indexed, unrolled] = FEATURES.map(|features| pictures(features, &scene, eye).probe());
+        let [indexed, unrolled] = FEATURES.map(|features| stage(features, &scene, eye).probe());
         let seen = assert_same([&indexed, &unrolled], name);
         assert!(seen > 100, "{name}: {seen} triangles");
         let shadowed = indexed.pixels.iter().flatten().filter(|pixel| pixel.factor < 0.5).count();
@@ -50,10 +49,10 @@ fn what_deforms_is_probed_in_its_pose_without_the_primitive_index() {
     scene.nodes[7].rest.translation += Vec3::Y * 0.8;
     let eye = DVec3::new(1.0, 4.0, 6.0);
     let [indexed, unrolled] = FEATURES.map(|features| {
-        let mut pictures = pictures(features, &at_rest, eye);
-        let before = pictures.probe();
-        pictures.scene.set_pose(&pictures.gpu, &scene, &scene.pose(None, 0.0));
-        let after = pictures.probe();
+        let mut stage = stage(features, &at_rest, eye);
+        let before = stage.probe();
+        stage.pictures.scene.set_pose(&stage.pictures.gpu, &scene, &scene.pose(None, 0.0));
+        let after = stage.probe();
         assert_ne!(before.pixels, after.pixels, "nothing moved");
         after
     });

@@ -8,7 +8,7 @@ use shadowfit_render::{Frame, Inset, Line, Overlay, PixelQuery, RenderTarget, Te
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::devices::{software_gpu, webgl2_gpu};
-use super::pictures::{Pictures, SIZE};
+use super::pictures::{Pictures, SIZE, Stage, camera};
 use super::sheets::sheets;
 
 const EYE: DVec3 = DVec3::new(1.0, 4.0, 6.0);
@@ -18,29 +18,29 @@ fn technique() -> Technique {
     Technique::default().with_count(2).with_resolution(1024, 1024)
 }
 
-/// Pictures by Vulkan and by OpenGL.
-fn both(technique: &Technique, samples: u32) -> [Pictures; 2] {
+/// The sheets on Vulkan and on OpenGL.
+fn both(technique: &Technique, samples: u32) -> [Stage; 2] {
     let vulkan = software_gpu(wgpu::Features::empty(), wgpu::Limits::default());
-    [vulkan, webgl2_gpu()].map(|gpu| Pictures::new(gpu, technique, samples, &sheets(), EYE))
+    [vulkan, webgl2_gpu()].map(|gpu| Stage::on(gpu, technique, samples, &sheets(), camera(EYE, DVec3::Y)))
 }
 
-fn assert_alike([a, b]: &[Vec<[u8; 4]>; 2], name: &str) {
-    let differs = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(b.iter()).any(|(a, b)| a.abs_diff(*b) > 3);
+fn assert_alike([a, b]: &[Vec<[u8; 3]>; 2], name: &str) {
+    let differs = |(a, b): &(&[u8; 3], &[u8; 3])| a.iter().zip(b.iter()).any(|(a, b)| a.abs_diff(*b) > 3);
     let count = a.iter().zip(b).filter(differs).count();
     assert!(count < a.len() / 200, "{name}: {count} pixels differ");
     assert!(a.iter().any(|pixel| *pixel != a[0]), "{name}: nothing was drawn");
 }
 
-fn assert_drawn_alike(pictures: &mut [Pictures; 2], name: &str, change: impl Fn(&mut Frame<'_>)) {
-    assert_alike(&pictures.each_mut().map(|pictures| pictures.picture(&change)), name);
+fn assert_drawn_alike(stages: &mut [Stage; 2], name: &str, change: impl Fn(&mut Frame<'_>)) {
+    assert_alike(&stages.each_mut().map(|stage| stage.picture(&change)), name);
 }
 
 #[test]
 fn every_view_is_drawn() {
     for samples in [1, 4] {
-        let mut pictures = both(&technique(), samples);
+        let mut stages = both(&technique(), samples);
         for overlay in [Overlay::None].into_iter().chain(Overlay::ALL) {
-            assert_drawn_alike(&mut pictures, &format!("{overlay:?}"), |frame| frame.overlay = overlay);
+            assert_drawn_alike(&mut stages, &format!("{overlay:?}"), |frame| frame.overlay = overlay);
         }
     }
 }
@@ -71,34 +71,34 @@ const fn inset(map: u32) -> Inset {
 fn maps_of_any_number_are_drawn() {
     // wgpu's OpenGL makes no array of a single layer, nor of six, which two sets of three maps are, too.
     for (count, cross_fades) in [(1, false), (6, false), (3, true)] {
-        let mut pictures = both(&technique().with_count(count), 1);
-        for pictures in &mut pictures {
+        let mut stages = both(&technique().with_count(count), 1);
+        for Stage { pictures, .. } in &mut stages {
             let descriptor = ShadowMapDescriptor { cross_fades, ..*pictures.renderer.shadow_map().descriptor() };
             pictures.renderer.set_shadow_map(&pictures.gpu, &descriptor).expect("a shadow map");
         }
-        assert_drawn_alike(&mut pictures, &format!("{count} maps"), |_| ());
+        assert_drawn_alike(&mut stages, &format!("{count} maps"), |_| ());
     }
 }
 
 #[test]
 fn lines_insets_and_parts_are_drawn() {
-    let mut pictures = both(&technique(), 4);
-    assert_drawn_alike(&mut pictures, "lines", |frame| frame.lines = &LINES);
-    assert_drawn_alike(&mut pictures, "insets", |frame| frame.insets = &INSETS);
-    assert_drawn_alike(&mut pictures, "part", |frame| frame.scissor = Some([20, 10, 60, 50]));
+    let mut stages = both(&technique(), 4);
+    assert_drawn_alike(&mut stages, "lines", |frame| frame.lines = &LINES);
+    assert_drawn_alike(&mut stages, "insets", |frame| frame.insets = &INSETS);
+    assert_drawn_alike(&mut stages, "part", |frame| frame.scissor = Some([20, 10, 60, 50]));
 }
 
 #[test]
 fn marks_stick_to_surfaces() {
     for (samples, step) in [(1, DVec3::ZERO), (1, DVec3::new(0.2, 0.1, 0.0)), (4, DVec3::ZERO)] {
-        let drawn = both(&technique(), samples).map(|mut pictures| pictures.judged(Overlay::Error, step));
+        let drawn = both(&technique(), samples).map(|mut stage| stage.judged(Overlay::Error, step));
         assert_alike(&drawn, &format!("{samples} samples, {step}"));
     }
 }
 
 #[test]
 fn probes_are_those_of_vulkan() {
-    let [vulkan, opengl] = both(&technique(), 1).map(|mut pictures| pictures.probe());
+    let [vulkan, opengl] = both(&technique(), 1).map(|mut stage| stage.probe());
     let seen = |probe: &shadowfit_render::Probe, pixel: usize| {
         probe.pixels[pixel].map(|pixel| (pixel.triangle, (pixel.factor * 50.0).round()))
     };
@@ -116,9 +116,9 @@ fn a_pixel_has_the_facts_that_vulkan_finds_and_the_depths_around_a_texel() {
             pixel: [70, 50],
             texels: Some(TexelBlock { map: 0, texel: [500, 500], radius: 31 }),
         };
-        let [vulkan, opengl] = both(&technique, 1).map(|mut pictures| {
-            pictures.picture(|_| ());
-            pictures.pixel(&query)
+        let [vulkan, opengl] = both(&technique, 1).map(|mut stage| {
+            stage.picture(|_| ());
+            stage.pixel(&query)
         });
         assert_eq!(vulkan.seen.map(|pixel| pixel.triangle), opengl.seen.map(|pixel| pixel.triangle));
         assert_eq!(vulkan.depths.len(), 63 * 63);
@@ -131,12 +131,13 @@ fn a_pixel_has_the_facts_that_vulkan_finds_and_the_depths_around_a_texel() {
 
 #[test]
 fn maps_that_are_kept_are_mended_where_casters_move() {
-    let mut pictures = Pictures::new(webgl2_gpu(), &technique(), 1, &sheets(), EYE);
+    let mut stage = Stage::on(webgl2_gpu(), &technique(), 1, &sheets(), camera(EYE, DVec3::Y));
     let mut scene = sheets();
     let mut drawn = |scene: &shadowfit_scene::Scene, caching| {
-        pictures.renderer.sun_mut().set_caching(caching);
-        pictures.scene.set_pose(&pictures.gpu, scene, &scene.pose(None, 0.0));
-        pictures.picture(|_| ())
+        let Pictures { gpu, renderer, scene: gpu_scene, .. } = &mut stage.pictures;
+        renderer.sun_mut().set_caching(caching);
+        gpu_scene.set_pose(gpu, scene, &scene.pose(None, 0.0));
+        stage.picture(|_| ())
     };
     let before = drawn(&scene, true);
     scene.nodes[1].morph_weights = vec![-1.0];

@@ -487,13 +487,14 @@ fn the_sky_and_pixels_beyond_the_picture_have_no_reason() {
 
 #[test]
 fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
-    use shadowfit_render::{AdapterChoice, Gpu, Renderer};
+    use shadowfit_render::Renderer;
+    use shadowfit_testing::renderer_gpu;
 
     use crate::{Evaluator, PreparedScene, SharedTruth};
     use shadowfit::ShadowFitter;
 
     let size = [160, 90];
-    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+    let gpu = renderer_gpu();
     for (name, texels) in [("windows-4", 512), ("calm-4", 256), ("xna-1", 512)] {
         let technique = Technique::preset(name).expect("a preset").with_resolution(texels, texels);
         let descriptor = ShadowMapDescriptor::from(&technique);

@@ -4,6 +4,7 @@
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
+use shadowfit_testing::{TestGpu, software_gpu};
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
@@ -12,18 +13,6 @@ use shadowfit_truth::{
 };
 
 use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
-
-/// The software adapter, so that the numbers are the same on every machine.
-pub(crate) fn device() -> (wgpu::Device, wgpu::Queue) {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends = wgpu::Backends::PRIMARY;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-    let adapter = adapters.into_iter().find(is_software).expect("a software adapter, such as Mesa's lavapipe");
-    let descriptor = wgpu::DeviceDescriptor { required_limits: wgpu::Limits::default(), ..Default::default() };
-    pollster::block_on(adapter.request_device(&descriptor)).expect("a device with the default limits")
-}
 
 /// A picture that both judge.
 pub(crate) struct Picture {
@@ -136,7 +125,7 @@ impl Picture {
         seen: &[Option<u32>],
         factors: &[f32],
     ) -> Result<Vec<GpuPixel>, GpuTruthError> {
-        let (device, queue) = device();
+        let TestGpu { device, queue, .. } = software_gpu();
         let tracer = GpuTracer::new(&device, &queue, &self.tracer, self.origin)?;
         let texture = seen_texture(&device, &queue, self.camera.size, seen, factors);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -399,7 +388,7 @@ fn thousands_of_random_triangles_are_judged_alike() {
 
 #[test]
 fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
-    let (device, queue) = device();
+    let TestGpu { device, queue, .. } = software_gpu();
     let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
     let mut tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
     let mut gpu = GpuJudge::new(&device);
@@ -447,7 +436,7 @@ fn a_gpu_judges_an_empty_scene_as_nothing() {
 
 #[test]
 fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
-    let (device, queue) = device();
+    let TestGpu { device, queue, .. } = software_gpu();
     let tracer = || Tracer::new(boxes());
     let refused = GpuTracer::new(&device, &queue, &tracer().with_alpha_test(|_, _| true), DVec3::ZERO);
     assert_eq!(refused.err(), Some(GpuTruthError::AlphaTest));

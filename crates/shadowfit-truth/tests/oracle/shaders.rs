@@ -1,59 +1,32 @@
 //! The WGSL of the compute passes: valid with what every WebGPU device has, and laid out as the Rust that fills it.
 
-use core::mem::offset_of;
+use std::path::Path;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
-use naga::{Module, TypeInner};
+use naga::TypeInner;
+use naga::valid::Capabilities;
+use shadowfit_testing::layout;
+use shadowfit_testing::layout::assert_same;
+use shadowfit_testing::wgsl::{assert_every_file_is_used, assert_valid, parse};
 use shadowfit_truth::gpu::{BeforeUniform, JudgeUniform, MAX_MAPS, MapUniform, TallyRecord, shader};
-
-fn modules() -> [(&'static str, String); 4] {
-    [("truth", shader::truth()), ("rows", shader::rows()), ("classes", shader::classes()), ("tally", shader::tally())]
-}
-
-fn parse(name: &str, source: &str) -> Module {
-    naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)))
-}
 
 #[test]
 fn every_pass_is_valid_without_any_capability() {
-    for (name, source) in modules() {
-        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-        validator.validate(&parse(name, &source)).unwrap_or_else(|error| panic!("{name}: {error:?}"));
-    }
+    assert_valid("truth", &shader::truth(), Capabilities::empty());
+    assert_valid("rows", &shader::rows(), Capabilities::empty());
+    assert_valid("classes", &shader::classes(), Capabilities::empty());
+    assert_valid("tally", &shader::tally(), Capabilities::empty());
 }
 
 #[test]
 fn every_wgsl_file_is_part_of_a_pass() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/gpu/shaders");
-    let files: Vec<_> =
-        std::fs::read_dir(folder).expect("the folder").map(|file| file.expect("a file").path()).collect();
-    assert!(files.len() >= 4, "{files:?}");
-    for file in files {
-        let text = std::fs::read_to_string(&file).expect("the file's text");
-        assert!(modules().iter().any(|(_, source)| source.contains(&text)), "{} is not used", file.display());
-    }
-}
-
-/// Compares a Rust struct with naga's reflection: size, names and offsets of all fields.
-macro_rules! assert_layout {
-    ($module:expr, $wgsl:literal = $rust:ident { $($field:ident),+ $(,)? }) => {{
-        // A pattern without `..` has to name every field.
-        let _ = |value: $rust| { let $rust { $($field: _),+ } = value; };
-        let fields = [$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),+];
-        let found = $module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some($wgsl));
-        let Some((_, naga::Type { inner: TypeInner::Struct { members, span }, .. })) = found else {
-            panic!("no struct {}", $wgsl)
-        };
-        let members: Vec<_> = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect();
-        assert_eq!((members.as_slice(), *span as usize), (fields.as_slice(), size_of::<$rust>()), "{}", $wgsl);
-    }};
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/gpu/shaders");
+    let texts = [shader::truth(), shader::rows(), shader::classes(), shader::tally()];
+    assert_every_file_is_used(&folder, &texts.each_ref().map(String::as_str), |file| vec![file.to_owned()]);
 }
 
 #[test]
 fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
-    let module = parse("classes", &shader::classes());
-    assert_layout!(
-        module,
+    let map = layout!(
         "Map" = MapUniform {
             row_x,
             row_y,
@@ -68,8 +41,7 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             padding
         }
     );
-    assert_layout!(
-        module,
+    let judge = layout!(
         "Judge" = JudgeUniform {
             eye,
             near,
@@ -95,17 +67,17 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             before
         }
     );
-    assert_layout!(
-        module,
-        "Before" = BeforeUniform { forward, eye_depth, map_count, by_coverage, padding_0, padding_1, maps }
-    );
+    let before =
+        layout!("Before" = BeforeUniform { forward, eye_depth, map_count, by_coverage, padding_0, padding_1, maps });
+    let module = parse("classes", &shader::classes());
+    for layout in [map, judge, before] {
+        assert_same(&module, &layout);
+    }
 }
 
 #[test]
 fn the_tally_has_the_size_and_offsets_of_its_wgsl_struct() {
-    let module = parse("tally", &shader::tally());
-    assert_layout!(
-        module,
+    let tally = layout!(
         "Tally" = TallyRecord {
             all,
             grazing,
@@ -120,6 +92,7 @@ fn the_tally_has_the_size_and_offsets_of_its_wgsl_struct() {
             bins
         }
     );
+    assert_same(&parse("tally", &shader::tally()), &tally);
 }
 
 #[test]

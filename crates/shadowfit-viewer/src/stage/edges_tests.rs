@@ -2,20 +2,19 @@
 
 use shadowfit::Technique;
 use shadowfit_params::tool::{InsetMaps, ViewMode};
-use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_wgpu::demand::Unsupported;
 use shadowfit_wgpu::resolve::{EdgeResult, ResolveCounts, WhyFiltered};
 
 use super::side::filtered_edges;
 use super::*;
+use crate::test_gpu::shared_gpu;
 
 const SIZE: [u32; 2] = [160, 90];
 
 /// The default scene with traced edges, and nothing over its picture.
 fn stage() -> (Stage, RenderTarget) {
-    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
-    let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(shared_gpu(), default_scene(), 1).expect("the default scene");
     stage.wait_for_rays();
     stage.settings.technique = Technique::preset("exact-4").expect("a preset").with_resolution(256, 256);
     let view = &mut stage.settings.view;

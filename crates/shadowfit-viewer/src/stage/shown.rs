@@ -205,15 +205,14 @@ fn value(settings: &Settings, parameter: &Parameter) -> String {
 #[cfg(test)]
 mod tests {
     use shadowfit::settings::FitKind;
-    use shadowfit_render::{AdapterChoice, Gpu};
     use shadowfit_scene::builtin::default_scene;
 
     use super::*;
+    use crate::test_gpu::shared_gpu;
 
     #[test]
     fn what_changed_while_an_artefact_was_searched_or_on_show_stays() {
-        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
-        let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
+        let mut stage = Stage::new(shared_gpu(), default_scene(), 1).expect("the default scene");
         stage.settings.technique.maps = shadowfit::Windows::default().into();
         let first = stage.settings;
         let found = stage.search(Artefact::ClippingHole).run();

@@ -10,13 +10,14 @@ use shadowfit::Maps;
 use shadowfit::Technique;
 use shadowfit_egui::{Artefact, Command, Toggle, Tune};
 use shadowfit_params::tool::ViewMode;
-use shadowfit_render::{AdapterChoice, FlyInput, Gpu};
+use shadowfit_render::{FlyInput, Gpu};
 
 use super::{Start, Viewer};
 use crate::cli::Arguments;
 use crate::saved::{Saved, Store, Theme};
 use crate::source::SceneSource;
 use crate::stage::Stage;
+use crate::test_gpu::shared_gpu;
 
 mod bars;
 mod devices;
@@ -30,28 +31,51 @@ mod starts;
 mod touch;
 
 const SIZE: [u32; 2] = [640, 360];
+/// Width and height of the maps.
+const MAP_TEXELS: u32 = 256;
 const FRAME: f32 = 1.0 / 30.0;
 
 fn viewer(arguments: &[&str], store: Option<&Path>) -> Viewer {
-    let all = ["viewer", "--software", "--no-play", "--set", "map.resolution=512"];
+    viewer_on(shared_gpu(), arguments, store)
+}
+
+fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {
+    // Judging takes the software driver longer than drawing; the tests of it switch it on.
+    let resolution = format!("map.resolution={MAP_TEXELS}");
+    let all = ["viewer", "--software", "--no-play", "--set", &resolution, "--set", "view.judge=off"];
     let arguments = Arguments::parse_from(all.iter().chain(arguments));
     let start = Start::new(&arguments).expect("arguments that make sense");
-    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
     let mut stage = Stage::empty(gpu, 1).expect("a stage");
     stage.read_depths();
     let store = store.map(|path| Store::at(path.to_owned()));
-    Viewer::new(stage, wgpu::TextureFormat::Rgba8Unorm, start, store)
+    let viewer = Viewer::new(stage, wgpu::TextureFormat::Rgba8Unorm, start, store);
+    // With two points per pixel each way, a picture takes the software driver a quarter of the time.
+    viewer.interface.context.set_pixels_per_point(0.5);
+    viewer
 }
 
 fn frame(viewer: &mut Viewer) {
     frame_with(viewer, Vec::new());
 }
 
+/// Lets seconds pass on the viewer's clock, in a few long frames.
+fn pass(viewer: &mut Viewer, seconds: f32) {
+    const FRAMES: u8 = 6;
+    (0..FRAMES).for_each(|_| frame_of(viewer, Vec::new(), seconds / f32::from(FRAMES)));
+}
+
 fn frame_with(viewer: &mut Viewer, events: Vec<egui::Event>) {
+    frame_of(viewer, events, FRAME);
+}
+
+fn frame_of(viewer: &mut Viewer, events: Vec<egui::Event>, seconds: f32) {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32)));
     let input = RawInput { screen_rect, time: Some(viewer.clock), events, ..Default::default() };
-    let _ = viewer.frame(input, FRAME);
+    let _ = viewer.frame(input, seconds);
 }
+
+/// Between frames that wait for a thread: drawing on the CPU would take its time away.
+const REST: Duration = Duration::from_millis(40);
 
 /// Draws frames until what is under way has ended, whatever comes of it.
 fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
@@ -60,7 +84,7 @@ fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
         if is_over(viewer) {
             return;
         }
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(REST);
     }
     panic!("it goes on and on");
 }
@@ -73,13 +97,16 @@ fn until(viewer: &mut Viewer, what: &str, is_so: impl Fn(&Viewer) -> bool) {
         if is_so(viewer) {
             return;
         }
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(REST);
     }
     panic!("{what} never happens");
 }
 
 fn ready(arguments: &[&str], store: Option<&Path>) -> Viewer {
-    let mut viewer = viewer(arguments, store);
+    loaded(viewer(arguments, store))
+}
+
+fn loaded(mut viewer: Viewer) -> Viewer {
     until(&mut viewer, "the scene", Viewer::is_ready);
     viewer
 }
@@ -105,7 +132,7 @@ fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
 
     let mut second = ready(&[], Some(&path));
     assert_eq!(second.source, SceneSource::from_text("plain"), "the scene of the last time");
-    let technique = technique.with_resolution(512, 512);
+    let technique = technique.with_resolution(MAP_TEXELS, MAP_TEXELS);
     assert_eq!(second.stage.settings.technique, technique, "but for what the arguments set");
     assert!((second.stage.camera.position - camera.position).length() < 1e-9);
     assert_eq!((second.saved.theme, second.presets.len()), (Theme::Light, 1));
@@ -115,7 +142,7 @@ fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
     drop(second);
 
     let third = ready(&["--technique", "stable-4", "--set", "bias.constant=0.25"], Some(&path));
-    let mut expected = Technique::preset("stable-4").expect("a preset").with_resolution(512, 512);
+    let mut expected = Technique::preset("stable-4").expect("a preset").with_resolution(MAP_TEXELS, MAP_TEXELS);
     expected.bias.constant = 0.25;
     let fit = third.stage.settings.technique.fit;
     (expected.fit.max_distance, expected.fit.caster_extension) = (fit.max_distance, fit.caster_extension);
@@ -149,7 +176,7 @@ fn gpu_a_first_scene_that_cannot_be_loaded_ends_the_viewer_and_a_later_one_is_to
 #[test]
 fn gpu_changes_are_taken_back_one_by_one() {
     let mut viewer = ready(&[], None);
-    let pause = |viewer: &mut Viewer| (0..60).for_each(|_| frame(viewer));
+    let pause = |viewer: &mut Viewer| pass(viewer, 2.0);
     pause(&mut viewer);
     let before = viewer.stage.settings;
     for (id, value) in [("map.filter", "point"), ("splits.count", "2")] {
@@ -168,7 +195,7 @@ fn gpu_changes_are_taken_back_one_by_one() {
 
 #[test]
 fn gpu_two_techniques_are_drawn_judged_and_swapped() {
-    let mut viewer = ready(&["--technique", "xna-1"], None);
+    let mut viewer = ready(&["--technique", "xna-1", "--set", "view.judge=on"], None);
     run(&mut viewer, Command::Compare(Toggle::On));
     run(&mut viewer, Command::View(ViewMode::Error));
     until(&mut viewer, "both are judged", |viewer| viewer.stage.is_judged());
@@ -199,7 +226,7 @@ fn gpu_an_artefact_is_found_on_a_thread_shown_told_and_fixed() {
 #[test]
 fn gpu_the_card_of_an_artefact_comes_back_as_it_was_and_marks_outlast_it() {
     let mut viewer = ready(&[], None);
-    let pause = |viewer: &mut Viewer| (0..60).for_each(|_| frame(viewer));
+    let pause = |viewer: &mut Viewer| pass(viewer, 2.0);
     pause(&mut viewer);
     run(&mut viewer, Command::ShowArtefact(Artefact::Acne));
     until(&mut viewer, "acne", |viewer| viewer.stage.shown().is_some());

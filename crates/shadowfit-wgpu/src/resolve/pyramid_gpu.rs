@@ -3,24 +3,10 @@
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{Edges, FilterKind, MapFormat};
 use shadowfit::{Aabb, Boxes, DepthConvention, PerspectiveCamera, Technique};
+use shadowfit_testing::{TestGpu, software_gpu};
 
 use super::*;
 use crate::{Casters, MapTexture, SunFrame};
-
-/// A device of the software adapter. Without one the test is skipped, unless a GPU is required.
-fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends = wgpu::Backends::PRIMARY;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-    let Some(adapter) = adapters.into_iter().find(is_software) else {
-        assert!(std::env::var_os("SHADOWFIT_REQUIRE_GPU").is_none(), "no software adapter, such as Mesa's lavapipe");
-        println!("SKIPPED: no software adapter, such as Mesa's lavapipe");
-        return None;
-    };
-    Some(pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device"))
-}
 
 /// Maps that no caster is drawn into: their texels are written.
 struct Bench {
@@ -37,11 +23,8 @@ struct Bench {
 type Texels = Vec<f32>;
 
 impl Bench {
-    fn new(
-        (device, queue): (wgpu::Device, wgpu::Queue),
-        size: [u32; 2],
-        (depth, format): (DepthConvention, MapFormat),
-    ) -> Self {
+    fn new(size: [u32; 2], depth: DepthConvention, format: MapFormat) -> Self {
+        let TestGpu { device, queue, .. } = software_gpu();
         let mut technique = Technique::preset("stable-4").expect("a preset").with_resolution(size[0], size[1]);
         technique.fit.depth = depth;
         let technique = technique
@@ -197,11 +180,10 @@ const READ: &str = "
 
 #[test]
 fn each_level_has_the_nearest_and_the_farthest_depth_of_each_block_in_both_conventions() {
-    let Some(gpu) = device() else { return };
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
         // The latter are not filled by blocks of any level, or of the coarser ones.
         for size in [[256, 256], [512, 256], [260, 301], [404, 404]] {
-            let mut bench = Bench::new(gpu.clone(), size, (depth, MapFormat::R32Float));
+            let mut bench = Bench::new(size, depth, MapFormat::R32Float);
             bench.update();
             let layers = bench.write(1);
             bench.renew();
@@ -214,8 +196,7 @@ fn each_level_has_the_nearest_and_the_farthest_depth_of_each_block_in_both_conve
 
 #[test]
 fn the_pyramids_of_maps_that_were_drawn_are_renewed_and_no_others() {
-    let Some(gpu) = device() else { return };
-    let mut bench = Bench::new(gpu, [256, 256], (DepthConvention::Reversed, MapFormat::Depth32Float));
+    let mut bench = Bench::new([256, 256], DepthConvention::Reversed, MapFormat::Depth32Float);
     let mut held = bench.clear(0.0);
     let (mut renewed, mut kept) = (0, 0);
     for frame in 1..5_u8 {

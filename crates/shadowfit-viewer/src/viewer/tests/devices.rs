@@ -1,10 +1,11 @@
 //! Devices that are lost: in each view, beside a second technique, while a scene is loaded, in a sample, and again.
 
 use super::*;
+use crate::test_gpu::fresh_gpu;
 use crate::viewer::Renewals;
 
-fn software() -> Gpu {
-    pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter")
+fn ready(arguments: &[&str]) -> Viewer {
+    loaded(viewer_on(fresh_gpu(), arguments, None))
 }
 
 /// Loses the device, draws a frame with what is left of it, and goes on with another one.
@@ -16,7 +17,7 @@ fn lose(viewer: &mut Viewer) {
     settle(viewer, |_| gpu.lost().is_some());
     assert_eq!(gpu.take_faults(), [], "a lost device is no other fault");
     let why = gpu.lost().unwrap_or_default();
-    viewer.move_to(software(), wgpu::TextureFormat::Rgba8Unorm, &why).expect("another device");
+    viewer.move_to(fresh_gpu(), wgpu::TextureFormat::Rgba8Unorm, &why).expect("another device");
 }
 
 fn picture(viewer: &mut Viewer) -> Vec<u8> {
@@ -28,7 +29,7 @@ fn picture(viewer: &mut Viewer) -> Vec<u8> {
 
 #[test]
 fn gpu_a_lost_device_takes_nothing_along_in_any_view() {
-    let mut viewer = ready(&["--technique", "stable-4", "--set", "view.judge=off"], None);
+    let mut viewer = ready(&["--technique", "stable-4", "--set", "view.judge=off"]);
     run(&mut viewer, Command::Set("bias.constant".to_owned(), "0.25".to_owned()));
     viewer.stage.camera.position.y += 3.0;
     let (settings, camera) = (viewer.stage.settings, viewer.stage.camera);
@@ -48,7 +49,7 @@ fn gpu_a_lost_device_takes_nothing_along_in_any_view() {
 
 #[test]
 fn gpu_two_techniques_a_frozen_fit_and_a_sample_outlive_their_device() {
-    let mut viewer = ready(&[], None);
+    let mut viewer = ready(&[]);
     run(&mut viewer, Command::Compare(Toggle::On));
     run(&mut viewer, Command::ToggleFreeze);
     frame(&mut viewer);
@@ -59,7 +60,7 @@ fn gpu_two_techniques_a_frozen_fit_and_a_sample_outlive_their_device() {
     assert!(other.is_some() && viewer.stage.other_technique() == other);
     assert_eq!(viewer.stage.maps(SIZE), maps, "the frozen fit is of the view before");
 
-    let mut sample = ready(&["--sample", "xna-shadow-mapping"], None);
+    let mut sample = ready(&["--sample", "xna-shadow-mapping"]);
     let before = picture(&mut sample);
     lose(&mut sample);
     assert!(picture(&mut sample) == before, "the sample is another picture");
@@ -67,7 +68,7 @@ fn gpu_two_techniques_a_frozen_fit_and_a_sample_outlive_their_device() {
 
 #[test]
 fn gpu_what_was_under_way_on_a_lost_device_is_begun_again_or_told() {
-    let mut viewer = ready(&[], None);
+    let mut viewer = ready(&[]);
     viewer.ask(Command::Open("plain".to_owned()));
     frame(&mut viewer);
     lose(&mut viewer);
@@ -83,9 +84,9 @@ fn gpu_what_was_under_way_on_a_lost_device_is_begun_again_or_told() {
 
 #[test]
 fn gpu_a_device_that_was_lost_for_want_of_memory_comes_back_with_smaller_maps() {
-    let mut viewer = ready(&["--technique", "stable-4"], None);
+    let mut viewer = ready(&["--technique", "stable-4", "--set", "map.resolution=512"]);
     let resolution = viewer.stage.settings.technique.fit.resolution;
-    viewer.move_to(software(), wgpu::TextureFormat::Rgba8Unorm, "Out of memory").expect("another device");
+    viewer.move_to(fresh_gpu(), wgpu::TextureFormat::Rgba8Unorm, "Out of memory").expect("another device");
     assert_eq!(viewer.stage.settings.technique.fit.resolution, resolution / 2);
     assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains("256 × 256")));
 }

@@ -43,6 +43,8 @@ fn click(viewer: &mut Viewer, size: [f32; 2], name: &str) {
 
 fn with_names(arguments: &[&str]) -> Viewer {
     let mut viewer = ready(arguments, None);
+    // The pictures of these tests are measured in points.
+    viewer.interface.context.set_pixels_per_point(1.0);
     viewer.interface.context.enable_accesskit();
     (0..3).for_each(|_| drop(draw(&mut viewer, UPRIGHT, Vec::new())));
     viewer

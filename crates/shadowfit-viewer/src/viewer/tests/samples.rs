@@ -102,7 +102,7 @@ fn gpu_options_variants_and_reset_do_what_the_card_says() {
 #[test]
 fn gpu_a_change_of_an_option_is_undone_by_name() {
     let mut viewer = ready(&["--sample", XNA], None);
-    let rest = |viewer: &mut Viewer| (0..90).for_each(|_| frame(viewer));
+    let rest = |viewer: &mut Viewer| pass(viewer, 3.0);
     rest(&mut viewer);
     run(&mut viewer, Command::Set("sample.bias".to_owned(), "0.005".to_owned()));
     rest(&mut viewer);

@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn gpu_nothing_can_be_taken_back_that_was_done_before_the_scene_was_there() {
     let mut viewer = ready(&["--technique", "xna-1"], None);
-    let pause = |viewer: &mut Viewer| (0..60).for_each(|_| frame(viewer));
+    let pause = |viewer: &mut Viewer| pass(viewer, 2.0);
     pause(&mut viewer);
     assert_eq!(viewer.history.undo_name(), None);
     run(&mut viewer, Command::Set("bias.slope".to_owned(), "2".to_owned()));

@@ -1,0 +1,14 @@
+//! Code that the tests of several crates share.
+//!
+//! Opening a device takes longer than many tests that draw. [`software_gpu`] therefore lends a device to one test after
+//! another, and `cargo xtask test` runs the tests that draw in one process per test binary.
+
+mod gpu;
+pub mod layout;
+pub mod pairs;
+pub mod read_back;
+pub mod wgsl;
+
+#[cfg(feature = "render")]
+pub use gpu::renderer_gpu;
+pub use gpu::{TestGpu, open_software_gpu, software_gpu};

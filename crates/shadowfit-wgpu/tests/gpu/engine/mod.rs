@@ -1,0 +1,279 @@
+//! An engine of a few lines, which the tests share: a device, its buffers, textures and pipelines, and values read back.
+//! Tests add their scene and their questions. [`casters`] draws into maps, [`points`] evaluates WGSL at points, and
+//! [`picture`] draws pictures and depth buffers.
+
+pub(crate) mod casters;
+pub(crate) mod picture;
+pub(crate) mod points;
+
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex};
+
+use bytemuck::{NoUninit, Pod};
+use shadowfit_testing::{TestGpu, open_software_gpu, read_back, software_gpu};
+use wgpu::util::DeviceExt;
+
+/// A device of the software adapter. The tests that share it share its pipelines: most of them draw with few shaders, and
+/// compiling one takes longer than drawing with it.
+#[derive(Clone)]
+pub(crate) struct Engine {
+    pub(crate) adapter: wgpu::Adapter,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    /// Pipelines by their WGSL and their states.
+    draws: Made<wgpu::RenderPipeline>,
+    computes: Made<wgpu::ComputePipeline>,
+}
+
+/// Things that were made for a text.
+type Made<T> = Arc<Mutex<HashMap<String, T>>>;
+
+/// Returns the thing of a text, and makes it if it is missing.
+fn made<T: Clone>(all: &Made<T>, text: String, make: impl FnOnce() -> T) -> T {
+    // No lock while it is made: other tests go on.
+    let found = all.lock().expect("no thread panics with the lock").get(&text).cloned();
+    found.unwrap_or_else(|| {
+        let new = make();
+        all.lock().expect("no thread panics with the lock").insert(text, new.clone());
+        new
+    })
+}
+
+impl Engine {
+    /// Returns the device that all tests share.
+    pub(crate) fn shared() -> Self {
+        static ENGINE: LazyLock<Engine> = LazyLock::new(|| Engine::of(software_gpu()));
+        ENGINE.clone()
+    }
+
+    /// Returns a device without depth clamp, which tests share, too.
+    pub(crate) fn without_clamp() -> Self {
+        static ENGINE: LazyLock<Engine> = LazyLock::new(|| Engine::open(wgpu::Limits::default()));
+        ENGINE.clone()
+    }
+
+    /// Opens a device of its own without optional features.
+    pub(crate) fn open(limits: wgpu::Limits) -> Self {
+        Self::of(open_software_gpu(wgpu::Features::empty(), limits))
+    }
+
+    pub(crate) fn of(TestGpu { adapter, device, queue }: TestGpu) -> Self {
+        Self { adapter, device, queue, draws: Made::default(), computes: Made::default() }
+    }
+
+    pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    pub(crate) fn submit(&self, encoder: wgpu::CommandEncoder) {
+        self.queue.submit([encoder.finish()]);
+    }
+
+    pub(crate) fn buffer<T: NoUninit>(&self, contents: &[T], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        // A buffer of no size cannot be bound.
+        let contents: &[u8] = if contents.is_empty() { &[0; 32] } else { bytemuck::cast_slice(contents) };
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+    }
+
+    pub(crate) fn texture(
+        &self,
+        [width, height]: [u32; 2],
+        samples: u32,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::TextureView {
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    fn module(&self, wgsl: &str) -> wgpu::ShaderModule {
+        let source = wgpu::ShaderSource::Wgsl(wgsl.into());
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
+    }
+
+    pub(crate) fn layout(&self, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+        self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: groups,
+            immediate_size: 0,
+        })
+    }
+
+    /// Binds resources to the bindings from 0 on.
+    pub(crate) fn group<'a>(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
+    ) -> wgpu::BindGroup {
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// Compiles a compute shader, whose text names its only entry point. Without a layout, the bind groups follow from the
+    /// shader.
+    pub(crate) fn compute_pipeline(
+        &self,
+        layout: Option<&wgpu::PipelineLayout>,
+        wgsl: &str,
+        entry: &str,
+    ) -> wgpu::ComputePipeline {
+        made(&self.computes, wgsl.to_owned(), || {
+            self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: None,
+                layout,
+                module: &self.module(wgsl),
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        })
+    }
+
+    /// Returns the texels of all layers of a texture, row by row.
+    pub(crate) fn texels<T: Pod>(&self, texture: &wgpu::Texture) -> Vec<T> {
+        read_back::texels(&self.device, &self.queue, texture)
+    }
+
+    /// Submits commands, and returns the values that they leave in a buffer.
+    pub(crate) fn values<T: Pod>(&self, mut encoder: wgpu::CommandEncoder, buffer: &wgpu::Buffer) -> Vec<T> {
+        let read = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: buffer.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
+        self.submit(encoder);
+        read.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the buffer can be read"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        bytemuck::pod_collect_to_vec(&read.slice(..).get_mapped_range().expect("the buffer is mapped"))
+    }
+}
+
+/// Records a compute pass of one dispatch.
+pub(crate) fn dispatch(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::ComputePipeline,
+    groups: &[&wgpu::BindGroup],
+    workgroups: [u32; 2],
+) {
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(pipeline);
+    for (index, group) in (0..).zip(groups) {
+        pass.set_bind_group(index, *group, &[]);
+    }
+    pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
+}
+
+/// The parts in which the render pipelines of the tests differ.
+#[derive(Debug)]
+pub(crate) struct Pipeline<'a> {
+    /// Without a layout, the bind groups follow from the shaders.
+    pub(crate) layout: Option<&'a wgpu::PipelineLayout>,
+    pub(crate) wgsl: &'a str,
+    pub(crate) vertex: &'a str,
+    pub(crate) buffers: &'a [wgpu::VertexBufferLayout<'a>],
+    pub(crate) fragment: Option<&'a str>,
+    pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
+    pub(crate) primitive: wgpu::PrimitiveState,
+    pub(crate) depth: Option<wgpu::DepthStencilState>,
+    pub(crate) multisample: wgpu::MultisampleState,
+}
+
+impl<'a> Pipeline<'a> {
+    /// Triangles by the entry points `vs` and `fs`, without buffers, targets and depth.
+    pub(crate) fn new(wgsl: &'a str) -> Self {
+        Self {
+            layout: None,
+            wgsl,
+            vertex: "vs",
+            buffers: &[],
+            fragment: Some("fs"),
+            targets: &[],
+            primitive: Default::default(),
+            depth: None,
+            multisample: Default::default(),
+        }
+    }
+
+    /// Compiles the pipeline, or returns one that was compiled before. Layouts that differ need texts that differ.
+    pub(crate) fn make(mut self, engine: &Engine) -> wgpu::RenderPipeline {
+        let layout = self.layout.take();
+        let text = format!("{self:?}");
+        made(&engine.draws, text, || Self { layout, ..self }.compile(engine))
+    }
+
+    fn compile(self, engine: &Engine) -> wgpu::RenderPipeline {
+        let module = engine.module(self.wgsl);
+        let fragment = self.fragment.map(|entry| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: self.targets,
+        });
+        engine.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: self.layout,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(self.vertex),
+                compilation_options: Default::default(),
+                buffers: &self.buffers.iter().cloned().map(Some).collect::<Vec<_>>(),
+            },
+            primitive: self.primitive,
+            depth_stencil: self.depth,
+            multisample: self.multisample,
+            fragment,
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// A vertex buffer of attributes one after the other.
+pub(crate) fn vertices(
+    attributes: &[wgpu::VertexAttribute],
+    step_mode: wgpu::VertexStepMode,
+) -> wgpu::VertexBufferLayout<'_> {
+    let array_stride = attributes.iter().map(|attribute| attribute.format.size()).sum();
+    wgpu::VertexBufferLayout { array_stride, step_mode, attributes }
+}
+
+/// Begins a pass that clears what it draws into.
+pub(crate) fn cleared<'encoder>(
+    encoder: &'encoder mut wgpu::CommandEncoder,
+    colors: &[&wgpu::TextureView],
+    depth: Option<ClearedDepth<'_>>,
+) -> wgpu::RenderPass<'encoder> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+    let colors: Vec<_> = colors
+        .iter()
+        .map(|view| Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }))
+        .collect();
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &colors,
+        depth_stencil_attachment: depth.map(|depth| wgpu::RenderPassDepthStencilAttachment {
+            view: depth.view,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(depth.value), store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
+
+/// A depth buffer, and the value that clears it.
+#[derive(Clone, Copy)]
+pub(crate) struct ClearedDepth<'a> {
+    pub(crate) view: &'a wgpu::TextureView,
+    pub(crate) value: f32,
+}

@@ -1,0 +1,30 @@
+//! Tests of shadowfit-wgpu with everything that they draw with: its WGSL and its uniforms, which need no GPU, and maps,
+//! look-ups and passes on the software adapter.
+//!
+//! Tests that need a graphics device have `gpu` in their path, by which `cargo xtask test` leaves them out where there is
+//! none.
+
+mod acne_gpu;
+mod cached_maps_gpu;
+mod clamp_gpu;
+mod culling_gpu;
+mod demand_gpu;
+mod demand_picture;
+mod demand_reference;
+mod door_gpu;
+mod engine;
+mod exact_counts_gpu;
+mod fade_gpu;
+mod formats_gpu;
+mod gpu_casters_gpu;
+mod harness;
+mod layout;
+mod parity_gpu;
+mod penumbra_gpu;
+mod prefixes;
+mod refusals_gpu;
+mod resolve_gpu;
+mod several_maps_gpu;
+mod tents_gpu;
+mod wgsl;
+mod wrap_gpu;
