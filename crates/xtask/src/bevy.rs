@@ -1,38 +1,102 @@
-//! The package for Bevy, outside the workspace: checked and tested where a Rust is installed that builds Bevy.
+//! The package for Bevy, outside the workspace: checked and tested where a Rust is installed that builds Bevy. Building
+//! Bevy takes nearly all of the time, so lints, docs and tests share one build. `cargo clippy` and `cargo doc` would each
+//! need a second one: clippy compiles the package in place of the compiler, and the documentation is written where the
+//! documentation's tests are run.
 
-use std::process::Command;
+use std::ffi::{OsStr, OsString};
+use std::process::{Command, ExitCode};
 
 use anyhow::Result;
 
-use crate::machine::Machine;
 use crate::process;
+use crate::setup::{self, Purpose};
 
-/// Why it is left out, where it is.
-pub(crate) const NO_RUST: &str = "no Rust 1.97 or newer here, which Bevy asks for";
+/// The reason for which the package is left out.
+const NO_RUST: &str = "no Rust 1.97 or newer here, which Bevy asks for";
+
+/// The environment variable that makes this program rustdoc.
+const AS_RUSTDOC: &str = "SHADOWFIT_AS_RUSTDOC";
 
 /// The least Rust that builds Bevy 0.20.1: it states 1.97.1, and is content with what came before that.
 const LEAST: (u32, u32) = (1, 97);
+
+/// Lints, documents and tests the package, except tests that the machine cannot run.
+///
+/// # Errors
+/// When a lint, a link of the documentation or a test fails.
+pub(crate) fn check_and_test() -> Result<()> {
+    let machine = setup::prepare(Purpose::Test)?;
+    let Some(rust) = Rust::find() else {
+        println!("SKIPPED: the package for Bevy: {NO_RUST}");
+        return Ok(());
+    };
+    let mut tests = rust.cargo("test");
+    tests.arg("--no-fail-fast");
+    if process::succeeds(rust.plain_cargo("clippy").arg("--version")) {
+        // As `cargo clippy -- -D warnings` does it.
+        tests.env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver").env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings");
+    } else {
+        println!("lints of bevy-shadowfit were not looked at: its Rust has no clippy");
+    }
+    tests.env("RUSTDOC", std::env::current_exe()?).env(AS_RUSTDOC, "1");
+    if !machine.can_test_window() {
+        println!("SKIPPED: the window of bevy-shadowfit: no Xvfb, ImageMagick's import or Vulkan driver here");
+        tests.args(["--", "--skip", "real_window"]);
+    }
+    process::run(&mut tests)
+}
+
+/// Acts as rustdoc if this program was started in its place: where cargo tests the examples in the documentation, writes
+/// the documentation first, and takes its warnings for errors.
+pub(crate) fn as_rustdoc() -> Option<ExitCode> {
+    std::env::var_os(AS_RUSTDOC)?;
+    let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
+    let runs = documenting(&arguments).into_iter().chain([arguments]);
+    for arguments in runs {
+        match Command::new("rustdoc").args(arguments).status() {
+            Ok(status) if status.success() => {}
+            Ok(status) => {
+                return Some(ExitCode::from(status.code().and_then(|code| code.try_into().ok()).unwrap_or(1)));
+            }
+            Err(error) => {
+                eprintln!("error: rustdoc does not start: {error}");
+                return Some(ExitCode::FAILURE);
+            }
+        }
+    }
+    Some(ExitCode::SUCCESS)
+}
+
+/// The arguments that write the documentation, from those that test it; `None` from others.
+fn documenting(arguments: &[OsString]) -> Option<Vec<OsString>> {
+    let is_test = |argument: &&OsString| argument.as_os_str() == OsStr::new("--test");
+    arguments.iter().find(is_test)?;
+    let folder = process::target_folder().join("doc").into_os_string();
+    let more = ["--out-dir".into(), folder, "-D".into(), "warnings".into()];
+    Some(arguments.iter().filter(|argument| !is_test(argument)).cloned().chain(more).collect())
+}
 
 /// A Rust that builds Bevy.
 pub(crate) struct Rust {
     /// Its name to rustup; `None` for the one in use.
     toolchain: Option<String>,
+    /// The line that its compiler prints of itself.
+    pub(crate) version: String,
 }
 
 impl Rust {
     /// The one in use, else the first that rustup has.
     pub(crate) fn find() -> Option<Self> {
-        let version_of = |command: &mut Command| process::output_of(command).and_then(|text| version(&text));
-        let is_enough = |version: Option<(u32, u32)>| version.is_some_and(|version| version >= LEAST);
-        if is_enough(version_of(Command::new("rustc").arg("--version"))) {
-            return Some(Self { toolchain: None });
+        let used = process::output_of(Command::new("rustc").arg("--version"));
+        if let Some(version) = used.filter(|text| is_enough(text)) {
+            return Some(Self { toolchain: None, version });
         }
         let installed = process::output_of(Command::new("rustup").args(["toolchain", "list"]))?;
-        let names = installed.lines().filter_map(|line| line.split_whitespace().next());
-        names
-            .filter(|name| is_enough(version_of(Command::new("rustup").args(["run", name, "rustc", "--version"]))))
-            .map(|name| Self { toolchain: Some(name.to_owned()) })
-            .next()
+        let mut names = installed.lines().filter_map(|line| line.split_whitespace().next());
+        names.find_map(|name| {
+            let version = process::output_of(Command::new("rustup").args(["run", name, "rustc", "--version"]))?;
+            is_enough(&version).then(|| Self { toolchain: Some(name.to_owned()), version })
+        })
     }
 
     /// A cargo command by this Rust.
@@ -49,31 +113,17 @@ impl Rust {
         command.current_dir(process::root().join("crates/bevy-shadowfit"));
         command.env("CARGO_TARGET_DIR", process::target_folder().join("bevy"));
         command.args(["--locked", "--ignore-rust-version"]);
-        // Tests need no speed, and Bevy is built in half the time.
-        command.args(["--config", "profile.dev.package.'*'.opt-level=0"]);
+        // Tests need neither speed nor a debugger, and Bevy is built in half the time.
+        for setting in ["opt-level=0", "package.'*'.opt-level=0", "debug=false"] {
+            command.args(["--config", &format!("profile.dev.{setting}")]);
+        }
         command
     }
+}
 
-    /// Lints and docs, as those of the workspace.
-    pub(crate) fn check(&self) -> Result<()> {
-        if process::succeeds(self.plain_cargo("clippy").arg("--version")) {
-            process::run(self.cargo("clippy").args(["--all-targets", "--", "-D", "warnings"]))?;
-        } else {
-            println!("lints of bevy-shadowfit were not looked at: its Rust has no clippy");
-        }
-        process::run(self.cargo("doc").arg("--no-deps").env("RUSTDOCFLAGS", "-D warnings"))
-    }
-
-    /// All its tests, but those that the machine cannot run.
-    pub(crate) fn test(&self, machine: &Machine) -> Result<()> {
-        let mut tests = self.cargo("test");
-        tests.arg("--no-fail-fast");
-        if !machine.can_test_window() {
-            println!("SKIPPED: the window of bevy-shadowfit: no Xvfb, ImageMagick's import or Vulkan driver here");
-            tests.args(["--", "--skip", "real_window"]);
-        }
-        process::run(&mut tests)
-    }
+/// Whether the compiler that printed its version builds Bevy.
+fn is_enough(printed: &str) -> bool {
+    version(printed).is_some_and(|version| version >= LEAST)
 }
 
 /// Major and minor number of what `rustc --version` prints.
@@ -85,6 +135,15 @@ fn version(printed: &str) -> Option<(u32, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_documentation_is_written_from_the_arguments_of_its_tests() {
+        let arguments = |text: &str| text.split(' ').map(OsString::from).collect::<Vec<_>>();
+        let all = documenting(&arguments("--test src/lib.rs -L deps")).unwrap();
+        assert_eq!(all[..4], arguments("src/lib.rs -L deps --out-dir"));
+        assert_eq!(all[5..], arguments("-D warnings"));
+        assert_eq!(documenting(&arguments("-vV")), None);
+    }
 
     #[test]
     fn versions_are_read_from_what_rustc_prints() {

@@ -1,15 +1,17 @@
 //! `cargo xtask ci`: every check that comes before the tests, in the order in which a mistake shows soonest, stopping
 //! at the first failure. `.ci/run` calls this and then `cargo xtask test`.
 
-mod portability;
+mod circles;
+pub(crate) mod portability;
+mod size;
 
 use std::process::Command;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
-use crate::bevy;
-use crate::machine::{Machine, WEB_TARGET};
+use crate::generate;
+use crate::machine::Machine;
 use crate::process;
 use crate::setup::{self, Purpose};
 
@@ -19,8 +21,11 @@ struct Step {
     check: fn(&Machine) -> Result<()>,
 }
 
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     Step { name: "format", check: format },
+    Step { name: "import circles", check: circles::check },
+    Step { name: "lines of code", check: size::check },
+    Step { name: "generated text", check: |_| generate::check() },
     Step { name: "dependencies", check: dependencies },
     Step { name: "no_std build of the core", check: portability::no_std },
     Step { name: "lints", check: lints },
@@ -29,8 +34,6 @@ const STEPS: [Step; 11] = [
     Step { name: "the core's own minimum Rust version", check: portability::msrv },
     Step { name: "same bits without SIMD and in WebAssembly", check: portability::determinism },
     Step { name: "the core with the oldest glam", check: portability::oldest_glam },
-    Step { name: "examples", check: examples },
-    Step { name: "the package for Bevy", check: bevy },
 ];
 
 /// Prepares the machine and runs the checks.
@@ -38,7 +41,7 @@ const STEPS: [Step; 11] = [
 /// # Errors
 /// When a check fails; the later ones are then not run.
 pub(crate) fn ci() -> Result<()> {
-    let machine = setup::prepare(Purpose::Test)?;
+    let machine = setup::prepare(Purpose::Pictures)?;
     let mut done: Vec<(&str, Duration)> = Vec::new();
     for Step { name, check } in &STEPS {
         eprintln!("\n==== {name} ====");
@@ -81,21 +84,7 @@ fn lints(machine: &Machine) -> Result<()> {
     let features = setup::features(machine);
     process::run(
         process::cargo("clippy").args(["--workspace", "--all-targets"]).args(features).args(["--", "-D", "warnings"]),
-    )?;
-    if !process::has_target(WEB_TARGET) {
-        println!("what is built for browsers alone was not looked at: rustup has no {WEB_TARGET}");
-        return Ok(());
-    }
-    process::run(process::cargo("clippy").args([
-        "--package",
-        "shadowfit-viewer",
-        "--lib",
-        "--target",
-        WEB_TARGET,
-        "--",
-        "-D",
-        "warnings",
-    ]))
+    )
 }
 
 fn docs(machine: &Machine) -> Result<()> {
@@ -124,18 +113,6 @@ fn msrv(machine: &Machine) -> Result<()> {
             .current_dir(process::root())
             .env("CARGO_TARGET_DIR", target_dir),
     )
-}
-
-fn examples(machine: &Machine) -> Result<()> {
-    process::run(process::cargo("build").args(["--workspace", "--examples"]).args(setup::features(machine)))
-}
-
-fn bevy(_: &Machine) -> Result<()> {
-    let Some(rust) = bevy::Rust::find() else {
-        println!("SKIPPED: {}", bevy::NO_RUST);
-        return Ok(());
-    };
-    rust.check()
 }
 
 /// The first `rust-version` in a manifest.

@@ -12,12 +12,15 @@ mod ci;
 mod docs;
 #[cfg(feature = "tools")]
 mod gallery;
+mod generate;
+mod green;
 mod machine;
 #[cfg(feature = "tools")]
 mod maths;
 mod process;
 mod run;
 mod setup;
+mod source;
 mod test;
 #[cfg(feature = "tools")]
 mod web;
@@ -25,6 +28,8 @@ mod web;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use crate::test::Tier;
 
 /// Development tasks of the shadowfit workspace.
 #[derive(Parser)]
@@ -43,12 +48,21 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Run every test of the workspace: unit, property, golden-image, window and doc tests.
+    /// Run the tests of the workspace: unit, property, golden-image, window and doc tests.
     Test {
-        /// Arguments of the test runner, for example part of a test's name; doc tests are then left out.
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<String>,
+        /// Only the libraries without the viewer, in a minute: unit and property tests, WGSL, some pictures.
+        #[arg(long)]
+        quick: bool,
+        /// Also the page, Bevy, hours in the window, full products and many random cases.
+        #[arg(long, conflicts_with = "quick")]
+        all: bool,
+        /// Parts of the paths of the tests to run; without doc tests, page and Bevy.
+        names: Vec<String>,
     },
+    /// Lint, document and test the package for Bevy.
+    Bevy,
+    /// Write the parts of the documents that come from code: examples, and the drawings of docs/MATHS.md.
+    Generate,
     /// Run every check that comes before the tests: format, lints, docs, MSRV, `no_std`, dependencies, examples.
     Ci,
     /// Render the pictures of the README and the docs again.
@@ -57,8 +71,6 @@ enum Task {
         /// the README.
         only: Vec<String>,
     },
-    /// Draw those pictures of docs/MATHS.md again that show what the core crate's fits give.
-    Maths,
     /// Measure the core crate, with `--gpu` what shadows cost on a GPU, or with `--growth` how costs grow with the world,
     /// and write the times and ratios into docs/BENCHMARKS.md.
     Bench {
@@ -88,23 +100,31 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    let result = match Cli::parse().task {
+    if let Some(code) = bevy::as_rustdoc() {
+        return code;
+    }
+    process::end_children_on_interrupt();
+    let cli = Cli::try_parse().unwrap_or_else(|error| refuse(&error));
+    let result = match cli.task {
         Task::Run { args } => run::run(&args),
-        Task::Test { args } => test::test(&args),
+        Task::Test { quick: true, names, .. } => test::test(Tier::Quick, &names),
+        Task::Test { all: true, names, .. } => test::test(Tier::All, &names),
+        Task::Test { names, .. } => test::test(Tier::Standard, &names),
+        Task::Bevy => green::unless_unchanged(green::Suite::Bevy, bevy::check_and_test),
         Task::Ci => ci::ci(),
+        #[cfg(feature = "tools")]
+        Task::Generate => generate::generate(),
         Task::Golden => test::golden(),
         #[cfg(feature = "tools")]
         Task::Gallery { only } => gallery::gallery(&only),
         #[cfg(feature = "tools")]
-        Task::Maths => maths::maths(),
-        #[cfg(feature = "tools")]
         Task::Bench { args } => bench::bench(&args),
         #[cfg(feature = "tools")]
-        Task::Web { test: true, long, .. } => web::test(long),
+        Task::Web { test: true, long, .. } => green::unless_unchanged(green::Suite::Page, || web::test(long)),
         #[cfg(feature = "tools")]
         Task::Web { build, port, .. } => web::web(build.as_deref(), port),
         #[cfg(not(feature = "tools"))]
-        Task::Gallery { .. } | Task::Maths | Task::Bench { .. } | Task::Web { .. } => {
+        Task::Generate | Task::Gallery { .. } | Task::Bench { .. } | Task::Web { .. } => {
             process::run(process::with_tools().args(std::env::args_os().skip(1)))
         }
     };
@@ -115,6 +135,17 @@ fn main() -> ExitCode {
             ExitCode::from(process::exit_code_of(&error))
         }
     }
+}
+
+/// Prints why the command line is refused, with the tiers where it named none of them, and ends with clap's exit code: 2,
+/// or 0 for help.
+fn refuse(error: &clap::Error) -> ! {
+    let _ = error.print();
+    let is_for_tests = std::env::args().nth(1).is_some_and(|task| task == "test");
+    if is_for_tests && error.use_stderr() {
+        eprintln!("\n{}", test::TIERS);
+    }
+    std::process::exit(error.exit_code())
 }
 
 #[cfg(test)]
@@ -130,10 +161,19 @@ mod tests {
 
     #[test]
     fn every_task_but_the_viewer_has_help_of_its_own() {
-        for task in ["test", "ci", "gallery", "maths", "bench", "web", "golden"] {
+        for task in ["test", "bevy", "generate", "ci", "gallery", "bench", "web", "golden"] {
             let asked = Cli::try_parse_from(["xtask", task, "--help"]).err().map(|error| error.kind());
             assert_eq!(asked, Some(clap::error::ErrorKind::DisplayHelp), "{task}");
         }
+    }
+
+    #[test]
+    fn unknown_tiers_are_refused_with_exit_code_2() {
+        for tier in ["--quik", "--slow", "--quick=1"] {
+            let error = Cli::try_parse_from(["xtask", "test", tier]).err().expect("no such tier");
+            assert_eq!(error.exit_code(), 2, "{tier}");
+        }
+        assert_eq!(Cli::try_parse_from(["xtask", "test", "--quick", "--all"]).err().unwrap().exit_code(), 2);
     }
 
     #[test]

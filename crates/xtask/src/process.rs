@@ -4,8 +4,12 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use anyhow::{Context, Result};
+
+/// The exit code after an interrupt.
+const INTERRUPTED: i32 = 130;
 
 /// A program that ended with a status other than 0.
 #[derive(Debug)]
@@ -80,6 +84,46 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Err(Failed { command: shown, code: status.code() }.into())
 }
 
+/// From now on, an interrupt or a request to end also ends every program that this one has started, and those that they
+/// have started: servers, displays and browsers would outlive a test runner that ends at once.
+pub(crate) fn end_children_on_interrupt() {
+    let handled = ctrlc::set_handler(|| {
+        let children = descendants(std::process::id());
+        for signal in ["-TERM", "-KILL"] {
+            let ids = children.iter().map(u32::to_string);
+            let _ = succeeds(Command::new("kill").arg(signal).args(ids));
+            std::thread::sleep(Duration::from_millis(300));
+        }
+        std::process::exit(INTERRUPTED);
+    });
+    if let Err(error) = handled {
+        eprintln!("programs may outlive an interrupt: {error}");
+    }
+}
+
+/// Ids of the processes that a process has started, and of those that they have started.
+fn descendants(ancestor: u32) -> Vec<u32> {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let processes: Vec<(u32, u32)> = entries
+        .filter_map(|entry| {
+            let id = entry.file_name().to_str()?.parse().ok()?;
+            Some((id, parent(&std::fs::read_to_string(entry.path().join("stat")).ok()?)?))
+        })
+        .collect();
+    let mut found = vec![ancestor];
+    let mut next = 0;
+    while let Some(&id) = found.get(next) {
+        found.extend(processes.iter().filter(|(_, parent)| *parent == id).map(|(child, _)| *child));
+        next += 1;
+    }
+    found.split_off(1)
+}
+
+/// The parent's id from the text of `/proc/ID/stat`, where it is the second word after the name in parentheses.
+fn parent(stat: &str) -> Option<u32> {
+    stat.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()
+}
+
 /// Whether `command` starts and ends with status 0; its output is not shown.
 pub(crate) fn succeeds(command: &mut Command) -> bool {
     command
@@ -104,6 +148,16 @@ pub(crate) fn has_target(target: &str) -> bool {
 /// Where cargo puts what it builds.
 pub(crate) fn target_folder() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
+/// Sets up Mesa's software driver for tests. Compiling a shader takes it longer than drawing a small picture with it, so
+/// shaders are compiled without optimisation, and kept beside the compiled Rust for the next run.
+pub(crate) fn with_driver_for_tests(command: &mut Command) -> &mut Command {
+    // Without a login session Mesa complains of a missing folder that nothing here needs.
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
+    command.env("GALLIVM_PERF", "nopt").env("MESA_SHADER_CACHE_DIR", target_folder().join("mesa"))
 }
 
 /// The command as a person would type it: the program's name without its folder, then the arguments.
@@ -142,8 +196,31 @@ mod tests {
     #[test]
     fn a_command_is_shown_as_it_would_be_typed() {
         let mut command = Command::new("/usr/bin/cargo");
-        command.args(["nextest", "run", "-E", "not test(real_window)"]);
-        assert_eq!(shown(&command), "cargo nextest run -E 'not test(real_window)'");
+        command.args(["nextest", "run", "-E", "not test(window)"]);
+        assert_eq!(shown(&command), "cargo nextest run -E 'not test(window)'");
+    }
+
+    #[test]
+    fn the_parent_is_found_behind_any_name() {
+        assert_eq!(parent("12 (a) b) S 7 12 12 0"), Some(7));
+        assert_eq!(parent("12 (cargo"), None);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn children_of_children_are_descendants() {
+        let mut shell = Command::new("sh").args(["-c", "sleep 60 & wait"]).spawn().unwrap();
+        let own = std::process::id();
+        while descendants(shell.id()).is_empty() {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let children = descendants(own);
+        assert!(children.contains(&shell.id()) && children.contains(&descendants(shell.id())[0]));
+        for id in descendants(shell.id()) {
+            succeeds(Command::new("kill").arg(id.to_string()));
+        }
+        shell.wait().unwrap();
+        assert!(!descendants(own).contains(&shell.id()));
     }
 
     #[test]

@@ -17,9 +17,10 @@ pub(crate) enum Purpose {
     Pictures,
     /// Testing the page: the software driver, and a browser with what drives it.
     Page,
-    /// Running the tests: as for running, the software driver of the golden images, the tools of the window test, and
-    /// those of the tests of the page.
+    /// Running the tests: the software driver of the golden images, and the tools of the window test.
     Test,
+    /// Running all tests: those of the page, too.
+    TestAll,
 }
 
 /// The environment variable with which an automatic run says that nothing may be skipped for want of a GPU.
@@ -73,7 +74,7 @@ pub(crate) fn viewer_features(machine: &Machine) -> &'static [&'static str] {
 
 /// The Debian packages with what `purpose` needs and `machine` lacks, in a fixed order.
 fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
-    let testing = purpose == Purpose::Test;
+    let testing = matches!(purpose, Purpose::Test | Purpose::TestAll);
     // A machine with a driver of its own keeps it for flying; the golden images come from the software driver alone.
     let driver = if purpose == Purpose::Run { Part::VulkanDriver } else { Part::SoftwareDriver };
     let mut needs = vec![(Part::VulkanLoader, "libvulkan1"), (driver, "mesa-vulkan-drivers")];
@@ -83,7 +84,7 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     if testing {
         needs.extend([(Part::Xvfb, "xvfb"), (Part::Xdotool, "xdotool"), (Part::Import, "imagemagick")]);
     }
-    if testing || purpose == Purpose::Page {
+    if matches!(purpose, Purpose::TestAll | Purpose::Page) {
         needs.extend(PAGE_TOOLS);
     }
     needs.extend([(Part::Libudev, "libudev-dev"), (Part::Libudev, "pkg-config")]);
@@ -167,11 +168,11 @@ mod tests {
     #[test]
     fn a_bare_machine_gets_the_window_test_tools_to_test() {
         let packages = missing_packages(Purpose::Test, &Machine::default());
-        for package in
-            ["libvulkan1", "mesa-vulkan-drivers", "libxkbcommon-x11-0", "xvfb", "xdotool", "imagemagick", "chromium"]
-        {
+        for package in ["libvulkan1", "mesa-vulkan-drivers", "libxkbcommon-x11-0", "xvfb", "xdotool", "imagemagick"] {
             assert!(packages.contains(&package), "{package} is not in {packages:?}");
         }
+        assert!(!packages.contains(&"chromium"));
+        assert!(missing_packages(Purpose::TestAll, &Machine::default()).contains(&"chromium"));
     }
 
     #[test]
@@ -187,7 +188,7 @@ mod tests {
     #[test]
     fn a_complete_machine_gets_nothing() {
         for display in [Display::None, Display::X11, Display::Wayland, Display::Desktop] {
-            for purpose in [Purpose::Run, Purpose::Pictures, Purpose::Test] {
+            for purpose in [Purpose::Run, Purpose::Pictures, Purpose::TestAll] {
                 assert!(missing_packages(purpose, &Machine::complete(display)).is_empty());
             }
         }

@@ -1,77 +1,124 @@
-//! `cargo xtask test`: doc tests, then every other test. Tests that the machine cannot run are left out by name, with
-//! the reason said, so that the runner counts them as skipped and never as passed.
+//! `cargo xtask test`: the tests in three tiers. Tests that the machine cannot run are left out by name, with the reason
+//! said, so that the runner counts them as skipped and never as passed.
+//!
+//! Tests that draw (`gpu` or `golden` in their path) run in one process per test binary: opening a device and compiling
+//! shaders takes longer than most of them. All others get a process each from nextest. Tests with `own_process` in their
+//! path measure or limit their process, so they count among the others.
 
+use std::collections::BTreeMap;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 
 use crate::bevy;
-use crate::machine::{Machine, Part, WEB_TARGET};
+use crate::ci::portability;
+use crate::machine::{Machine, Part};
 use crate::process;
 use crate::setup::{self, Purpose};
 
 /// The environment variable with which the golden tests write what they would compare.
 const UPDATE_GOLDENS: &str = "SHADOWFIT_UPDATE_GOLDENS";
 
-/// Why the page is not tested, where it is not.
-const NO_PAGE: &str = "no Chromium, Node.js, npm, Vulkan driver or target of Rust for browsers here";
+/// Parts of the paths of tests that draw.
+const DRAWING: [&str; 2] = ["gpu", "golden"];
+
+/// Part of the paths of tests that need a process of their own.
+const OWN_PROCESS: &str = "own_process";
+
+/// Programs that tests start.
+const PROGRAMS: [&str; 4] = ["growth", "peer_fit", "report", "viewer"];
+
+/// Packages of the quick tier. None of them links egui or winit.
+const QUICK_PACKAGES: [&str; 7] = [
+    "shadowfit",
+    "shadowfit-params",
+    "shadowfit-rays",
+    "shadowfit-scene",
+    "shadowfit-testing",
+    "shadowfit-truth",
+    "shadowfit-wgpu",
+];
+
+/// The quick tier's features: those that the packages' tests need.
+const QUICK_FEATURES: &str = "shadowfit-wgpu/rays,shadowfit-truth/gpu";
+
+/// The tests that draw in the quick tier: one file for each way in which Rust and WGSL can disagree.
+const QUICK_DRAWING: [&str; 7] =
+    ["parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "wrap_gpu", "culling_gpu", "cut_outs_gpu"];
+
+/// Longer runs of random cases and of the window in the tier `--all`, by environment variable. A value that is set
+/// already stays.
+const LONG_RUNS: [(&str, &str); 4] = [
+    ("PROPTEST_CASES", "4096"),
+    ("SHADOWFIT_MONKEY_SECONDS", "600"),
+    ("SHADOWFIT_FLIGHT_SECONDS", "600"),
+    ("SHADOWFIT_SCENE_SWITCHES", "200"),
+];
+
+/// The tiers, for people who named another one.
+pub(crate) const TIERS: &str = "The tiers of tests are:\n  \
+    cargo xtask test --quick  the libraries without the viewer: unit and property tests, WGSL, some pictures\n  \
+    cargo xtask test          the workspace: every test that finds bugs in the Rust code, goldens, the window\n  \
+    cargo xtask test --all    the workspace, the page, Bevy, hours in the window, full products, many random cases";
+
+/// How many of the tests are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tier {
+    /// The libraries below the renderer, in a minute.
+    Quick,
+    /// The workspace, in minutes.
+    Standard,
+    /// The workspace with tests that take long, the page and Bevy.
+    All,
+}
 
 /// Tests that are left out, and why.
 struct LeftOut {
-    /// What their names hold, module path included.
+    /// Part of their paths.
     name_part: &'static str,
     reason: String,
 }
 
-/// Runs the tests; with `args` (part of a name, options of the runner) only those that they choose, without doc tests.
+/// Runs the tests of a tier; with `names` (parts of paths) only those, without doc tests, page and Bevy.
 ///
 /// # Errors
 /// When a test fails, and, where a GPU is required, when none is there.
-pub(crate) fn test(args: &[String]) -> Result<()> {
-    let machine = setup::prepare(Purpose::Test)?;
-    let left_out = left_out(&machine);
+pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
+    let purpose = match tier {
+        Tier::Quick => Purpose::Pictures,
+        Tier::Standard => Purpose::Test,
+        Tier::All => Purpose::TestAll,
+    };
+    let machine = setup::prepare(purpose)?;
+    let left_out = left_out(&machine, tier);
     if setup::gpu_is_required() && !left_out.is_empty() {
         bail!("{} is set, and {}", setup::REQUIRE_GPU, left_out[0].reason);
     }
-    let features = setup::features(&machine);
-    // The window test starts the viewer, which a run of chosen tests would otherwise leave as it was.
-    process::run(process::cargo("build").args(["--workspace", "--examples"]).args(features))?;
-    if !args.is_empty() {
-        return process::run(runner(features, &left_out).args(args));
+    let suite = Suite { tier, features: setup::features(&machine), left_out };
+    if tier != Tier::Quick {
+        // The tests that start a program would otherwise start the one of an earlier build.
+        let programs = PROGRAMS.iter().flat_map(|name| ["--example", name]);
+        process::run(process::cargo("build").arg("--workspace").args(programs).args(suite.features))?;
     }
-    // The runner with the most tests comes last, so that its counts close the output.
-    let doc_tests = timed(process::cargo("test").args(["--workspace", "--doc", "--no-fail-fast"]).args(features));
-    let tests = timed(&mut runner(features, &left_out));
-    let bevy = bevy::Rust::find().map(|rust| timed_by(|| rust.test(&machine)));
-    let can_test_page = machine.can_test_page() && process::has_target(WEB_TARGET);
-    let page = can_test_page.then(|| timed_by(|| process::run(process::with_tools().args(["web", "--test"]))));
-    for LeftOut { name_part, reason } in &left_out {
-        println!("SKIPPED: tests with `{name_part}` in their name: {reason}");
+    if !names.is_empty() {
+        return suite.named(names);
     }
-    match &bevy {
-        Some((result, time)) => {
-            println!("{} ({:.0} s)", verdict("tests of bevy-shadowfit", result), time.as_secs_f32());
-        }
-        None => println!("SKIPPED: tests of bevy-shadowfit: {}", bevy::NO_RUST),
+    let mut report = Report::default();
+    if tier != Tier::Quick {
+        report.run("doc tests", || process::run(&mut suite.doc_tests()));
     }
-    match &page {
-        Some((result, time)) => println!("{} ({:.0} s)", verdict("tests of the page", result), time.as_secs_f32()),
-        None => println!("SKIPPED: tests of the page: {NO_PAGE}"),
+    report.run("tests that draw", || process::run(&mut suite.drawing()));
+    report.run("all other tests", || suite.others());
+    if tier == Tier::All {
+        report.run("tests of the core with the oldest glam", portability::suite_with_oldest_glam);
+        report.run("lints and tests of bevy-shadowfit", bevy::check_and_test);
+        report.run("tests of the page", || process::run(process::with_tools().args(["web", "--test", "--long"])));
     }
-    println!(
-        "{} ({:.0} s), {} ({:.0} s)",
-        verdict("doc tests", &doc_tests.0),
-        doc_tests.1.as_secs_f32(),
-        verdict("all other tests", &tests.0),
-        tests.1.as_secs_f32()
-    );
-    let page = match page {
-        Some((result, _)) => result,
-        None if setup::gpu_is_required() => Err(anyhow!("{} is set, and {NO_PAGE}", setup::REQUIRE_GPU)),
-        None => Ok(()),
-    };
-    doc_tests.0.and(tests.0).and(bevy.map_or(Ok(()), |(result, _)| result)).and(page)
+    for LeftOut { name_part, reason } in &suite.left_out {
+        println!("SKIPPED: tests with `{name_part}` in their path: {reason}");
+    }
+    report.finish()
 }
 
 /// Runs the golden tests so that they write their pictures.
@@ -83,63 +130,156 @@ pub(crate) fn golden() -> Result<()> {
     if !machine.has(Part::SoftwareDriver) {
         bail!("the golden images are rendered on Mesa's software driver, which is missing here");
     }
-    process::run(runner(setup::features(&machine), &[]).arg("golden").env(UPDATE_GOLDENS, "1"))?;
+    let suite = Suite { tier: Tier::Standard, features: setup::features(&machine), left_out: Vec::new() };
+    process::run(suite.in_one_process(&["golden"]).env(UPDATE_GOLDENS, "1"))?;
     println!("look at the new pictures before committing them: git status, git diff --stat");
     Ok(())
 }
 
-fn timed(command: &mut Command) -> (Result<()>, Duration) {
-    timed_by(|| process::run(command))
+/// The tests of a tier on this machine, as commands.
+struct Suite {
+    tier: Tier,
+    features: &'static [&'static str],
+    left_out: Vec<LeftOut>,
 }
 
-fn timed_by(work: impl FnOnce() -> Result<()>) -> (Result<()>, Duration) {
-    let start = Instant::now();
-    let result = work();
-    (result, start.elapsed())
-}
-
-fn verdict(what: &str, result: &Result<()>) -> String {
-    format!("{what} {}", if result.is_ok() { "passed" } else { "FAILED" })
-}
-
-/// What cannot run on `machine`.
-fn left_out(machine: &Machine) -> Vec<LeftOut> {
-    let mut left_out = Vec::new();
-    if !machine.can_render() {
-        let reason = "no Vulkan driver here (libvulkan.so.1 and a driver's manifest)".to_string();
-        left_out.push(LeftOut { name_part: "gpu", reason: reason.clone() });
-        left_out.push(LeftOut { name_part: "golden", reason });
-    }
-    if !machine.can_test_window() {
-        let reason = "no Xvfb, xdotool, ImageMagick's import, X11 libraries or Vulkan driver here".to_string();
-        left_out.push(LeftOut { name_part: "real_window", reason });
-    }
-    left_out
-}
-
-/// The test runner on the whole workspace: nextest where it is installed, cargo's own elsewhere.
-fn runner(features: &[&str], left_out: &[LeftOut]) -> Command {
-    if process::succeeds(process::cargo("nextest").arg("--version")) {
-        let mut command = process::cargo("nextest");
-        command.args(["run", "--workspace", "--no-fail-fast"]).args(features);
-        if let Some(filter) = filter_expression(left_out) {
-            command.args(["-E", &filter]);
+impl Suite {
+    /// The packages with their features, and the kinds of targets that hold tests.
+    fn targets(&self) -> Vec<&'static str> {
+        let mut targets = Vec::new();
+        if self.tier == Tier::Quick {
+            targets.extend(QUICK_PACKAGES.iter().flat_map(|package| ["--package", package]));
+            targets.extend(["--features", QUICK_FEATURES]);
+        } else {
+            targets.push("--workspace");
+            targets.extend(self.features);
         }
-        return command;
+        targets.extend(["--lib", "--bins", "--tests", "--no-fail-fast"]);
+        targets
     }
-    eprintln!("cargo-nextest is not installed: running `cargo test` instead");
-    let mut command = process::cargo("test");
-    command.args(["--workspace", "--lib", "--bins", "--tests", "--no-fail-fast"]).args(features);
-    if !left_out.is_empty() {
-        command.arg("--").args(left_out.iter().flat_map(|tests| ["--skip", tests.name_part]));
+
+    fn doc_tests(&self) -> Command {
+        let mut command = process::cargo("test");
+        command.args(["--workspace", "--doc", "--no-fail-fast"]).args(self.features);
+        command
     }
-    command
+
+    /// The tests that draw, in one process per binary.
+    fn drawing(&self) -> Command {
+        self.in_one_process(if self.tier == Tier::Quick { &QUICK_DRAWING } else { &DRAWING })
+    }
+
+    /// Tests with any of `parts` in their paths, in one process per binary.
+    fn in_one_process(&self, parts: &[&str]) -> Command {
+        let mut command = process::cargo("test");
+        command.args(self.targets()).arg("--quiet").arg("--").args(parts).args(["--skip", OWN_PROCESS]);
+        command.args(self.left_out.iter().flat_map(|tests| ["--skip", tests.name_part]));
+        if self.tier == Tier::All {
+            command.arg("--include-ignored");
+        }
+        self.prepared(command)
+    }
+
+    /// The tests that do not draw, each in a process of its own where nextest is installed.
+    fn others(&self) -> Result<()> {
+        if has_nextest() {
+            return process::run(&mut self.nextest(&self.filter_of_others()));
+        }
+        eprintln!("cargo-nextest is not installed: running `cargo test` instead");
+        let mut command = process::cargo("test");
+        command.args(self.targets()).arg("--");
+        let left_out = self.left_out.iter().map(|tests| tests.name_part);
+        command.args(DRAWING.into_iter().chain([OWN_PROCESS]).chain(left_out).flat_map(|part| ["--skip", part]));
+        process::run(&mut self.prepared(command))?;
+        let mut own_process = process::cargo("test");
+        own_process.args(self.targets()).args(["--", OWN_PROCESS, "--test-threads=1"]);
+        process::run(&mut self.prepared(own_process))
+    }
+
+    /// Tests by parts of their paths, each in a process of its own.
+    fn named(&self, names: &[String]) -> Result<()> {
+        if has_nextest() {
+            let left_out: Vec<String> =
+                self.left_out.iter().map(|tests| format!("test({})", tests.name_part)).collect();
+            let filter = if left_out.is_empty() { "all()".into() } else { format!("not ({})", left_out.join(" | ")) };
+            return process::run(self.nextest(&filter).args(names));
+        }
+        let mut command = process::cargo("test");
+        command.args(self.targets()).arg("--").args(names);
+        process::run(&mut self.prepared(command))
+    }
+
+    fn nextest(&self, filter: &str) -> Command {
+        let mut command = process::cargo("nextest");
+        command.arg("run").args(self.targets()).args(["-E", filter]);
+        if self.tier == Tier::All {
+            command.args(["--run-ignored", "all"]);
+        }
+        self.prepared(command)
+    }
+
+    /// Nextest's filter for the tests that do not draw, or need a process of their own.
+    fn filter_of_others(&self) -> String {
+        let any = |parts: &[&str]| parts.iter().map(|part| format!("test({part})")).collect::<Vec<_>>().join(" | ");
+        let left_out: Vec<&str> = self.left_out.iter().map(|tests| tests.name_part).collect();
+        let filter = format!("(not ({})) | test({OWN_PROCESS})", any(&DRAWING));
+        if left_out.is_empty() { filter } else { format!("({filter}) & not ({})", any(&left_out)) }
+    }
+
+    /// Sets the environment of the tests.
+    fn prepared(&self, mut command: Command) -> Command {
+        process::with_driver_for_tests(&mut command);
+        if self.tier == Tier::All {
+            for (variable, value) in LONG_RUNS {
+                if std::env::var_os(variable).is_none() {
+                    command.env(variable, value);
+                }
+            }
+        }
+        command
+    }
 }
 
-/// Nextest's filter that leaves out the tests named in `left_out`, `None` when all may run.
-fn filter_expression(left_out: &[LeftOut]) -> Option<String> {
-    let parts: Vec<String> = left_out.iter().map(|tests| format!("test({})", tests.name_part)).collect();
-    (!parts.is_empty()).then(|| format!("not ({})", parts.join(" | ")))
+fn has_nextest() -> bool {
+    process::succeeds(process::cargo("nextest").arg("--version"))
+}
+
+/// The results of the parts of a run, in order.
+#[derive(Default)]
+struct Report {
+    parts: Vec<(&'static str, Result<()>, Duration)>,
+}
+
+impl Report {
+    /// Runs a part. Later parts run even if it fails.
+    fn run(&mut self, name: &'static str, work: impl FnOnce() -> Result<()>) {
+        let start = Instant::now();
+        let result = work();
+        self.parts.push((name, result, start.elapsed()));
+    }
+
+    /// Prints a line for each part, and returns the first failure.
+    fn finish(self) -> Result<()> {
+        for (name, result, time) in &self.parts {
+            let verdict = if result.is_ok() { "passed" } else { "FAILED" };
+            println!("{:7.1} s  {name} {verdict}", time.as_secs_f32());
+        }
+        self.parts.into_iter().try_for_each(|(_, result, _)| result)
+    }
+}
+
+/// The tests of a tier that cannot run on `machine`.
+fn left_out(machine: &Machine, tier: Tier) -> Vec<LeftOut> {
+    let mut left_out = BTreeMap::new();
+    if !machine.can_render() {
+        for part in DRAWING {
+            left_out.insert(part, "no Vulkan driver here (libvulkan.so.1 and a driver's manifest)");
+        }
+    }
+    if tier != Tier::Quick && !machine.can_test_window() {
+        left_out.insert("window::", "no Xvfb, xdotool, ImageMagick's import, X11 libraries or Vulkan driver here");
+    }
+    left_out.into_iter().map(|(name_part, reason)| LeftOut { name_part, reason: reason.to_owned() }).collect()
 }
 
 #[cfg(test)]
@@ -147,26 +287,44 @@ mod tests {
     use super::*;
     use crate::machine::Display;
 
+    fn suite(machine: &Machine, tier: Tier) -> Suite {
+        Suite { tier, features: &[], left_out: left_out(machine, tier) }
+    }
+
     #[test]
     fn a_complete_machine_leaves_nothing_out() {
-        let left_out = left_out(&Machine::complete(Display::None));
-        assert!(left_out.is_empty());
-        assert_eq!(filter_expression(&left_out), None);
+        let suite = suite(&Machine::complete(Display::None), Tier::Standard);
+        assert!(suite.left_out.is_empty());
+        assert_eq!(suite.filter_of_others(), "(not (test(gpu) | test(golden))) | test(own_process)");
     }
 
     #[test]
     fn without_a_driver_everything_rendered_is_left_out_with_a_reason() {
         let mut machine = Machine::complete(Display::None);
         machine.parts.remove(&Part::VulkanDriver);
-        let left_out = left_out(&machine);
-        assert!(left_out.iter().all(|tests| !tests.reason.is_empty()));
-        assert_eq!(filter_expression(&left_out).unwrap(), "not (test(gpu) | test(golden) | test(real_window))");
+        let suite = suite(&machine, Tier::Standard);
+        assert!(suite.left_out.iter().all(|tests| !tests.reason.is_empty()));
+        let filter = suite.filter_of_others();
+        assert!(filter.ends_with(" & not (test(golden) | test(gpu) | test(window::))"), "{filter}");
     }
 
     #[test]
-    fn without_xdotool_only_the_window_test_is_left_out() {
+    fn without_xdotool_only_the_window_tests_are_left_out_and_the_quick_tier_has_none() {
         let mut machine = Machine::complete(Display::None);
         machine.parts.remove(&Part::Xdotool);
-        assert_eq!(filter_expression(&left_out(&machine)).unwrap(), "not (test(real_window))");
+        assert!(suite(&machine, Tier::Standard).filter_of_others().ends_with(" & not (test(window::))"));
+        assert!(suite(&machine, Tier::Quick).left_out.is_empty());
+    }
+
+    #[test]
+    fn only_the_last_tier_runs_ignored_tests() {
+        let machine = Machine::complete(Display::None);
+        let words = |tier| {
+            let command = suite(&machine, tier).drawing();
+            command.get_args().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>()
+        };
+        assert!(words(Tier::All).contains(&"--include-ignored".to_owned()));
+        assert!(!words(Tier::Standard).contains(&"--include-ignored".to_owned()));
+        assert!(words(Tier::Quick).contains(&"shadowfit-wgpu".to_owned()));
     }
 }

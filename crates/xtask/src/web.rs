@@ -1,5 +1,6 @@
 //! `cargo xtask web`: the viewer as a page. Its module is built twice: for WebGPU, and for browsers that have WebGL2 alone;
-//! the page loads one of them. Any host serves the folder: all paths are relative, and no header is asked for.
+//! the page loads one of them. Tests build one module for both. Any host serves the folder: all paths are relative, and
+//! the page needs no header.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -18,6 +19,13 @@ pub(crate) use browser::test;
 
 /// The modules: a folder, and the feature of the viewer that it is built with.
 const MODULES: [(&str, &str); 2] = [("webgpu", "webgpu"), ("webgl2", "webgl")];
+/// The JavaScript of the second module where the first one has both features: it takes WebGPU where the browser has it.
+const WITHOUT_WEBGPU: &str = "\
+    Object.defineProperty(navigator, 'gpu', { value: undefined });\n\
+    export * from '../webgpu/shadowfit_viewer.js';\n\
+    export { default } from '../webgpu/shadowfit_viewer.js';\n";
+/// The file of a module in its folder.
+const MODULE: &str = "shadowfit_viewer_bg.wasm";
 /// The picture that is shown while the module is loaded, and its width in pixels.
 const COVER: (&str, u32) = ("docs/images/scene-courtyard.png", 960);
 
@@ -28,7 +36,7 @@ const COVER: (&str, u32) = ("docs/images/scene-courtyard.png", 960);
 pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
     let is_served = folder.is_none();
     let folder = folder.map_or_else(|| process::root().join("out/web"), Path::to_owned);
-    build(&folder, "web")?;
+    build(&folder, Modules::Small)?;
     if !is_served {
         return Ok(());
     }
@@ -39,15 +47,32 @@ pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
     })
 }
 
-/// Builds the page with a profile.
-fn build(folder: &Path, profile: &str) -> Result<()> {
+/// How the modules of a page are built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Modules {
+    /// Small ones, for people to load.
+    Small,
+    /// The module of tests, in as little time as possible.
+    Quick,
+}
+
+/// Builds the page into `folder`.
+fn build(folder: &Path, modules: Modules) -> Result<()> {
     if !has_target(WEB_TARGET) {
         bail!("the page needs Rust's target {WEB_TARGET}: `rustup target add {WEB_TARGET}` brings it");
     }
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    match modules {
+        Modules::Small => {
+            for (name, feature) in MODULES {
+                module(&folder.join(name), feature, &["--profile", "web"])?;
+            }
+        }
+        Modules::Quick => quick_module(folder)?,
+    }
     let mut sizes = String::new();
-    for (name, feature) in MODULES {
-        let bytes = module(&folder.join(name), feature, profile)?;
+    for (name, _) in MODULES {
+        let bytes = fs::metadata(folder.join(name).join(MODULE))?.len();
         // Writing to a String cannot fail.
         let _ = write!(sizes, "{name}: {bytes}, ");
     }
@@ -62,19 +87,28 @@ fn build(folder: &Path, profile: &str) -> Result<()> {
     Ok(())
 }
 
-/// Builds a module with its JavaScript, and returns its bytes.
-fn module(folder: &Path, feature: &str, profile: &str) -> Result<u64> {
+/// Builds a module with its JavaScript.
+fn module(folder: &Path, features: &str, options: &[&str]) -> Result<()> {
     let mut compiler = process::cargo("rustc");
-    compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib", "--profile", profile]);
-    compiler.args(["--target", WEB_TARGET, "--no-default-features", "--features", feature]);
+    compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib"]).args(options);
+    compiler.args(["--target", WEB_TARGET, "--no-default-features", "--features", features]);
     process::run(&mut compiler)?;
     // Cargo names the folder of its profile `dev` otherwise.
-    let profile = if profile == "dev" { "debug" } else { profile };
+    let profile = if options.contains(&"web") { "web" } else { "debug" };
     let built = target_folder().join(WEB_TARGET).join(profile).join("shadowfit_viewer.wasm");
     let mut bindgen = process::cargo("run");
     bindgen.args(["--quiet", "--package", "xtask", "--features", "bindgen", "--bin", "bindgen", "--"]);
-    process::run(bindgen.arg(&built).arg(folder))?;
-    Ok(fs::metadata(folder.join("shadowfit_viewer_bg.wasm"))?.len())
+    process::run(bindgen.arg(&built).arg(folder))
+}
+
+/// Builds one module for both APIs, with little optimisation.
+fn quick_module(folder: &Path) -> Result<()> {
+    let [(first, _), (second, _)] = MODULES.map(|(name, feature)| (folder.join(name), feature));
+    module(&first, &MODULES.map(|(_, feature)| feature).join(","), &["--config", "profile.dev.debug=false"])?;
+    fs::create_dir_all(&second)?;
+    fs::copy(first.join(MODULE), second.join(MODULE))?;
+    fs::write(second.join("shadowfit_viewer.js"), WITHOUT_WEBGPU)?;
+    Ok(())
 }
 
 /// Writes the picture that is shown first.

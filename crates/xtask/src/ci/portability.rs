@@ -25,6 +25,9 @@ const FEATURES: [&str; 6] = ["", "alloc", "serde", "bytemuck", "mint", "alloc,se
 /// The package that hashes fits.
 const DETERMINISM: &str = "shadowfit-determinism";
 
+/// The folder, in the target folder, of a workspace with a lock file of its own.
+const COPY_OF_THE_CORE: &str = "oldest-glam";
+
 /// Builds the core without the standard library.
 pub(super) fn no_std(_: &Machine) -> Result<()> {
     let target = has_target(BARE_TARGET);
@@ -64,36 +67,43 @@ pub(super) fn determinism(_: &Machine) -> Result<()> {
     process::run(Command::new("node").arg(host).arg(module))
 }
 
-/// Tests the core with the oldest glam of its range, and builds and runs an engine that pins it and hands its own
-/// vectors to the core. The lock file holds the newest, with which all else is built.
+/// Compares the hash of the fits with the oldest glam of the core's range, and builds and runs an engine that pins it and
+/// hands its own vectors to the core. The lock file holds the newest glam, with which everything else is built.
 pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
+    let oldest = with_oldest_glam(&["test", "--package", DETERMINISM, "--all-features", "--lib", "--tests"])?;
+    in_copy_of_the_core(&["run", "--package", "engine"])?;
+    println!("with glam {oldest} the core fits with the same bits, and an engine that pins it runs");
+    Ok(())
+}
+
+/// Runs all tests of the core with the oldest glam of its range.
+///
+/// # Errors
+/// When a test fails or the older glam cannot be had.
+pub(crate) fn suite_with_oldest_glam() -> Result<()> {
+    with_oldest_glam(&["test", "--package", "shadowfit", "--all-features", "--lib", "--tests"]).map(|_| ())
+}
+
+/// Runs cargo in a copy of the core whose lock file has the oldest glam of its range; returns that version.
+fn with_oldest_glam(arguments: &[&str]) -> Result<String> {
     let manifest = fs::read_to_string(process::root().join("Cargo.toml"))?;
     let oldest = oldest_version(&manifest, "glam").context("the workspace's Cargo.toml states no range of glam")?;
-    let folder = target_folder().join("oldest-glam");
+    let folder = target_folder().join(COPY_OF_THE_CORE);
     copy_of_the_core(&folder, &manifest)
         .and_then(|()| engine_with(oldest, &folder.join("crates/engine")))
         .with_context(|| format!("cannot write {}", folder.display()))?;
-    let update = |mode: &[&str]| {
-        let mut command = process::cargo_here("update");
-        command.args(["--package", "glam", "--precise", oldest]).args(mode).current_dir(&folder);
-        command
-    };
+    let update = ["update", "--package", "glam", "--precise", oldest];
     // Without a network the crate may still be in cargo's cache.
-    process::run(&mut update(&[])).or_else(|_| process::run(&mut update(&["--offline"])))?;
-    process::run(
-        process::cargo_here("test")
-            .args(["--package", "shadowfit", "--package", DETERMINISM, "--all-features", "--lib", "--tests"])
-            .current_dir(&folder)
-            .env("CARGO_TARGET_DIR", target_folder()),
-    )?;
-    process::run(
-        process::cargo_here("run")
-            .args(["--package", "engine"])
-            .current_dir(&folder)
-            .env("CARGO_TARGET_DIR", target_folder()),
-    )?;
-    println!("the core's tests passed with glam {oldest}, with the same bits, and an engine that pins it was built");
-    Ok(())
+    in_copy_of_the_core(&update).or_else(|_| in_copy_of_the_core(&[&update[..], &["--offline"]].concat()))?;
+    in_copy_of_the_core(arguments)?;
+    Ok(oldest.to_owned())
+}
+
+fn in_copy_of_the_core(arguments: &[&str]) -> Result<()> {
+    let [subcommand, rest @ ..] = arguments else { return Ok(()) };
+    let mut command = process::cargo_here(subcommand);
+    command.args(rest).current_dir(target_folder().join(COPY_OF_THE_CORE));
+    process::run(command.env("CARGO_TARGET_DIR", target_folder()))
 }
 
 /// Checks the core with the oldest Rust that it promises, which is older than the workspace's.

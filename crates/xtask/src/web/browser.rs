@@ -6,7 +6,7 @@ use std::{fs, thread};
 
 use anyhow::{Context, Result, bail};
 
-use super::{build, serve};
+use super::{Modules, build, serve};
 use crate::machine::{BROWSERS, Machine};
 use crate::process::{self, target_folder};
 use crate::setup::{self, Purpose};
@@ -14,7 +14,7 @@ use crate::setup::{self, Purpose};
 /// Size of the window whose pictures the page's are compared with, in pixels: that of `page.test.mjs`.
 const SIZE: &str = "720x300";
 
-/// Builds the page without much optimisation, and tests it; `is_long` for ten minutes of random actions.
+/// Builds the page with little optimisation, and tests it; `is_long` for ten minutes of random actions.
 ///
 /// # Errors
 /// When something is missing or a test fails.
@@ -25,7 +25,7 @@ pub(crate) fn test(is_long: bool) -> Result<()> {
     }
     let folder = target_folder().join("web-test");
     let page = folder.join("page");
-    build(&page, "dev")?;
+    build(&page, Modules::Quick)?;
     let tests = process::root().join("tests/web");
     let native = folder.join("native");
     play(&machine, &tests.join("tour.txt"), &native)?;
@@ -34,7 +34,8 @@ pub(crate) fn test(is_long: bool) -> Result<()> {
     process::run(Command::new("npm").args(["install", "--no-audit", "--no-fund", "--silent"]).current_dir(&modules))?;
     let address = serve_beside(page);
     let mut node = Command::new("node");
-    node.args(["--test", "--test-reporter=spec", "page.test.mjs"]).current_dir(&modules);
+    // Without `--test`, which starts another program: the one here ends its browser when it is ended.
+    node.args(["--test-reporter=spec", "page.test.mjs"]).current_dir(&modules);
     node.env("PAGE", address).env("NATIVE", &native).env("BROWSER", browser()?);
     node.env("ASSETS", process::root().join("../shared/assets"));
     if is_long {
@@ -43,12 +44,15 @@ pub(crate) fn test(is_long: bool) -> Result<()> {
     process::run(&mut node)
 }
 
-/// Plays a script in the viewer of this machine, with the software driver, and keeps what it saves.
+/// Plays a script in the viewer of this machine, with the software driver, and keeps the files that it saves.
 fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
-    let mut viewer = process::cargo("run");
-    viewer.args(["--quiet", "--package", "shadowfit-viewer", "--example", "viewer"]);
-    viewer.args(setup::viewer_features(machine)).arg("--");
-    viewer.arg("--headless").arg(folder).args(["--no-state", "--software", "--size", SIZE]).arg("--script").arg(script);
+    // The same program that the tests of the workspace start, with the same features.
+    let mut compiler = process::cargo("build");
+    process::run(compiler.args(["--workspace", "--example", "viewer"]).args(setup::features(machine)))?;
+    let program = format!("debug/examples/viewer{}", std::env::consts::EXE_SUFFIX);
+    let mut viewer = Command::new(target_folder().join(program));
+    viewer.current_dir(process::root()).arg("--headless").arg(folder);
+    viewer.args(["--no-state", "--software", "--size", SIZE]).arg("--script").arg(script);
     // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         viewer.env("XDG_RUNTIME_DIR", std::env::temp_dir());

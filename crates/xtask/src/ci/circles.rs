@@ -1,0 +1,342 @@
+//! Circles of imports: files that name each other's items, so that none can be read without the others. The check
+//! fails if their number grows, and if the accepted number is too high, so that it only falls.
+//!
+//! The files of each crate are scanned as text, without tests. An import or a path is an edge from its file to the file
+//! of the item. Re-exports are followed to the item, unless a module on the way has items of its own. Items of the files
+//! above a file, which declare its module, make no edge.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use anyhow::{Result, ensure};
+
+use crate::machine::Machine;
+use crate::source::{is_part_of_word, texts, without_comments, without_tests};
+
+/// Circles that are left to break. The goal is 0.
+const ACCEPTED: usize = 12;
+
+/// Longest chain of re-exports. A longer one repeats itself: a name of another crate, which stands for itself.
+const MAX_HOPS: usize = 8;
+
+/// Words before the name of an item.
+const ITEM_WORDS: [&str; 8] = ["fn", "struct", "enum", "trait", "const", "static", "type", "union"];
+
+/// Names from the crate's root to a module or an item.
+type Names<'a> = Vec<&'a str>;
+
+/// A module's names.
+#[derive(Default)]
+struct Module<'a> {
+    file: &'a str,
+    items: BTreeSet<&'a str>,
+    /// Names that `use` brings in, with their paths.
+    imports: BTreeMap<&'a str, Names<'a>>,
+    /// Modules whose names `use` brings in with `*`.
+    globs: Vec<Names<'a>>,
+}
+
+/// A place in the code that names an item.
+struct Mention<'a> {
+    module: Names<'a>,
+    path: Names<'a>,
+    line: usize,
+}
+
+/// The modules of a crate, by their names from its root.
+#[derive(Default)]
+struct Modules<'a> {
+    modules: BTreeMap<Names<'a>, Module<'a>>,
+    mentions: Vec<Mention<'a>>,
+}
+
+/// A token, and the number of its line.
+type Token<'a> = (&'a str, usize);
+
+/// The files that each file names, with the first mention of each.
+type Edges<'a> = BTreeMap<&'a str, BTreeMap<&'a str, &'a Mention<'a>>>;
+
+/// Counts the circles of all crates.
+pub(super) fn check(_: &Machine) -> Result<()> {
+    let mut crates: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
+    for (name, text) in texts("crates")? {
+        if let Some((crate_name, file)) = name.split_once("/src/") {
+            let code = without_tests(&without_comments(&text));
+            crates.entry(crate_name.to_owned()).or_default().insert(file.to_owned(), code);
+        }
+    }
+    let (mut count, mut list) = (0, String::new());
+    for (name, codes) in &crates {
+        let modules = Modules::of(codes);
+        let edges = modules.edges();
+        for circle in circles(&edges) {
+            count += 1;
+            let _ = write!(list, "{name}/src:\n{}", described(&circle, &edges));
+        }
+    }
+    ensure!(count <= ACCEPTED, "{count} circles of imports, where {ACCEPTED} are accepted:\n{list}");
+    ensure!(count == ACCEPTED, "{count} circles of imports are left: lower ACCEPTED in {} to {count}", file!());
+    println!("{count} circles of imports are left:\n{list}");
+    Ok(())
+}
+
+impl<'a> Modules<'a> {
+    /// Reads the modules that the crate's root declares, and those that they declare.
+    fn of(codes: &'a BTreeMap<String, String>) -> Self {
+        let mut crate_modules = Self::default();
+        let mut declared: Vec<(String, Names)> = ["lib.rs", "main.rs"].map(|root| (root.to_owned(), Vec::new())).into();
+        while let Some((name, module)) = declared.pop() {
+            if let Some((file, code)) = codes.get_key_value(&name) {
+                declared.extend(crate_modules.read(file, code, module).into_iter().flat_map(|child| {
+                    let path = child.join("/");
+                    [(format!("{path}.rs"), child.clone()), (format!("{path}/mod.rs"), child)]
+                }));
+            }
+        }
+        crate_modules
+    }
+
+    /// Reads a file, which has the module `module`, and returns the modules that it declares.
+    fn read(&mut self, file: &'a str, code: &'a str, module: Names<'a>) -> Vec<Names<'a>> {
+        let tokens = tokens(code);
+        let mut declared = Vec::new();
+        // Modules around the token, each with the depth of braces within it.
+        let mut around = vec![(module.clone(), 0)];
+        let mut depth = 0;
+        self.modules.entry(module).or_default().file = file;
+        let mut at = 0;
+        while at < tokens.len() {
+            let before = if at == 0 { "" } else { tokens[at - 1].0 };
+            let (token, line) = tokens[at];
+            let [after, after_next] = [1, 2].map(|n| tokens.get(at + n).map_or("", |token| token.0));
+            let inner = around[around.len() - 1].0.clone();
+            at += 1;
+            match token {
+                "{" => depth += 1,
+                "}" => {
+                    depth -= 1;
+                    around.retain(|(_, within)| *within <= depth);
+                }
+                "mod" if after_next == ";" => declared.push([&inner[..], &[after]].concat()),
+                "mod" if after_next == "{" => {
+                    let module = [&inner[..], &[after]].concat();
+                    self.modules.entry(module.clone()).or_default().file = file;
+                    around.push((module, depth + 1));
+                }
+                "use" if after != "<" => {
+                    let end = at + tokens[at..].iter().position(|token| token.0 == ";").unwrap_or(0);
+                    self.read_imports(&inner, &tokens[at..=end]);
+                    at = end;
+                }
+                "macro_rules" => {
+                    self.modules.entry(inner).or_default().items.insert(after_next);
+                }
+                _ if ITEM_WORDS.contains(&token) && after.starts_with(is_part_of_word) => {
+                    self.modules.entry(inner).or_default().items.insert(after);
+                }
+                // A path in the code; `pub(in path)` is none.
+                _ if after == "::" && token.starts_with(is_part_of_word) && !["::", ".", "in"].contains(&before) => {
+                    let separated = tokens[at..]
+                        .chunks_exact(2)
+                        .take_while(|pair| pair[0].0 == "::" && pair[1].0.starts_with(is_part_of_word));
+                    let names: Names = std::iter::once(token).chain(separated.map(|pair| pair[1].0)).collect();
+                    at += 2 * (names.len() - 1);
+                    self.mentions.push(Mention { path: from_root(&inner, &names), module: inner, line });
+                }
+                _ => {}
+            }
+        }
+        declared
+    }
+
+    /// Reads the imports of a `use`, of which `tokens` are those behind the word, up to its semicolon.
+    fn read_imports(&mut self, module: &Names<'a>, tokens: &[Token<'a>]) {
+        let mut prefixes: Vec<Names> = vec![Vec::new()];
+        let (mut names, mut alias): (Names, Option<&str>) = (Vec::new(), None);
+        for (index, &(token, line)) in tokens.iter().enumerate() {
+            match token {
+                "::" | "as" => {}
+                "{" => prefixes.push(names.clone()),
+                "," | "}" | ";" => {
+                    if prefixes.last().is_some_and(|prefix| names.len() > prefix.len()) {
+                        self.import(module, &names, alias.take(), line);
+                    }
+                    if token == "}" {
+                        prefixes.pop();
+                    }
+                    names = prefixes.last().cloned().unwrap_or_default();
+                }
+                _ if index > 0 && tokens[index - 1].0 == "as" => alias = Some(token),
+                _ => names.push(token),
+            }
+        }
+    }
+
+    fn import(&mut self, module: &Names<'a>, names: &[&'a str], alias: Option<&'a str>, line: usize) {
+        let mut path = from_root(module, names);
+        let importing = self.modules.entry(module.clone()).or_default();
+        if path.pop_if(|last| *last == "*").is_some() {
+            importing.globs.push(path);
+        } else if let Some(name) = alias.or(path.last().copied()) {
+            importing.imports.insert(name, path.clone());
+            self.mentions.push(Mention { module: module.clone(), path, line });
+        }
+    }
+
+    /// Returns the file of the item that a mention names, `None` for modules and other crates. Re-exports are followed
+    /// through modules without items of their own, and through the modules around the mention.
+    fn file_of(&self, mention: &Mention<'a>) -> Option<&'a str> {
+        let mut path = mention.path.clone();
+        for _ in 0..MAX_HOPS {
+            let known = (0..=path.len()).rev().find(|&length| self.modules.contains_key(&path[..length]))?;
+            let (names, module) = (&path[..known], &self.modules[&path[..known]]);
+            let name = *path.get(known)?;
+            let from_glob = |glob: &Names<'a>| {
+                let has_it = |module: &Module| module.items.contains(name) || module.imports.contains_key(name);
+                self.modules.get(glob).is_some_and(has_it).then(|| [&glob[..], &[name]].concat())
+            };
+            let import = module.imports.get(name).cloned().or_else(|| module.globs.iter().find_map(from_glob));
+            let is_followed = module.items.is_empty() || mention.module.starts_with(names);
+            match import {
+                Some(import) if is_followed => path = [&import[..], &path[known + 1..]].concat(),
+                _ => return Some(module.file),
+            }
+        }
+        None
+    }
+
+    fn edges(&self) -> Edges<'_> {
+        let mut edges = Edges::new();
+        for mention in &self.mentions {
+            let Some(named) = self.file_of(mention) else { continue };
+            let mut around = (0..=mention.module.len()).map(|length| self.modules[&mention.module[..length]].file);
+            if !around.any(|file| file == named) {
+                let file = self.modules[&mention.module].file;
+                edges.entry(file).or_default().entry(named).or_insert(mention);
+            }
+        }
+        edges
+    }
+}
+
+/// Returns the words, double colons and other characters of a text, each with the number of its line.
+fn tokens(code: &str) -> Vec<Token<'_>> {
+    let mut tokens = Vec::new();
+    for (index, mut rest) in code.lines().enumerate() {
+        while let Some(next) = rest.chars().next() {
+            let word = rest.len() - rest.trim_start_matches(is_part_of_word).len();
+            let length = if rest.starts_with("::") { 2 } else { word.max(next.len_utf8()) };
+            if !next.is_whitespace() {
+                tokens.push((&rest[..length], index + 1));
+            }
+            rest = &rest[length..];
+        }
+    }
+    tokens
+}
+
+/// Returns the names from the crate's root of a path in a module.
+fn from_root<'a>(module: &[&'a str], path: &[&'a str]) -> Names<'a> {
+    let mut names = module.to_vec();
+    for name in path {
+        match *name {
+            "crate" => names.clear(),
+            "self" => {}
+            "super" => drop(names.pop()),
+            name => names.push(name),
+        }
+    }
+    names
+}
+
+/// Returns the sets of files that reach each other.
+fn circles<'a>(edges: &Edges<'a>) -> Vec<BTreeSet<&'a str>> {
+    let reached: BTreeMap<&str, BTreeSet<&str>> = edges.keys().map(|file| (*file, reached_from(file, edges))).collect();
+    let mut circles: Vec<BTreeSet<&str>> = Vec::new();
+    for (file, others) in &reached {
+        if others.contains(file) && !circles.iter().any(|circle| circle.contains(file)) {
+            let leads_back = |other: &&str| reached.get(other).is_some_and(|back| back.contains(file));
+            circles.push(others.iter().copied().filter(leads_back).collect());
+        }
+    }
+    circles
+}
+
+fn reached_from<'a>(file: &'a str, edges: &Edges<'a>) -> BTreeSet<&'a str> {
+    let mut reached = BTreeSet::new();
+    let mut open = vec![file];
+    while let Some(file) = open.pop() {
+        let named = edges.get(file).into_iter().flat_map(|named| named.keys().copied());
+        open.extend(named.filter(|named| reached.insert(*named)));
+    }
+    reached
+}
+
+/// Returns the first place of each import within a circle, a line each.
+fn described(circle: &BTreeSet<&str>, edges: &Edges) -> String {
+    let mut lines = String::new();
+    for (file, named) in circle.iter().filter_map(|file| edges.get_key_value(file)) {
+        for (other, mention) in named.iter().filter(|(other, _)| circle.contains(*other)) {
+            let name = mention.path.last().copied().unwrap_or_default();
+            let _ = writeln!(lines, "    {file}:{} names {name} of {other}", mention.line);
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the circles of a crate, given by the names and texts of its files.
+    fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+        let codes = files.iter().map(|(name, text)| ((*name).to_owned(), without_tests(text))).collect();
+        let modules = Modules::of(&codes);
+        let owned = |circle: BTreeSet<&str>| circle.into_iter().map(str::to_owned).collect();
+        circles(&modules.edges()).into_iter().map(owned).collect()
+    }
+
+    #[test]
+    fn files_that_import_each_other_are_a_circle() {
+        let lib = ("lib.rs", "mod a;\nmod b;\nmod c;\nmod d;");
+        let (a, c) = (("a.rs", "use crate::b::{self, B, inner::{X, Y}};"), ("c.rs", "fn c() { crate::a::f(); }"));
+        let others = [
+            ("use super::c::c;", 1),
+            ("use super::{c as _, d};", 0),
+            ("fn f() { super::c::c() }", 1),
+            ("use crate::c as e; fn f() { e::c() }", 1),
+            ("use crate::c::c as e;", 1),
+            ("#[cfg(test)]\nmod tests { use super::super::c::c; }", 0),
+        ];
+        for (b, count) in others {
+            let circles = circles_of(&[lib, a, ("b.rs", b), c, ("d.rs", "use crate::a::f;")]);
+            assert_eq!(circles, vec![vec!["a.rs", "b.rs", "c.rs"]; count], "{b}");
+        }
+    }
+
+    #[test]
+    fn re_exports_lead_to_the_file_of_the_item() {
+        let lib = ("lib.rs", "mod a;\nmod b { pub mod c; mod d; pub use d::D; }\npub use a::A;\npub struct Root;");
+        let (a, d) = (("a.rs", "use crate::b::D;"), ("b/d.rs", "use crate::A;"));
+        assert_eq!(circles_of(&[lib, a, ("b/c.rs", "use crate::Root;"), d]), [["a.rs", "b/d.rs"]]);
+        assert!(circles_of(&[lib, a, ("b/c.rs", "use crate::A;"), ("b/d.rs", "")]).is_empty());
+    }
+
+    #[test]
+    fn a_module_with_items_of_its_own_counts_as_the_file() {
+        let lib = ("lib.rs", "mod a;\nmod b;");
+        let (a, leaf) =
+            (("a.rs", "use crate::b::LEAF;\npub const A: u8 = 0;"), ("b/leaf.rs", "pub const LEAF: u8 = 0;"));
+        let facade = "mod leaf;\nmod user;\npub use leaf::LEAF;";
+        let user = ("b/user.rs", "use crate::a::A;\npub fn user() {}");
+        assert!(circles_of(&[lib, a, leaf, user, ("b/mod.rs", facade)]).is_empty());
+        let with_code = format!("{facade}\nfn f() {{ user::user() }}");
+        assert_eq!(circles_of(&[lib, a, leaf, user, ("b/mod.rs", &with_code)]), [["a.rs", "b/mod.rs", "b/user.rs"]]);
+    }
+
+    #[test]
+    fn a_file_may_name_items_of_the_files_above_it() {
+        let above = ("a.rs", "mod b;\nuse b::B;\npub struct A;");
+        assert!(circles_of(&[("main.rs", "mod a;"), above, ("a/b.rs", "use super::A;")]).is_empty());
+    }
+}
