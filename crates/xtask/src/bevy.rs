@@ -43,7 +43,7 @@ pub(crate) fn check_and_test() -> Result<()> {
         println!("SKIPPED: the window of bevy-shadowfit: no Xvfb, ImageMagick's import or Vulkan driver here");
         tests.args(["--", "--skip", "real_window"]);
     }
-    process::run(&mut tests)
+    process::run(process::with_driver_for_tests(&mut tests))
 }
 
 /// Acts as rustdoc if this program was started in its place: where cargo tests the examples in the documentation, writes
