@@ -5,10 +5,9 @@ use std::process::Command;
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam::Vec3;
-use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::{Lens, Scene};
 use shadowfit_study::View;
-/// The software adapter's device, which all tests of the process share.
+/// The software adapter's device, lent to one test after another.
 pub(crate) use shadowfit_testing::renderer_gpu as software_gpu;
 
 /// A glTF file of two triangles, with lines that are skipped and an image that is missing.
@@ -27,12 +26,6 @@ pub(crate) const SCENE_WITH_NOTES: &str = r#"{
 /// How the notes of [`SCENE_WITH_NOTES`] begin.
 pub(crate) const NOTES: [&str; 2] =
     ["images[0]: replaced by a placeholder: ", "meshes[0].primitives[1]: lines skipped: only triangles are drawn"];
-
-/// The software adapter, opened again for a test that loses the device or replaces its error handler.
-pub(crate) fn fresh_gpu() -> Gpu {
-    pollster::block_on(Gpu::headless(AdapterChoice::Software))
-        .unwrap_or_else(|error| panic!("this test draws, and {error}"))
-}
 
 /// The view from a scene's own camera under its own sun, in pictures of this size.
 pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {

@@ -2,10 +2,9 @@
 
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, ProbeError, ProbeTargets, ReadError, Renderer};
 use shadowfit_scene::builtin::{default_camera, default_scene};
+use shadowfit_testing::open_renderer_gpu;
 use shadowfit_viewer::Stage;
 use shadowfit_wgpu::ShadowMapDescriptor;
-
-use crate::support::fresh_gpu;
 
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [64, 36];
@@ -27,7 +26,7 @@ fn renderer(gpu: &Gpu) -> (Renderer, GpuScene) {
 
 #[test]
 fn what_was_drawn_before_the_device_was_lost_cannot_be_read_after_it() {
-    let gpu = fresh_gpu();
+    let gpu = open_renderer_gpu();
     let (mut renderer, mut scene) = renderer(&gpu);
     let (camera, atmosphere) = (camera(), Atmosphere::default());
     let frame = Frame::new(&camera, glam::Vec3::NEG_Y, &[], &atmosphere);
@@ -45,7 +44,7 @@ fn what_was_drawn_before_the_device_was_lost_cannot_be_read_after_it() {
 
 #[test]
 fn a_probe_on_a_lost_device_is_an_error() {
-    let gpu = fresh_gpu();
+    let gpu = open_renderer_gpu();
     let (mut renderer, mut scene) = renderer(&gpu);
     let (camera, atmosphere) = (camera(), Atmosphere::default());
     let frame = Frame::new(&camera, glam::Vec3::NEG_Y, &[], &atmosphere);
@@ -57,7 +56,7 @@ fn a_probe_on_a_lost_device_is_an_error() {
 
 #[test]
 fn a_stage_on_a_lost_device_judges_nothing_and_says_why() {
-    let mut stage = Stage::new(fresh_gpu(), default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(open_renderer_gpu(), default_scene(), 1).expect("the default scene");
     assert!(stage.judge(SIZE, false).is_some_and(|judged| judged.tally.all.facing > 0));
     stage.gpu().device.destroy();
     assert!(stage.judge(SIZE, false).is_none());

@@ -76,20 +76,28 @@ pub fn open_software_gpu(features: wgpu::Features, required_limits: wgpu::Limits
     TestGpu { adapter, device, queue }
 }
 
-/// Returns the software adapter as the renderer opens it. It is shared as [`software_gpu`] says.
+/// Returns the software adapter as the renderer opens it. It is shared as [`software_gpu`] says; a test that needs a device
+/// of its own calls [`open_renderer_gpu`].
 ///
 /// # Panics
 ///
 /// If the machine has no software adapter.
 #[cfg(feature = "render")]
 pub fn renderer_gpu() -> shadowfit_render::Gpu {
-    use shadowfit_render::{AdapterChoice, Gpu};
-    static FREE: Mutex<Vec<Gpu>> = Mutex::new(Vec::new());
+    static FREE: Mutex<Vec<shadowfit_render::Gpu>> = Mutex::new(Vec::new());
     std::thread_local! {
-        static LENT: Lent<Gpu> = Lent::new(&FREE, || {
-            pollster::block_on(Gpu::headless(AdapterChoice::Software))
-                .unwrap_or_else(|error| panic!("this test draws, and {error}"))
-        });
+        static LENT: Lent<shadowfit_render::Gpu> = Lent::new(&FREE, open_renderer_gpu);
     }
     LENT.with(|lent| lent.gpu.clone())
+}
+
+/// Opens the software adapter again, as the renderer does.
+///
+/// # Panics
+///
+/// If the machine has no software adapter.
+#[cfg(feature = "render")]
+pub fn open_renderer_gpu() -> shadowfit_render::Gpu {
+    pollster::block_on(shadowfit_render::Gpu::headless(shadowfit_render::AdapterChoice::Software))
+        .unwrap_or_else(|error| panic!("this test draws, and {error}"))
 }

@@ -4,11 +4,13 @@
 //! another, and `cargo xtask test` runs the tests that draw in one process per test binary.
 
 mod gpu;
+#[cfg(feature = "wgsl")]
 pub mod layout;
 pub mod pairs;
 pub mod read_back;
+#[cfg(feature = "wgsl")]
 pub mod wgsl;
 
-#[cfg(feature = "render")]
-pub use gpu::renderer_gpu;
 pub use gpu::{TestGpu, open_software_gpu, software_gpu};
+#[cfg(feature = "render")]
+pub use gpu::{open_renderer_gpu, renderer_gpu};

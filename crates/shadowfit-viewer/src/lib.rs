@@ -37,8 +37,6 @@ mod source;
 mod stage;
 #[cfg(not(target_family = "wasm"))]
 mod store;
-#[cfg(test)]
-mod test_gpu;
 mod tuning;
 mod undo;
 mod view_search;

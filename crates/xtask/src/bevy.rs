@@ -33,8 +33,7 @@ pub(crate) fn check_and_test() -> Result<()> {
     let mut tests = rust.cargo("test");
     tests.arg("--no-fail-fast");
     if process::succeeds(rust.plain_cargo("clippy").arg("--version")) {
-        // As `cargo clippy -- -D warnings` does it.
-        tests.env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver").env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings");
+        process::with_lints(&mut tests);
     } else {
         println!("lints of bevy-shadowfit were not looked at: its Rust has no clippy");
     }

@@ -150,14 +150,24 @@ pub(crate) fn target_folder() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
+/// Lets clippy compile the packages of the workspace in place of the compiler, with warnings as errors, as `cargo clippy` does
+/// it: lints then need no second build of all dependencies.
+pub(crate) fn with_lints(command: &mut Command) -> &mut Command {
+    command.env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver").env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings")
+}
+
 /// Sets up Mesa's software driver for tests. Compiling a shader takes it longer than drawing a small picture with it, so
 /// shaders are compiled without optimisation, and kept beside the compiled Rust for the next run.
 pub(crate) fn with_driver_for_tests(command: &mut Command) -> &mut Command {
-    // Without a login session Mesa complains of a missing folder that nothing here needs.
+    with_runtime_folder(command).env("GALLIVM_PERF", "nopt").env("MESA_SHADER_CACHE_DIR", target_folder().join("mesa"))
+}
+
+/// Names a folder for running programs where no login session has: Mesa complains without one, and needs it for nothing here.
+pub(crate) fn with_runtime_folder(command: &mut Command) -> &mut Command {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
     }
-    command.env("GALLIVM_PERF", "nopt").env("MESA_SHADER_CACHE_DIR", target_folder().join("mesa"))
+    command
 }
 
 /// The command as a person would type it: the program's name without its folder, then the arguments.

@@ -37,10 +37,7 @@ pub(crate) fn viewer(machine: &Machine) -> Command {
     // The viewer's package alone: the workspace's examples and tests need more crates than it does.
     command.args(["--release", "--package", "shadowfit-viewer", "--example", "viewer"]);
     command.args(setup::viewer_features(machine)).arg("--");
-    // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
-    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
-    }
+    process::with_runtime_folder(&mut command);
     command
 }
 

@@ -92,9 +92,13 @@ fn module(folder: &Path, features: &str, options: &[&str]) -> Result<()> {
     let mut compiler = process::cargo("rustc");
     compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib"]).args(options);
     compiler.args(["--target", WEB_TARGET, "--no-default-features", "--features", features]);
-    process::run(&mut compiler)?;
     // Cargo names the folder of its profile `dev` otherwise.
     let profile = if options.contains(&"web") { "web" } else { "debug" };
+    if profile == "debug" && process::succeeds(process::cargo("clippy").arg("--version")) {
+        // Code for browsers alone is linted nowhere else.
+        process::with_lints(&mut compiler);
+    }
+    process::run(&mut compiler)?;
     let built = target_folder().join(WEB_TARGET).join(profile).join("shadowfit_viewer.wasm");
     let mut bindgen = process::cargo("run");
     bindgen.args(["--quiet", "--package", "xtask", "--features", "bindgen", "--bin", "bindgen", "--"]);

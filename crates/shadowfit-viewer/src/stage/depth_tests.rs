@@ -5,9 +5,9 @@ use shadowfit::demand::{DemandGrid, LEVELS};
 use shadowfit_render::Gpu;
 use shadowfit_render::RenderTarget;
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_testing::renderer_gpu;
 
 use super::*;
-use crate::test_gpu::shared_gpu;
 
 /// Shares of the points in each octave of texels.
 fn shares(grid: &DemandGrid<'_>) -> Vec<f64> {
@@ -40,7 +40,7 @@ fn told_by_pictures(gpu: &Gpu, samples: u32) -> Stage {
 
 #[test]
 fn of_two_techniques_both_are_told_of_the_whole_picture() {
-    let gpu = shared_gpu();
+    let gpu = renderer_gpu();
     for samples in [1, 4] {
         let mut stage = told_by_pictures(&gpu, samples);
         let target = stage.target([320, 180]);
@@ -62,7 +62,7 @@ fn of_two_techniques_both_are_told_of_the_whole_picture() {
 
 #[test]
 fn a_view_that_follows_no_other_is_seen_by_rays_and_the_next_ones_by_pictures_which_agree() {
-    let gpu = shared_gpu();
+    let gpu = renderer_gpu();
     for samples in [1, 4] {
         let mut stage = told_by_pictures(&gpu, samples);
         let target = stage.target([640, 360]);

@@ -3,18 +3,18 @@
 use shadowfit::Technique;
 use shadowfit_params::tool::{InsetMaps, ViewMode};
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_testing::renderer_gpu;
 use shadowfit_wgpu::demand::Unsupported;
 use shadowfit_wgpu::resolve::{EdgeResult, ResolveCounts, WhyFiltered};
 
 use super::side::filtered_edges;
 use super::*;
-use crate::test_gpu::shared_gpu;
 
 const SIZE: [u32; 2] = [160, 90];
 
 /// The default scene with traced edges, and nothing over its picture.
 fn stage() -> (Stage, RenderTarget) {
-    let mut stage = Stage::new(shared_gpu(), default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(renderer_gpu(), default_scene(), 1).expect("the default scene");
     stage.wait_for_rays();
     stage.settings.technique = Technique::preset("exact-4").expect("a preset").with_resolution(256, 256);
     let view = &mut stage.settings.view;

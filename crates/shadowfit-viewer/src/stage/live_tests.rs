@@ -4,16 +4,16 @@ use shadowfit::Technique;
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyInput, MapUpdate, RenderTarget, UpdateContent};
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_testing::renderer_gpu;
 
 use super::live::JudgedBy;
 use super::*;
-use crate::test_gpu::shared_gpu;
 
 const SIZE: [u32; 2] = [160, 90];
 
 /// The default scene, judged by the GPU in each frame or by threads.
 fn stage(on_gpu: bool) -> (Stage, RenderTarget) {
-    let mut stage = Stage::new(shared_gpu(), default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(renderer_gpu(), default_scene(), 1).expect("the default scene");
     stage.prepared_scene().rays();
     stage.read_depths();
     stage.settings.technique = stage.settings.technique.with_resolution(256, 256);

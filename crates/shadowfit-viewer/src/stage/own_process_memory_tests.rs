@@ -7,10 +7,10 @@ use shadowfit::{PRESETS, Technique};
 use shadowfit_params::tool::{ErrorMarks, ViewMode};
 use shadowfit_render::{Gpu, Wanted};
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_testing::open_renderer_gpu;
 
 use super::*;
 use crate::monkey::memory;
-use crate::test_gpu::fresh_gpu;
 
 /// Frames until all is there that a view is drawn with, and frames after them.
 const FRAMES: [u32; 2] = [6, 20];
@@ -20,7 +20,7 @@ const MOST: u64 = 10_000_000;
 
 #[test]
 fn a_view_that_stays_takes_no_more_memory_with_each_frame() {
-    let gpu = fresh_gpu();
+    let gpu = open_renderer_gpu();
     let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
     stage.wait_for_rays();
     stage.settings.technique.fit.resolution = glam::UVec2::splat(256);
@@ -41,7 +41,7 @@ fn a_view_that_stays_takes_no_more_memory_with_each_frame() {
 
 #[test]
 fn a_technique_that_stays_takes_no_more_memory_with_each_frame() {
-    let gpu = fresh_gpu();
+    let gpu = open_renderer_gpu();
     let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
     stage.wait_for_rays();
     let target = stage.target([96, 54]);
@@ -124,7 +124,7 @@ fn set_limit(current: Option<u64>) {
 }
 
 fn stage() -> Stage {
-    let gpu = fresh_gpu();
+    let gpu = open_renderer_gpu();
     gpu.keep_faults();
     let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
     stage.settings.technique = shadowfit::Technique::preset("stable-4").expect("a preset");

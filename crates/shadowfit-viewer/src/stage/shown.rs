@@ -206,13 +206,13 @@ fn value(settings: &Settings, parameter: &Parameter) -> String {
 mod tests {
     use shadowfit::settings::FitKind;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_testing::renderer_gpu;
 
     use super::*;
-    use crate::test_gpu::shared_gpu;
 
     #[test]
     fn what_changed_while_an_artefact_was_searched_or_on_show_stays() {
-        let mut stage = Stage::new(shared_gpu(), default_scene(), 1).expect("the default scene");
+        let mut stage = Stage::new(renderer_gpu(), default_scene(), 1).expect("the default scene");
         stage.settings.technique.maps = shadowfit::Windows::default().into();
         let first = stage.settings;
         let found = stage.search(Artefact::ClippingHole).run();

@@ -11,13 +11,13 @@ use shadowfit::Technique;
 use shadowfit_egui::{Artefact, Command, Toggle, Tune};
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyInput, Gpu};
+use shadowfit_testing::renderer_gpu;
 
 use super::{Start, Viewer};
 use crate::cli::Arguments;
 use crate::saved::{Saved, Store, Theme};
 use crate::source::SceneSource;
 use crate::stage::Stage;
-use crate::test_gpu::shared_gpu;
 
 mod bars;
 mod devices;
@@ -36,7 +36,7 @@ const MAP_TEXELS: u32 = 256;
 const FRAME: f32 = 1.0 / 30.0;
 
 fn viewer(arguments: &[&str], store: Option<&Path>) -> Viewer {
-    viewer_on(shared_gpu(), arguments, store)
+    viewer_on(renderer_gpu(), arguments, store)
 }
 
 fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {

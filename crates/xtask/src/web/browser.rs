@@ -53,11 +53,7 @@ fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
     let mut viewer = Command::new(target_folder().join(program));
     viewer.current_dir(process::root()).arg("--headless").arg(folder);
     viewer.args(["--no-state", "--software", "--size", SIZE]).arg("--script").arg(script);
-    // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
-    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        viewer.env("XDG_RUNTIME_DIR", std::env::temp_dir());
-    }
-    process::run(&mut viewer)
+    process::run(process::with_driver_for_tests(&mut viewer))
 }
 
 /// Copies the files of a folder, so that what npm installs lies elsewhere.

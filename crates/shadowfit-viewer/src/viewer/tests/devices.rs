@@ -1,11 +1,12 @@
 //! Devices that are lost: in each view, beside a second technique, while a scene is loaded, in a sample, and again.
 
+use shadowfit_testing::open_renderer_gpu;
+
 use super::*;
-use crate::test_gpu::fresh_gpu;
 use crate::viewer::Renewals;
 
 fn ready(arguments: &[&str]) -> Viewer {
-    loaded(viewer_on(fresh_gpu(), arguments, None))
+    loaded(viewer_on(open_renderer_gpu(), arguments, None))
 }
 
 /// Loses the device, draws a frame with what is left of it, and goes on with another one.
@@ -17,7 +18,7 @@ fn lose(viewer: &mut Viewer) {
     settle(viewer, |_| gpu.lost().is_some());
     assert_eq!(gpu.take_faults(), [], "a lost device is no other fault");
     let why = gpu.lost().unwrap_or_default();
-    viewer.move_to(fresh_gpu(), wgpu::TextureFormat::Rgba8Unorm, &why).expect("another device");
+    viewer.move_to(open_renderer_gpu(), wgpu::TextureFormat::Rgba8Unorm, &why).expect("another device");
 }
 
 fn picture(viewer: &mut Viewer) -> Vec<u8> {
@@ -86,7 +87,7 @@ fn gpu_what_was_under_way_on_a_lost_device_is_begun_again_or_told() {
 fn gpu_a_device_that_was_lost_for_want_of_memory_comes_back_with_smaller_maps() {
     let mut viewer = ready(&["--technique", "stable-4", "--set", "map.resolution=512"]);
     let resolution = viewer.stage.settings.technique.fit.resolution;
-    viewer.move_to(fresh_gpu(), wgpu::TextureFormat::Rgba8Unorm, "Out of memory").expect("another device");
+    viewer.move_to(open_renderer_gpu(), wgpu::TextureFormat::Rgba8Unorm, "Out of memory").expect("another device");
     assert_eq!(viewer.stage.settings.technique.fit.resolution, resolution / 2);
     assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains("256 × 256")));
 }
