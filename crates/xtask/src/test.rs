@@ -1,9 +1,9 @@
 //! `cargo xtask test`: the tests in three tiers. Tests that the machine cannot run are left out by name, with the reason
 //! said, so that the runner counts them as skipped and never as passed.
 //!
-//! Tests that draw (`gpu` or `golden` in their path) run in one process per test binary: opening a device and compiling
-//! shaders takes longer than most of them. All others get a process each from nextest. Tests with `own_process` in their
-//! path measure or limit their process, so they count among the others.
+//! Tests that draw (`gpu` or `golden` in their path) and tests of all WGSL (`wgsl`) run in one process per test binary:
+//! opening a device and writing the texts takes longer than most of them. All others get a process each from nextest.
+//! Tests with `own_process` in their path measure or limit their process, so they count among the others.
 
 use std::collections::BTreeMap;
 use std::process::Command;
@@ -22,6 +22,9 @@ const UPDATE_GOLDENS: &str = "SHADOWFIT_UPDATE_GOLDENS";
 
 /// Parts of the paths of tests that draw.
 const DRAWING: [&str; 2] = ["gpu", "golden"];
+
+/// Parts of the paths of tests that share a process.
+const SHARING: [&str; 3] = ["gpu", "golden", "wgsl::"];
 
 /// Part of the paths of tests that need a process of their own.
 const OWN_PROCESS: &str = "own_process";
@@ -43,9 +46,10 @@ const QUICK_PACKAGES: [&str; 7] = [
 /// The quick tier's features: those that the packages' tests need.
 const QUICK_FEATURES: &str = "shadowfit-wgpu/rays,shadowfit-truth/gpu";
 
-/// The tests that draw in the quick tier: one file for each way in which Rust and WGSL can disagree.
-const QUICK_DRAWING: [&str; 7] =
-    ["parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "wrap_gpu", "culling_gpu", "cut_outs_gpu"];
+/// The tests that share a process in the quick tier: those of all WGSL, and of those that draw one file for each way in
+/// which Rust and WGSL can disagree.
+const QUICK_SHARING: [&str; 8] =
+    ["wgsl::", "parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "wrap_gpu", "culling_gpu", "cut_outs_gpu"];
 
 /// Longer runs of random cases and of the window in the tier `--all`, by environment variable. A value that is set
 /// already stays.
@@ -108,7 +112,7 @@ pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
     if tier != Tier::Quick {
         report.run("doc tests", || process::run(&mut suite.doc_tests()));
     }
-    report.run("tests that draw", || process::run(&mut suite.drawing()));
+    report.run("tests that share a device", || process::run(&mut suite.sharing()));
     report.run("all other tests", || suite.others());
     if tier == Tier::All {
         report.run("tests of the core with the oldest glam", portability::suite_with_oldest_glam);
@@ -164,9 +168,9 @@ impl Suite {
         command
     }
 
-    /// The tests that draw, in one process per binary.
-    fn drawing(&self) -> Command {
-        self.in_one_process(if self.tier == Tier::Quick { &QUICK_DRAWING } else { &DRAWING })
+    /// The tests that share a device or the texts of WGSL, in one process per binary.
+    fn sharing(&self) -> Command {
+        self.in_one_process(if self.tier == Tier::Quick { &QUICK_SHARING } else { &SHARING })
     }
 
     /// Tests with any of `parts` in their paths, in one process per binary.
@@ -189,7 +193,7 @@ impl Suite {
         let mut command = process::cargo("test");
         command.args(self.targets()).arg("--");
         let left_out = self.left_out.iter().map(|tests| tests.name_part);
-        command.args(DRAWING.into_iter().chain([OWN_PROCESS]).chain(left_out).flat_map(|part| ["--skip", part]));
+        command.args(SHARING.into_iter().chain([OWN_PROCESS]).chain(left_out).flat_map(|part| ["--skip", part]));
         process::run(&mut self.prepared(command))?;
         let mut own_process = process::cargo("test");
         own_process.args(self.targets()).args(["--", OWN_PROCESS, "--test-threads=1"]);
@@ -218,11 +222,11 @@ impl Suite {
         self.prepared(command)
     }
 
-    /// Nextest's filter for the tests that do not draw, or need a process of their own.
+    /// Nextest's filter for the tests that share nothing.
     fn filter_of_others(&self) -> String {
         let any = |parts: &[&str]| parts.iter().map(|part| format!("test({part})")).collect::<Vec<_>>().join(" | ");
         let left_out: Vec<&str> = self.left_out.iter().map(|tests| tests.name_part).collect();
-        let filter = format!("(not ({})) | test({OWN_PROCESS})", any(&DRAWING));
+        let filter = format!("(not ({})) | test({OWN_PROCESS})", any(&SHARING));
         if left_out.is_empty() { filter } else { format!("({filter}) & not ({})", any(&left_out)) }
     }
 
@@ -295,7 +299,7 @@ mod tests {
     fn a_complete_machine_leaves_nothing_out() {
         let suite = suite(&Machine::complete(Display::None), Tier::Standard);
         assert!(suite.left_out.is_empty());
-        assert_eq!(suite.filter_of_others(), "(not (test(gpu) | test(golden))) | test(own_process)");
+        assert_eq!(suite.filter_of_others(), "(not (test(gpu) | test(golden) | test(wgsl::))) | test(own_process)");
     }
 
     #[test]
@@ -320,7 +324,7 @@ mod tests {
     fn only_the_last_tier_runs_ignored_tests() {
         let machine = Machine::complete(Display::None);
         let words = |tier| {
-            let command = suite(&machine, tier).drawing();
+            let command = suite(&machine, tier).sharing();
             command.get_args().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>()
         };
         assert!(words(Tier::All).contains(&"--include-ignored".to_owned()));

@@ -280,7 +280,7 @@ fn have(maps: &Maps, name: &str) -> bool {
 #[test]
 fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
     for maps in every_maps() {
-        for (name, set) in SETTERS {
+        for (name, set) in SETTERS.into_iter().filter(|(name, _)| have(&maps, name)) {
             for value in VALUES {
                 let mut inputs = good();
                 inputs.settings.maps = maps;

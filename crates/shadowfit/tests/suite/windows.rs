@@ -35,25 +35,31 @@ struct Hit {
     down: DVec3,
 }
 
-/// Where a ray enters a box, as a multiple of its direction, and the normal there; `None` from inside.
-fn entry((start, along): (DVec3, DVec3), (min, max): (DVec3, DVec3)) -> Option<(f64, DVec3)> {
-    let (mut enter, mut leave, mut normal) = (f64::MIN, f64::MAX, DVec3::ZERO);
-    for axis in 0..3 {
-        let (s, d) = (start[axis], along[axis]);
-        if d == 0.0 {
-            if s < min[axis] || s > max[axis] {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = ((min[axis] - s) / d, (max[axis] - s) / d);
-        if a.min(b) > enter {
-            (enter, normal) = (a.min(b), DVec3::ZERO);
-            normal[axis] = -d.signum();
-        }
-        leave = leave.min(a.max(b));
+/// A ray that boxes are tested against.
+#[derive(Clone, Copy)]
+struct Ray {
+    start: DVec3,
+    /// One over its direction.
+    inverse: DVec3,
+}
+
+impl Ray {
+    fn new(start: DVec3, along: DVec3) -> Self {
+        Self { start, inverse: along.recip() }
     }
-    (enter <= leave && enter > 0.0).then_some((enter, normal))
+
+    /// Where the ray enters a box, as a multiple of its direction, and the normal there; `None` from inside.
+    fn entry(self, (min, max): (DVec3, DVec3)) -> Option<(f64, DVec3)> {
+        // Along an axis that the ray does not follow these are infinite: both of one sign if it starts beside the box.
+        let (a, b) = ((min - self.start) * self.inverse, (max - self.start) * self.inverse);
+        let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+        (enter <= leave && enter > 0.0).then(|| {
+            let mut normal = DVec3::ZERO;
+            let axis = a.min(b).max_position();
+            normal[axis] = -self.inverse[axis].signum();
+            (enter, normal)
+        })
+    }
 }
 
 /// What a view sees of boxes by 64 × 36 rays, up to a view depth in metres.
@@ -71,7 +77,8 @@ fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<H
     let hit = |(x, y): (u16, u16)| {
         let (x, y) = ((f64::from(x) + 0.5) / f64::from(COLUMNS), (f64::from(y) + 0.5) / f64::from(ROWS));
         let (start, along) = ray(x, y);
-        let met = boxes.iter().filter_map(|b| entry((start, along), *b)).filter(|(depth, _)| *depth >= lens.near);
+        let inverted = Ray::new(start, along);
+        let met = boxes.iter().filter_map(|b| inverted.entry(*b)).filter(|(depth, _)| *depth >= lens.near);
         let (depth, normal) = met.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let point = start + along * depth;
         let beside = |x: f64, y: f64| {

@@ -107,11 +107,10 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
             let mut anew = Run::new(room_on_a_plain(), &run.technique);
             let fresh = (0..ANEW).map(|_| anew.frame(&to, light)).last().unwrap();
             let fresh = quantile(&fresh, &anew, &to, light);
-            let mut ratios = (0..STAY).map(|_| {
-                let maps = run.frame(&to, light);
-                quantile(&maps, &run, &to, light) / fresh
-            });
-            let (first, last) = (ratios.next().unwrap(), ratios.last().unwrap());
+            let arrived = run.frame(&to, light);
+            let first = quantile(&arrived, &run, &to, light) / fresh;
+            let settled = (1..STAY).map(|_| run.frame(&to, light)).last().unwrap();
+            let last = quantile(&settled, &run, &to, light) / fresh;
             let line =
                 format!("{count} windows, {name}: {first:.2} on arrival, {last:.2} after {STAY} frames, of {fresh:.2}");
             println!("{line}");

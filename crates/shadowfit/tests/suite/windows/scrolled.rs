@@ -4,7 +4,7 @@ use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::scroll::{Scroll, TexelRect};
 use shadowfit::{Aabb, CasterVolume, FittedMap, Technique};
 
-use super::{Run, World, entry, street_view, windows};
+use super::{Ray, Run, World, street_view, windows};
 
 /// A side of the maps, in texels: few, since each is compared with all boxes.
 const SIDE: u32 = 40;
@@ -52,8 +52,8 @@ impl Drawn {
         // The ray begins far before the near plane; what it meets there would be clipped.
         let start = |z_of: f64| x * (across.x - t.x) + y * (across.y - t.y) + z * (z_of - t.z);
         let begin = near + 1e3;
-        let ray = (start(begin), -z);
-        let depths = self.boxes.iter().filter_map(|b| entry(ray, *b)).map(|(way, _)| (begin - way - near) / -range);
+        let ray = Ray::new(start(begin), -z);
+        let depths = self.boxes.iter().filter_map(|b| ray.entry(*b)).map(|(way, _)| (begin - way - near) / -range);
         depths.filter(|depth| (0.0..=1.0).contains(depth)).fold(1.0, f64::min)
     }
 }
