@@ -15,8 +15,8 @@ pub struct TestGpu {
 
 /// A device that one test has to itself, and the list that it goes back to when the test's thread ends.
 ///
-/// Two tests must not share a device at the same time: wgpu runs a callback in whichever thread polls, so that a test may
-/// find its work done and its callback still running in another thread.
+/// Two tests must not share a device at the same time: wgpu may run a callback in the thread of another test that polls the
+/// device. The first test then finds its work done before its callback has run.
 #[derive(Debug)]
 struct Lent<T: Clone + 'static> {
     gpu: T,
@@ -76,8 +76,8 @@ pub fn open_software_gpu(features: wgpu::Features, required_limits: wgpu::Limits
     TestGpu { adapter, device, queue }
 }
 
-/// Returns the software adapter as the renderer opens it. It is shared as [`software_gpu`] says; a test that needs a device
-/// of its own calls [`open_renderer_gpu`].
+/// Returns the software adapter as the renderer opens it, lent to one test after another like [`software_gpu`]. A test that
+/// must not share it calls [`open_renderer_gpu`].
 ///
 /// # Panics
 ///

@@ -38,6 +38,13 @@ pub fn all_pairs(counts: &[usize]) -> Vec<Vec<usize>> {
     rows
 }
 
+/// Returns the full product: a row for each combination of one value per column.
+pub fn full_product(counts: &[usize]) -> Vec<Vec<usize>> {
+    counts.iter().fold(vec![Vec::new()], |rows, count| {
+        rows.iter().flat_map(|row| (0..*count).map(move |value| [&row[..], &[value]].concat())).collect()
+    })
+}
+
 /// Returns every pair, in order.
 fn pairs_of(counts: &[usize]) -> Vec<Pair> {
     let mut pairs = Vec::new();
@@ -68,6 +75,12 @@ fn best_value(row: &[Option<usize>], column: usize, count: usize, missing: &[Pai
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_full_product_holds_every_combination_once() {
+        let rows = full_product(&[2, 3]);
+        assert_eq!(rows, [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [1, 2]]);
+    }
 
     #[test]
     fn every_pair_of_values_occurs_in_few_rows() {

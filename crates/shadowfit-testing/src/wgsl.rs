@@ -163,8 +163,8 @@ pub fn uniform_structs(name: &str, source: &str) -> BTreeSet<String> {
     Shader::new(name, source).uniform_structs()
 }
 
-/// Asserts that every WGSL file below a folder stands whole in one of the texts. `filled` returns the texts that a file may
-/// become when its placeholders are filled in.
+/// Asserts that one of the texts contains each WGSL file below a folder as a whole. `filled` returns the versions of a file
+/// with its placeholders filled in.
 ///
 /// # Panics
 ///

@@ -105,10 +105,11 @@ fn module(folder: &Path, features: &str, options: &[&str]) -> Result<()> {
     process::run(bindgen.arg(&built).arg(folder))
 }
 
-/// Builds one module for both APIs, with little optimisation.
+/// Builds one module for both APIs, with little optimisation: unoptimised code overflows the stack that a page has.
 fn quick_module(folder: &Path) -> Result<()> {
     let [(first, _), (second, _)] = MODULES.map(|(name, feature)| (folder.join(name), feature));
-    module(&first, &MODULES.map(|(_, feature)| feature).join(","), &["--config", "profile.dev.debug=false"])?;
+    let features = MODULES.map(|(_, feature)| feature).join(",");
+    module(&first, &features, &["--config", "profile.dev.debug=false", "--config", "profile.dev.opt-level=1"])?;
     fs::create_dir_all(&second)?;
     fs::copy(first.join(MODULE), second.join(MODULE))?;
     fs::write(second.join("shadowfit_viewer.js"), WITHOUT_WEBGPU)?;

@@ -1,5 +1,5 @@
-//! The samples' WGSL, and the classic techniques on the software adapter. Tests that need a graphics device have `gpu` in their path, by which
-//! `cargo xtask test` leaves them out where there is none.
+//! The samples' WGSL, and the classic techniques on the software adapter. Tests that need a graphics device have `gpu` in
+//! their path, and `cargo xtask test` leaves them out on machines without one.
 
 mod formulas_gpu;
 mod layout;

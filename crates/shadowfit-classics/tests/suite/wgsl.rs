@@ -10,6 +10,7 @@ use naga::valid::Capabilities;
 use shadowfit_classics::mapped::SampleFrame;
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
 use shadowfit_render::passes::Numbering;
+use shadowfit_testing::pairs::full_product;
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 
 use super::layout;
@@ -34,11 +35,12 @@ fn counts() -> [usize; 4] {
 }
 
 /// Returns the frame of a sample with one choice per option, all by their indices. `None` for samples without one map.
-fn frame([sample, options @ ..]: [usize; 4]) -> Option<SampleFrame> {
-    let sample = &SAMPLES[sample];
+fn frame(row: &[usize]) -> Option<SampleFrame> {
+    let [sample, options @ ..] = row else { panic!("a sample and its options") };
+    let sample = &SAMPLES[*sample];
     let mut values = SampleValues::new(sample);
     for (Choices { option, choices }, choice) in OPTIONS.iter().zip(options) {
-        let _ = values.set_from_str(option, choices[choice]);
+        let _ = values.set_from_str(option, choices[*choice]);
     }
     match sample.drawing(&values, &sample.lens(1.0)) {
         Ok(SampleDrawing::Mapped(frame)) => Some(frame),
@@ -48,16 +50,7 @@ fn frame([sample, options @ ..]: [usize; 4]) -> Option<SampleFrame> {
 
 /// Returns the frames of all samples with all combinations of choices.
 pub(crate) fn frames() -> Vec<SampleFrame> {
-    let counts = counts();
-    let frame_of = |index: usize| {
-        let mut rest = index;
-        frame(counts.map(|count| {
-            let value = rest % count;
-            rest /= count;
-            value
-        }))
-    };
-    (0..counts.iter().product()).filter_map(frame_of).collect()
+    full_product(&counts()).iter().filter_map(|row| frame(row)).collect()
 }
 
 /// A module and its requirements.

@@ -1,5 +1,5 @@
-//! The renderer's WGSL and its pictures. Tests that need a graphics device have `gpu` in their path, by which
-//! `cargo xtask test` leaves them out on machines without one.
+//! The renderer's WGSL and its pictures. Tests that need a graphics device have `gpu` in their path, and `cargo xtask test`
+//! leaves them out on machines without one.
 
 mod clamp_gpu;
 mod devices;

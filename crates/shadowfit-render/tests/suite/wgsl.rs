@@ -10,7 +10,7 @@ use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat, MapSelection};
 use shadowfit_render::passes::Numbering;
 use shadowfit_render::{Overlay, shaders};
-use shadowfit_testing::pairs::all_pairs;
+use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -100,7 +100,8 @@ fn counts() -> [usize; 6] {
 }
 
 /// Returns the module of a combination of values, each by its index.
-fn looked_up([kind, format, filter, depth, selection, cross_fades]: [usize; 6]) -> Module {
+fn looked_up(row: &[usize]) -> Module {
+    let &[kind, format, filter, depth, selection, cross_fades] = row else { panic!("six values") };
     let map = ShadowMapDescriptor {
         format: MapFormat::ALL[format],
         filter: FilterKind::ALL[filter],
@@ -136,8 +137,7 @@ fn others() -> Vec<Module> {
 
 /// Every module of the renderer, with every pair of values that the look-up's WGSL differs for.
 static MODULES: LazyLock<Vec<Module>> = LazyLock::new(|| {
-    let rows = all_pairs(&counts());
-    let looked_up = rows.into_iter().map(|row| looked_up(row.try_into().expect("a value for each column")));
+    let looked_up = all_pairs(&counts()).into_iter().map(|row| looked_up(&row));
     others().into_iter().chain(looked_up).collect()
 });
 
@@ -184,14 +184,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
 #[test]
 #[ignore = "the full product of descriptors: cargo xtask test --all"]
 fn modules_of_the_full_product_of_descriptors_are_valid_and_can_be_translated_for_webgl2() {
-    let counts = counts();
-    for index in 0..counts.iter().product() {
-        let mut rest = index;
-        let values = counts.map(|count| {
-            let value = rest % count;
-            rest /= count;
-            value
-        });
-        looked_up(values).check();
+    for row in full_product(&counts()) {
+        looked_up(&row).check();
     }
 }

@@ -1,5 +1,5 @@
-//! Memory that frames take, and devices that have little. Each test has a process of its own, since it measures or limits
-//! the memory of the process.
+//! Memory that frames take, and devices with little memory. Each test runs in a separate process, because it measures or
+//! limits the memory of the process.
 
 use rustix::process::{Resource, Rlimit};
 use shadowfit::settings::FilterKind;
@@ -12,10 +12,10 @@ use shadowfit_testing::open_renderer_gpu;
 use super::*;
 use crate::monkey::memory;
 
-/// Frames until all is there that a view is drawn with, and frames after them.
+/// Frames until a view has all its maps and pipelines, and frames after them.
 const FRAMES: [u32; 2] = [6, 20];
-/// Bytes that the latter may take: what drivers and allocators keep. A shader that is built with each frame takes as much in
-/// ten.
+/// Bytes that drivers and allocators may keep from the later frames. A shader that is compiled in each frame takes ten
+/// times as much.
 const MOST: u64 = 10_000_000;
 
 #[test]

@@ -1,7 +1,7 @@
 //! What a picture is resolved into: the texture of factors, and the list of pixels whose rays are traced.
 
 use super::error::ResolveError;
-use super::noise::ranks;
+use super::noise::RANKS;
 use super::shader::TRACE_THREADS;
 use crate::bindings;
 use crate::caught::caught;
@@ -139,9 +139,8 @@ impl Kept {
                 mapped_at_creation: false,
             })
         };
-        let ranks = ranks();
-        let noise = buffer(size_of_val(&ranks[..]), wgpu::BufferUsages::STORAGE);
-        queue.write_buffer(&noise, 0, bytemuck::cast_slice(&ranks));
+        let noise = buffer(size_of_val(&RANKS[..]), wgpu::BufferUsages::STORAGE);
+        queue.write_buffer(&noise, 0, bytemuck::cast_slice(&RANKS));
         let budget = buffer(16, wgpu::BufferUsages::UNIFORM);
         let list = list(device, target.size);
         let resources = [&target.list, &list, &noise, &budget].map(|buffer: &wgpu::Buffer| buffer.as_entire_binding());

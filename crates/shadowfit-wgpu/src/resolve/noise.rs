@@ -1,4 +1,6 @@
-//! Blue noise: a square of ranks of which the lowest, however many, are spread evenly, also across the square's sides.
+//! Blue noise: a square of ranks. The pixels below any rank are spread evenly, also across the square's sides.
+
+use std::sync::LazyLock;
 
 /// Pixels along a side of the square.
 pub(super) const SIDE: usize = 64;
@@ -6,9 +8,12 @@ pub(super) const SIDE: usize = 64;
 /// Variance of the Gaussian by which pixels repel each other, in square pixels; 1.5² is Ulichney's.
 const VARIANCE: f32 = 1.5 * 1.5;
 
-/// The rank of each pixel, in rows: each is put where the pixels before it leave the largest void (after R. Ulichney,
-/// "The void-and-cluster method for dither array generation", 1993, without its first pattern).
-pub(super) fn ranks() -> Vec<u32> {
+/// The rank of each pixel, in rows, computed once per process.
+pub(super) static RANKS: LazyLock<Vec<u32>> = LazyLock::new(ranks);
+
+/// Returns the rank of each pixel, in rows. Each rank goes to the middle of the largest void between the pixels of lower
+/// ranks (after R. Ulichney, "The void-and-cluster method for dither array generation", 1993, without its first pattern).
+fn ranks() -> Vec<u32> {
     let repulsion: Vec<f32> = (0..SIDE * SIDE).map(|at| (-squared(at) / (2.0 * VARIANCE)).exp()).collect();
     let mut field = vec![0.0_f32; SIDE * SIDE];
     let mut ranks = vec![0; SIDE * SIDE];

@@ -5,7 +5,7 @@
 use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, SoftRadius, Softness};
-use shadowfit_testing::pairs::all_pairs;
+use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::engine::Engine;
@@ -54,11 +54,25 @@ fn points() -> Vec<Point> {
     patches().into_iter().flat_map(of_patch).collect()
 }
 
+/// Numbers of formats, filters and depths.
+const COUNTS: [usize; 3] = [MapFormat::ALL.len(), FilterKind::ALL.len(), 2];
+
 #[test]
 fn slanted_planes_are_lit_with_the_automatic_bias_of_every_filter_and_format() {
+    assert_lit(&all_pairs(&COUNTS));
+}
+
+#[test]
+#[ignore = "the full product of formats, filters and depths: cargo xtask test --all"]
+fn slanted_planes_are_lit_in_the_full_product_of_formats_filters_and_depths() {
+    assert_lit(&full_product(&COUNTS));
+}
+
+/// Asserts that slanted planes are lit in maps of formats, filters and depths by their indices.
+fn assert_lit(rows: &[Vec<usize>]) {
     let gpu = Engine::shared();
     let (points, casters) = (points(), casters());
-    for row in all_pairs(&[MapFormat::ALL.len(), FilterKind::ALL.len(), 2]) {
+    for row in rows {
         let (format, filter) = (MapFormat::ALL[row[0]], FilterKind::ALL[row[1]]);
         let depth = [DepthConvention::ZeroToOne, DepthConvention::Reversed][row[2]];
         let softness = Softness::default().with_radius(SoftRadius::SunAngle(0.02));

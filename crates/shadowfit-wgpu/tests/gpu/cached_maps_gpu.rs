@@ -1,5 +1,5 @@
-//! Maps of which is kept what stands still hold what maps hold that are drawn anew: frame after frame, while the camera
-//! walks and turns, casters move, start, stop and vanish, and the light steps.
+//! Cached maps equal maps that are drawn from nothing, frame after frame, while the camera walks and turns, casters move,
+//! start, stop and vanish, and the light steps.
 
 #[path = "cached_maps/readers.rs"]
 mod readers;

@@ -10,7 +10,7 @@
 use shadowfit::glam::{DVec3, UVec2, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapFormat};
 use shadowfit::{DepthConvention, LightProjection, ViewFrustum, fit};
-use shadowfit_testing::pairs::all_pairs;
+use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::engine::Engine;
@@ -92,12 +92,26 @@ fn the_fit_has_texels_of_a_sixteenth_metre_on_the_grid() {
     }
 }
 
+/// Numbers of formats, filters and depths.
+const COUNTS: [usize; 3] = [MapFormat::ALL.len(), 2, 2];
+
 #[test]
 fn the_shadow_has_the_caster_s_area_to_the_texel_in_every_format_filter_and_depth() {
+    assert_exact(&all_pairs(&COUNTS));
+}
+
+#[test]
+#[ignore = "the full product of formats, filters and depths: cargo xtask test --all"]
+fn the_shadow_has_the_caster_s_area_in_the_full_product_of_formats_filters_and_depths() {
+    assert_exact(&full_product(&COUNTS));
+}
+
+/// Asserts that the shadow covers exactly the texels under the caster, for formats, filters and depths by their indices.
+fn assert_exact(rows: &[Vec<usize>]) {
     let plane = plane();
     let expected: Vec<f32> = plane.iter().map(|point| if is_under_the_caster(point) { 0.0 } else { 1.0 }).collect();
     assert_eq!(expected.iter().filter(|factor| **factor == 0.0).count(), SHADOWED);
-    for row in all_pairs(&[MapFormat::ALL.len(), 2, 2]) {
+    for row in rows {
         let format = MapFormat::ALL[row[0]];
         // At texel centres the 2×2 filter has all its weight on one texel, except for the share by which the box is widened.
         let filter = [FilterKind::Point, FilterKind::Hardware2x2][row[1]];

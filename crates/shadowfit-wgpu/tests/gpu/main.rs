@@ -1,8 +1,8 @@
-//! Tests of shadowfit-wgpu with everything that they draw with: its WGSL and its uniforms, which need no GPU, and maps,
-//! look-ups and passes on the software adapter.
+//! Tests of shadowfit-wgpu: its WGSL and its uniforms, which need no GPU, and maps, look-ups and passes on the software
+//! adapter. `engine` is the renderer of all tests that draw.
 //!
-//! Tests that need a graphics device have `gpu` in their path, by which `cargo xtask test` leaves them out where there is
-//! none.
+//! Tests that need a graphics device have `gpu` in their path, and `cargo xtask test` leaves them out on machines without
+//! one.
 
 mod acne_gpu;
 mod cached_maps_gpu;

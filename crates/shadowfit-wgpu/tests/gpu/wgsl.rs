@@ -10,7 +10,7 @@ use naga::valid::Capabilities;
 use shadowfit::DepthConvention;
 use shadowfit::settings::{Edges, FilterKind, MapFormat, MapSelection};
 use shadowfit_rays::{RayWgslOptions, rays_wgsl, refit_wgsl};
-use shadowfit_testing::pairs::all_pairs;
+use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 use shadowfit_wgpu::demand::demand_wgsl;
 use shadowfit_wgpu::resolve::{NormalEncoding, resolve_wgsl, resolved_wgsl};
@@ -326,11 +326,7 @@ fn the_look_up_reads_the_bind_group_that_it_is_told_to() {
 #[test]
 #[ignore = "the full product of descriptors: cargo xtask test --all"]
 fn every_product_of_options_is_valid_and_can_be_translated_for_webgl2() {
-    let products = COUNTS.iter().fold(vec![Vec::new()], |rows: Vec<Vec<usize>>, count| {
-        rows.iter().flat_map(|row| (0..*count).map(move |value| [&row[..], &[value]].concat())).collect()
-    });
-    assert_eq!(products.len(), COUNTS.iter().product::<usize>());
-    for (number, kind) in (0..).zip(products.iter().map(|row| Kind::new(row))) {
+    for (number, kind) in (0..).zip(full_product(&COUNTS).iter().map(|row| Kind::new(row))) {
         for shader in resolve_modules(number, &kind) {
             shader.assert_valid(Capabilities::empty());
         }

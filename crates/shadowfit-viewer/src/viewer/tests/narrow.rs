@@ -43,16 +43,20 @@ fn click(viewer: &mut Viewer, size: [f32; 2], name: &str) {
 
 fn with_names(arguments: &[&str]) -> Viewer {
     let mut viewer = ready(arguments, None);
-    // The pictures of these tests are measured in points.
-    viewer.interface.context.set_pixels_per_point(1.0);
     viewer.interface.context.enable_accesskit();
     (0..3).for_each(|_| drop(draw(&mut viewer, UPRIGHT, Vec::new())));
     viewer
 }
 
-/// Share of the height that the picture has.
+/// Returns the size of the picture, in points.
+fn picture_size(viewer: &Viewer) -> [f32; 2] {
+    let points = viewer.interface.context.pixels_per_point().recip();
+    viewer.interface.pictures.size().map(|pixels| pixels as f32 * points)
+}
+
+/// Returns the picture's share of the height.
 fn picture_share(viewer: &Viewer, size: [f32; 2]) -> f32 {
-    viewer.interface.pictures.size()[1] as f32 / size[1]
+    picture_size(viewer)[1] / size[1]
 }
 
 fn assert_inside(controls: &[(String, Role, Rect)], size: [f32; 2]) {
@@ -75,7 +79,7 @@ fn gpu_a_phone_has_the_whole_width_for_the_picture_and_bars_that_fit() {
     }
     draw(&mut viewer, UPRIGHT, Vec::new());
     draw(&mut viewer, UPRIGHT, Vec::new());
-    assert_eq!(viewer.interface.pictures.size()[0], 390);
+    assert_eq!(picture_size(&viewer)[0], 390.0);
     for name in ["Scene", "Views", "More", "Tune", "Play", "Time of day", "Flying speed"] {
         let rect = find(&draw(&mut viewer, UPRIGHT, Vec::new()), name).unwrap_or_else(|| panic!("{name}"));
         assert!(rect.height() >= 35.5, "{name} is {} points high", rect.height());

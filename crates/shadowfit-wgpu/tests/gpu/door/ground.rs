@@ -151,7 +151,7 @@ impl Picture {
         self.0.iter().flatten().copied()
     }
 
-    /// Those of one sun.
+    /// Returns the factors of one sun.
     pub(super) fn of(&self, sun: usize) -> impl Iterator<Item = u8> {
         self.0.iter().map(move |factors| factors[sun])
     }
@@ -164,15 +164,15 @@ impl Picture {
 }
 
 impl Painter {
-    /// Pipelines for suns with the prefixes of their names, whose texts stand in one module, each at a bind group of
-    /// its own.
+    /// Makes pipelines for suns with the prefixes of their names. One module holds the WGSL of all suns; each sun has a
+    /// separate bind group.
     pub(super) fn new(engine: &Engine, suns: &[(&SunShadows, &'static str)]) -> Self {
         let at_groups: Vec<_> = (0..).zip(suns).map(|(group, (sun, prefix))| (*sun, group, *prefix)).collect();
         let groups: Vec<_> = suns.iter().map(|(sun, _)| Some(sun.map().receiver_layout())).collect();
         Self::with_layout(engine, &at_groups, &engine.layout(&groups))
     }
 
-    /// The same for suns at any bind groups.
+    /// Makes pipelines like [`Self::new`], for suns at any bind groups.
     pub(super) fn with_layout(
         engine: &Engine,
         suns: &[(&SunShadows, u32, &'static str)],
@@ -196,7 +196,7 @@ impl Painter {
         self.draw_with(engine, suns, &groups)
     }
 
-    /// The same with these bind groups for the ground.
+    /// Draws a frame like [`Self::draw`], with these bind groups for the ground.
     pub(super) fn draw_with(
         &self,
         engine: &Engine,

@@ -175,7 +175,7 @@ pub(crate) fn dispatch(
     pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
 }
 
-/// The parts in which the render pipelines of the tests differ.
+/// The varying parts of the tests' render pipelines.
 #[derive(Debug)]
 pub(crate) struct Pipeline<'a> {
     /// Without a layout, the bind groups follow from the shaders.
@@ -249,7 +249,7 @@ pub(crate) fn vertices(
     wgpu::VertexBufferLayout { array_stride, step_mode, attributes }
 }
 
-/// Begins a pass that clears what it draws into.
+/// Begins a render pass that clears its targets.
 pub(crate) fn cleared<'encoder>(
     encoder: &'encoder mut wgpu::CommandEncoder,
     colors: &[&wgpu::TextureView],

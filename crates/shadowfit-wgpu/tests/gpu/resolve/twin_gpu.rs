@@ -7,7 +7,7 @@ use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit::{DepthConvention, PerspectiveCamera, Technique};
 use shadowfit_scene::Lens;
 use shadowfit_scene::builtin::BuiltinScene;
-use shadowfit_testing::pairs::all_pairs;
+use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_wgpu::resolve::NormalEncoding;
 
 use super::stage::{Look, Stage, Thing, traced};
@@ -137,10 +137,24 @@ fn every_pixel_of_the_built_in_scenes_has_the_verdict_of_the_twin() {
     }
 }
 
+/// Numbers of counts of rays, counts of samples and encodings of normals.
+const COUNTS: [usize; 3] = [2, 2, 3];
+
 #[test]
 fn verdicts_are_the_twin_s_for_four_samples_and_four_rays() {
+    assert_twins(&all_pairs(&COUNTS));
+}
+
+#[test]
+#[ignore = "the full product of rays, samples and normals: cargo xtask test --all"]
+fn verdicts_are_the_twin_s_for_the_full_product_of_rays_samples_and_normals() {
+    assert_twins(&full_product(&COUNTS));
+}
+
+/// Compares verdicts with the twin's for rays, samples and normals by their indices.
+fn assert_twins(rows: &[Vec<usize>]) {
     let mut stage = Stage::new(&traced(technique(), 1), things(BuiltinScene::Courtyard));
-    for row in all_pairs(&[2, 2, 3]) {
+    for row in rows {
         let (rays, samples) = ([1, 4][row[0]], [1, 4][row[1]]);
         let normals = [None, Some(NormalEncoding::Signed), Some(NormalEncoding::Unsigned)][row[2]];
         stage.sun.set_technique(&traced(technique(), rays)).expect("a good technique");
