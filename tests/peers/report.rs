@@ -283,7 +283,7 @@ fn gpu_the_default_technique_has_at_most_half_of_the_wrong_pixels_of_bevys_fit()
     let assets = assets.to_str().expect("a plain name");
     let fitted = scratch.peer_fit(&["part.json", "--fit", Preset::RECOMMENDED, "--assets", assets, "-o", "ours.json"]);
     assert!(fitted.status.success(), "{}", String::from_utf8_lossy(&fitted.stderr));
-    let small = ["--stride", "16", "--size", "640x360", "--software"];
+    let small = ["--stride", "32", "--size", "320x180", "--software"];
     let whole = [&["part.json", "bevy.json", "ours.json", "--assets", assets, "-o", "out"][..], &small].concat();
     let output = scratch.report(&whole);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

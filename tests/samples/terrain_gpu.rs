@@ -61,7 +61,8 @@ fn eight_bits_have_256_depths_and_a_float_has_thousands() {
     bench.picture(None, &floats, SIZE);
     let map = bench.map_of_floats();
     assert_eq!(map.len(), 4096 * 4096);
-    assert!(distinct(map.iter().map(|depth| depth.to_bits())) > 10_000);
+    // Telling all 16 million texels apart takes long, and some of them have thousands of depths as well.
+    assert!(distinct(map.iter().step_by(37).map(|depth| depth.to_bits())) > 10_000);
     // Stored reversed: near the light is near 1, and what nothing was drawn to is 0, which is far.
     assert!(map.iter().all(|depth| (0.0..1.0).contains(depth)) && map.iter().any(|depth| *depth > 0.2));
 }
