@@ -31,6 +31,26 @@ fn covers(b: &Triangle, normal: Vec3, a: &Triangle) -> bool {
     })
 }
 
+/// A triangle with its unit normal and its bounds.
+struct Surface<'a> {
+    triangle: &'a Triangle,
+    normal: Vec3,
+    min: Vec3,
+    max: Vec3,
+}
+
+impl<'a> Surface<'a> {
+    fn new(triangle: &'a Triangle, normal: Vec3) -> Self {
+        let [a, b, c] = triangle.vertices;
+        Self { triangle, normal, min: a.min(b).min(c), max: a.max(b).max(c) }
+    }
+
+    /// Whether the bounds of two triangles overlap.
+    fn meets(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+}
+
 /// Names of meshes of which one has a triangle in the place of another's. What faces down is left out: the bottoms of
 /// what stands side by side in the ground; and so is what hangs on `jointed`, whose limbs overlap where they meet.
 fn fighting(scene: &Scene, jointed: Option<usize>) -> BTreeSet<[String; 2]> {
@@ -42,20 +62,23 @@ fn fighting(scene: &Scene, jointed: Option<usize>) -> BTreeSet<[String; 2]> {
         let material = mesh(triangle).primitives[instance.primitive].material;
         scene.materials[material].double_sided || jointed.is_some_and(|root| scene.is_descendant(instance.node, root))
     };
-    let mut planes: HashMap<Plane, Vec<(&Triangle, Vec3)>> = HashMap::new();
+    let mut planes: HashMap<Plane, Vec<Surface>> = HashMap::new();
     for triangle in triangles.iter().filter(|triangle| !is_left_out(triangle)) {
         let (normal, plane) = plane(triangle);
         if normal.y < -0.99 {
             continue;
         }
-        planes.entry(plane).or_default().push((triangle, normal));
+        planes.entry(plane).or_default().push(Surface::new(triangle, normal));
     }
     let mut found = BTreeSet::new();
-    for together in planes.values() {
-        for (index, (a, normal_a)) in together.iter().enumerate() {
-            for (b, normal_b) in &together[index + 1..] {
-                if covers(b, *normal_b, a) || covers(a, *normal_a, b) {
-                    found.insert([a, b].map(|triangle| mesh(triangle).name.clone()));
+    for mut together in planes.into_values() {
+        // In order along x, so that few triangles are compared: the middle of one lies in the box of the other.
+        together.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
+        for (index, a) in together.iter().enumerate() {
+            let near = together[index + 1..].iter().take_while(|b| b.min.x <= a.max.x);
+            for b in near.filter(|b| a.meets(b)) {
+                if covers(b.triangle, b.normal, a.triangle) || covers(a.triangle, a.normal, b.triangle) {
+                    found.insert([a, b].map(|surface| mesh(surface.triangle).name.clone()));
                 }
             }
         }
