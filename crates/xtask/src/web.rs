@@ -109,7 +109,10 @@ fn module(folder: &Path, features: &str, options: &[&str]) -> Result<()> {
 fn quick_module(folder: &Path) -> Result<()> {
     let [(first, _), (second, _)] = MODULES.map(|(name, feature)| (folder.join(name), feature));
     let features = MODULES.map(|(_, feature)| feature).join(",");
-    module(&first, &features, &["--config", "profile.dev.debug=false", "--config", "profile.dev.opt-level=1"])?;
+    let settings = ["debug=false", "opt-level=1", "package.wgpu-core.opt-level=1", "package.wgpu-hal.opt-level=1"];
+    let settings = settings.map(|setting| format!("profile.dev.{setting}"));
+    let options: Vec<&str> = settings.iter().flat_map(|setting| ["--config", setting]).collect();
+    module(&first, &features, &options)?;
     fs::create_dir_all(&second)?;
     fs::copy(first.join(MODULE), second.join(MODULE))?;
     fs::write(second.join("shadowfit_viewer.js"), WITHOUT_WEBGPU)?;
