@@ -46,7 +46,7 @@ const QUICK_PACKAGES: [&str; 7] = [
 /// The quick tier's features: those that the packages' tests need.
 const QUICK_FEATURES: &str = "shadowfit-wgpu/rays,shadowfit-truth/gpu";
 
-/// The tests that share a process in the quick tier: those of all WGSL, and of those that draw one file for each way in
+/// The tests that share a process in the quick tier: the tests of all WGSL, and one file of drawing tests for each way in
 /// which Rust and WGSL can disagree.
 const QUICK_SHARING: [&str; 8] =
     ["wgsl::", "parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "wrap_gpu", "culling_gpu", "cut_outs_gpu"];

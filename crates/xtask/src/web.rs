@@ -105,7 +105,7 @@ fn module(folder: &Path, features: &str, options: &[&str]) -> Result<()> {
     process::run(bindgen.arg(&built).arg(folder))
 }
 
-/// Builds one module for both APIs, with little optimisation: unoptimised code overflows the stack that a page has.
+/// Builds one module for both APIs, with little optimisation, because the stack of WebAssembly has 1 MiB.
 fn quick_module(folder: &Path) -> Result<()> {
     let [(first, _), (second, _)] = MODULES.map(|(name, feature)| (folder.join(name), feature));
     let features = MODULES.map(|(_, feature)| feature).join(",");
