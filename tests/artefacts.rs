@@ -11,7 +11,10 @@ use shadowfit_viewer::{Artefact, Stage};
 use crate::support::software_gpu;
 
 /// Size of the judged pictures, in pixels.
-const SIZE: [u32; 2] = [640, 360];
+const SIZE: [u32; 2] = [320, 180];
+
+/// The same where their texels and stripes are compared with pixels.
+const FINE: [u32; 2] = [640, 360];
 
 /// The recommended technique, one whose maps are slices of the view, and one of a single map.
 const TECHNIQUES: [&str; 3] = ["windows-4", "calm-4", "xna-1"];
@@ -38,15 +41,15 @@ fn show(stage: &mut Stage, artefact: Artefact) {
     }
 }
 
-fn judged(stage: &mut Stage, subject_only: bool) -> Judged {
-    let judged = stage.judge(SIZE, subject_only).expect("an adapter that tells triangles apart");
+fn judged(stage: &mut Stage, size: [u32; 2], subject_only: bool) -> Judged {
+    let judged = stage.judge(size, subject_only).expect("an adapter that tells triangles apart");
     assert_eq!(stage.problem(), None);
     judged
 }
 
 /// Share of the facing pixels that are wrong.
 fn wrong(stage: &mut Stage) -> f64 {
-    let tally = judged(stage, false).tally;
+    let tally = judged(stage, SIZE, false).tally;
     tally.share(tally.all.wrong)
 }
 
@@ -60,13 +63,13 @@ fn gpu_acne_covers_the_character_and_its_fix_clears_it() {
     for technique in TECHNIQUES {
         let mut stage = stage(technique);
         show(&mut stage, Artefact::Acne);
-        let shown = judged(&mut stage, true).tally;
+        let shown = judged(&mut stage, FINE, true).tally;
         stage.fix_artefact(Artefact::Acne);
-        let fixed = judged(&mut stage, true).tally;
+        let fixed = judged(&mut stage, FINE, true).tally;
         let [acne, acne_fixed] = [&shown, &fixed].map(|tally| tally.share(tally.all.false_shadow));
         println!("{technique}: acne shown: {acne}, fixed: {acne_fixed}");
         assert!(
-            shown.all.facing as f32 > 0.1 * (SIZE[0] * SIZE[1]) as f32,
+            shown.all.facing as f32 > 0.1 * (FINE[0] * FINE[1]) as f32,
             "{technique}: the character fills the picture: {}",
             shown.all.facing
         );
@@ -98,7 +101,7 @@ fn gpu_a_clipping_hole_breaks_off_a_shadow_whenever_it_is_shown() {
         stage.reset();
         stage.set_time(seconds);
         show(&mut stage, Artefact::ClippingHole);
-        let hole = share_of_picture(&judged(&mut stage, false), Class::Hole);
+        let hole = share_of_picture(&judged(&mut stage, SIZE, false), Class::Hole);
         let left = shadowed(&mut stage);
         println!("{seconds} s: hole {hole}, shadow left {left}");
         assert!(hole >= 0.05 && left >= 0.05, "{seconds} s: hole {hole}, shadow left {left}");
@@ -111,9 +114,9 @@ fn gpu_a_clipping_hole_shows_and_its_fix_closes_it() {
     for technique in TECHNIQUES {
         let mut stage = stage(technique);
         show(&mut stage, Artefact::ClippingHole);
-        let shown = judged(&mut stage, false);
+        let shown = judged(&mut stage, SIZE, false);
         stage.fix_artefact(Artefact::ClippingHole);
-        let fixed = judged(&mut stage, false);
+        let fixed = judged(&mut stage, SIZE, false);
         let [hole, hole_fixed] = [&shown, &fixed].map(|judged| share_of_picture(judged, Class::Hole));
         let acne = fixed.tally.share(fixed.tally.all.false_shadow);
         println!("{technique}: hole shown: {hole}, fixed: {hole_fixed}; false shadow {acne}");
@@ -145,7 +148,7 @@ fn gpu_aliasing_magnifies_the_shadow_edge_and_its_fix_sharpens_it() {
 /// Median, over the pixels at a change of the true shadow, of the pixels per texel along the worse
 /// axis.
 fn median_at_edges(stage: &mut Stage) -> f32 {
-    let mut figures = stage.pixels_per_texel_at_edges(SIZE);
+    let mut figures = stage.pixels_per_texel_at_edges(FINE);
     assert!(figures.len() > 100, "the shadow's edge is in the picture: {} pixels", figures.len());
     figures.sort_by(f32::total_cmp);
     figures[figures.len() / 2]

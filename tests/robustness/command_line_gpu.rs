@@ -55,10 +55,10 @@ impl Drop for Scratch {
     }
 }
 
-/// Runs the viewer in `folder` with small pictures.
+/// Runs the viewer in `folder` with small pictures and small maps.
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(viewer_program());
-    command.current_dir(folder).args(["--software", "--size", "64x36"]).args(arguments);
+    command.current_dir(folder).args(["--software", "--size", "64x36", "--set", "map.resolution=256"]).args(arguments);
     command.output().expect("the viewer starts")
 }
 

@@ -13,7 +13,7 @@ use super::shapes::NO_BIAS;
 use crate::support::{assets, software_gpu};
 
 /// Size of the judged pictures, in pixels.
-const SIZE: [u32; 2] = [320, 180];
+const SIZE: [u32; 2] = [240, 135];
 /// Shares of pixels of the same class that the two promise: off edges, and of all that face the light.
 const PROMISED: [f64; 2] = [0.999, 0.995];
 /// Scenes of the collection: one with cut-outs, one that morphs, and one of many instances.

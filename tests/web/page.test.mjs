@@ -301,7 +301,7 @@ for (const api of ['webgpu', 'webgl2']) {
       const views = ['truth', 'error', 'pixels_per_texel', 'maps', 'texel_grid', 'demand', 'updates', 'outside'];
       const samples = ['xna-shadow-mapping', 'headlight-real-shadow', 'terrain-vehicles', 'parallel-split'];
       // Fewer pixels and texels take less time, and need the same pipelines.
-      await viewer.page.setViewportSize({ width: 360, height: 200 });
+      await viewer.page.setViewportSize({ width: 320, height: 180 });
       const lines = ['await loaded', 'play', 'set map.resolution 512', ...views.flatMap((view) => [`view ${view}`, 'frames 1']),
         'view final', 'marks', 'frames 1', 'marks', 'marks', 'set map.edges traced', 'view traced', 'frames 1', 'view final', 'frames 1',
         'set map.edges filtered', 'set map.filter pcss', 'frames 1',
@@ -321,7 +321,7 @@ for (const api of ['webgpu', 'webgl2']) {
     });
 
     test('random actions leave the page alive and its memory flat', async () => {
-      await viewer.page.setViewportSize({ width: 480, height: 270 });
+      await viewer.page.setViewportSize({ width: 320, height: 180 });
       const seconds = LONG ? 360 : 10;
       const patience = (seconds + 300) * 1000;
       // A search for a better technique takes more memory than all else, and modules give none back. Scenes, pictures and

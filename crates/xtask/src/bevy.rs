@@ -3,19 +3,16 @@
 //! need a second one: clippy compiles the package in place of the compiler, and the documentation is written where the
 //! documentation's tests are run.
 
-use std::ffi::{OsStr, OsString};
-use std::process::{Command, ExitCode};
+use std::process::Command;
 
 use anyhow::Result;
 
 use crate::process;
+use crate::rustdoc;
 use crate::setup::{self, Purpose};
 
 /// The reason for which the package is left out.
 const NO_RUST: &str = "no Rust 1.97 or newer here, which Bevy asks for";
-
-/// The environment variable that makes this program rustdoc.
-const AS_RUSTDOC: &str = "SHADOWFIT_AS_RUSTDOC";
 
 /// The least Rust that builds Bevy 0.20.1: it states 1.97.1, and is content with what came before that.
 const LEAST: (u32, u32) = (1, 97);
@@ -37,42 +34,12 @@ pub(crate) fn check_and_test() -> Result<()> {
     } else {
         println!("lints of bevy-shadowfit were not looked at: its Rust has no clippy");
     }
-    tests.env("RUSTDOC", std::env::current_exe()?).env(AS_RUSTDOC, "1");
+    rustdoc::write_documentation(&mut tests)?;
     if !machine.can_test_window() {
         println!("SKIPPED: the window of bevy-shadowfit: no Xvfb, ImageMagick's import or Vulkan driver here");
         tests.args(["--", "--skip", "real_window"]);
     }
     process::run(process::with_driver_for_tests(&mut tests))
-}
-
-/// Acts as rustdoc if this program was started in its place: where cargo tests the examples in the documentation, writes
-/// the documentation first, and takes its warnings for errors.
-pub(crate) fn as_rustdoc() -> Option<ExitCode> {
-    std::env::var_os(AS_RUSTDOC)?;
-    let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
-    let runs = documenting(&arguments).into_iter().chain([arguments]);
-    for arguments in runs {
-        match Command::new("rustdoc").args(arguments).status() {
-            Ok(status) if status.success() => {}
-            Ok(status) => {
-                return Some(ExitCode::from(status.code().and_then(|code| code.try_into().ok()).unwrap_or(1)));
-            }
-            Err(error) => {
-                eprintln!("error: rustdoc does not start: {error}");
-                return Some(ExitCode::FAILURE);
-            }
-        }
-    }
-    Some(ExitCode::SUCCESS)
-}
-
-/// The arguments that write the documentation, from those that test it; `None` from others.
-fn documenting(arguments: &[OsString]) -> Option<Vec<OsString>> {
-    let is_test = |argument: &&OsString| argument.as_os_str() == OsStr::new("--test");
-    arguments.iter().find(is_test)?;
-    let folder = process::target_folder().join("doc").into_os_string();
-    let more = ["--out-dir".into(), folder, "-D".into(), "warnings".into()];
-    Some(arguments.iter().filter(|argument| !is_test(argument)).cloned().chain(more).collect())
 }
 
 /// A Rust that builds Bevy.
@@ -134,15 +101,6 @@ fn version(printed: &str) -> Option<(u32, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_documentation_is_written_from_the_arguments_of_its_tests() {
-        let arguments = |text: &str| text.split(' ').map(OsString::from).collect::<Vec<_>>();
-        let all = documenting(&arguments("--test src/lib.rs -L deps")).unwrap();
-        assert_eq!(all[..4], arguments("src/lib.rs -L deps --out-dir"));
-        assert_eq!(all[5..], arguments("-D warnings"));
-        assert_eq!(documenting(&arguments("-vV")), None);
-    }
 
     #[test]
     fn versions_are_read_from_what_rustc_prints() {

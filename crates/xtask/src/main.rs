@@ -19,6 +19,7 @@ mod machine;
 mod maths;
 mod process;
 mod run;
+mod rustdoc;
 mod setup;
 mod source;
 mod test;
@@ -100,7 +101,7 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    if let Some(code) = bevy::as_rustdoc() {
+    if let Some(code) = rustdoc::as_rustdoc() {
         return code;
     }
     process::end_children_on_interrupt();

@@ -8,6 +8,10 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
+/// The environment variable that lets lints and documentation be checked where tests are compiled, as `.ci/run` wants it:
+/// `cargo clippy` and `cargo doc` each check all dependencies, which tests then compile once more.
+const LINT_TESTS: &str = "SHADOWFIT_LINT_TESTS";
+
 /// The exit code after an interrupt.
 const INTERRUPTED: i32 = 130;
 
@@ -59,6 +63,9 @@ pub(crate) fn cargo(subcommand: &str) -> Command {
 pub(crate) fn cargo_here(subcommand: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.arg(subcommand);
+    if lints_tests() {
+        with_lints(&mut command);
+    }
     command
 }
 
@@ -148,6 +155,11 @@ pub(crate) fn has_target(target: &str) -> bool {
 /// Where cargo puts what it builds.
 pub(crate) fn target_folder() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
+/// Whether lints and documentation are checked where tests are compiled.
+pub(crate) fn lints_tests() -> bool {
+    std::env::var(LINT_TESTS).is_ok_and(|value| !value.is_empty() && value != "0")
 }
 
 /// Lets clippy compile the packages of the workspace in place of the compiler, with warnings as errors, as `cargo clippy` does

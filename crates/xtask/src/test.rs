@@ -15,6 +15,7 @@ use crate::bevy;
 use crate::ci::portability;
 use crate::machine::{Machine, Part};
 use crate::process;
+use crate::rustdoc;
 use crate::setup::{self, Purpose};
 
 /// The environment variable with which the golden tests write what they would compare.
@@ -102,15 +103,21 @@ pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
     let suite = Suite { tier, features: setup::features(&machine), left_out };
     if tier != Tier::Quick {
         // The tests that start a program would otherwise start the one of an earlier build.
-        let programs = PROGRAMS.iter().flat_map(|name| ["--example", name]);
-        process::run(process::cargo("build").arg("--workspace").args(programs).args(suite.features))?;
+        let mut programs = process::cargo("build");
+        programs.arg("--workspace").args(suite.features);
+        if process::lints_tests() {
+            programs.args(["--examples", "--benches"]);
+        } else {
+            programs.args(PROGRAMS.iter().flat_map(|name| ["--example", name]));
+        }
+        process::run(&mut programs)?;
     }
     if !names.is_empty() {
         return suite.named(names);
     }
     let mut report = Report::default();
     if tier != Tier::Quick {
-        report.run("doc tests", || process::run(&mut suite.doc_tests()));
+        report.run("doc tests", || process::run(&mut suite.doc_tests()?));
     }
     report.run("tests that share a device", || process::run(&mut suite.sharing()));
     report.run("all other tests", || suite.others());
@@ -162,10 +169,13 @@ impl Suite {
         targets
     }
 
-    fn doc_tests(&self) -> Command {
+    fn doc_tests(&self) -> Result<Command> {
         let mut command = process::cargo("test");
         command.args(["--workspace", "--doc", "--no-fail-fast"]).args(self.features);
-        command
+        if process::lints_tests() {
+            rustdoc::write_documentation(&mut command)?;
+        }
+        Ok(command)
     }
 
     /// The tests that share a device or the texts of WGSL, in one process per binary.
@@ -177,6 +187,9 @@ impl Suite {
     fn in_one_process(&self, parts: &[&str]) -> Command {
         let mut command = process::cargo("test");
         command.args(self.targets()).arg("--quiet").arg("--").args(parts).args(["--skip", OWN_PROCESS]);
+        // Each of them waits for the driver's threads half of the time, or for its own.
+        let threads = 2 * std::thread::available_parallelism().map_or(1, usize::from);
+        command.arg(format!("--test-threads={threads}"));
         command.args(self.left_out.iter().flat_map(|tests| ["--skip", tests.name_part]));
         if self.tier == Tier::All {
             command.arg("--include-ignored");

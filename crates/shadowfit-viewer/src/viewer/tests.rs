@@ -2,7 +2,7 @@
 //! comparison, artefacts and tuning as commands ask for them.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use egui::{Pos2, RawInput, Rect, vec2};
@@ -49,8 +49,8 @@ fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {
     stage.read_depths();
     let store = store.map(|path| Store::at(path.to_owned()));
     let viewer = Viewer::new(stage, wgpu::TextureFormat::Rgba8Unorm, start, store);
-    // With two points per pixel each way, a picture takes the software driver a quarter of the time.
-    viewer.interface.context.set_pixels_per_point(0.5);
+    // With four points per pixel each way, the software driver draws a sixteenth of the pixels.
+    viewer.interface.context.set_pixels_per_point(0.25);
     viewer
 }
 
@@ -74,17 +74,20 @@ fn frame_of(viewer: &mut Viewer, events: Vec<egui::Event>, seconds: f32) {
     let _ = viewer.frame(input, seconds);
 }
 
-/// Between frames that wait for a thread: drawing on the CPU would take its time away.
-const REST: Duration = Duration::from_millis(40);
+/// Draws a frame while a thread is waited for, and leaves it most of the time: drawing takes the CPU away from it.
+fn wait(viewer: &mut Viewer) {
+    let start = Instant::now();
+    frame(viewer);
+    std::thread::sleep((3 * start.elapsed()).max(Duration::from_millis(40)));
+}
 
 /// Draws frames until what is under way has ended, whatever comes of it.
 fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
     for _ in 0..6000 {
-        frame(viewer);
+        wait(viewer);
         if is_over(viewer) {
             return;
         }
-        std::thread::sleep(REST);
     }
     panic!("it goes on and on");
 }
@@ -92,12 +95,11 @@ fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
 /// Draws frames until something is so.
 fn until(viewer: &mut Viewer, what: &str, is_so: impl Fn(&Viewer) -> bool) {
     for _ in 0..6000 {
-        frame(viewer);
+        wait(viewer);
         assert!(viewer.failure.is_none(), "{:?}", viewer.failure);
         if is_so(viewer) {
             return;
         }
-        std::thread::sleep(REST);
     }
     panic!("{what} never happens");
 }
