@@ -12,6 +12,9 @@ use anyhow::{Context, Result};
 /// `cargo clippy` and `cargo doc` each check all dependencies, which tests then compile once more.
 const LINT_TESTS: &str = "SHADOWFIT_LINT_TESTS";
 
+/// Cargo's environment variable for a program that compiles the packages of the workspace.
+const WRAPPER: &str = "RUSTC_WORKSPACE_WRAPPER";
+
 /// The exit code after an interrupt.
 const INTERRUPTED: i32 = 130;
 
@@ -162,10 +165,15 @@ pub(crate) fn lints_tests() -> bool {
     std::env::var(LINT_TESTS).is_ok_and(|value| !value.is_empty() && value != "0")
 }
 
+/// Lets the compiler compile the packages of the workspace, whatever is linted elsewhere.
+pub(crate) fn without_lints(command: &mut Command) -> &mut Command {
+    command.env_remove(WRAPPER)
+}
+
 /// Lets clippy compile the packages of the workspace in place of the compiler, with warnings as errors, as `cargo clippy` does
 /// it: lints then need no second build of all dependencies.
 pub(crate) fn with_lints(command: &mut Command) -> &mut Command {
-    command.env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver").env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings")
+    command.env(WRAPPER, "clippy-driver").env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings")
 }
 
 /// Sets up Mesa's software driver for tests. Compiling a shader takes it longer than drawing a small picture with it, so

@@ -54,7 +54,8 @@ fn settings() -> impl Strategy<Value = CacheSettings> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    // More than the usual 256, and by night as many as all others.
+    #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases.max(500)))]
 
     #[test]
     fn maps_hold_what_maps_drawn_anew_hold_whatever_happened_before(

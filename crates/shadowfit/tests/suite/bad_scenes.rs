@@ -278,10 +278,23 @@ fn have(maps: &Maps, name: &str) -> bool {
 }
 
 #[test]
+fn each_bad_number_gives_an_error_or_finite_maps_and_so_does_each_in_some_fit() {
+    assert_refused_or_finite(|fit, setter, value| (fit + setter + value).is_multiple_of(3));
+}
+
+#[test]
+#[ignore = "the full product of numbers and fits: cargo xtask test --all"]
 fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
-    for maps in every_maps() {
-        for (name, set) in SETTERS.into_iter().filter(|(name, _)| have(&maps, name)) {
-            for value in VALUES {
+    assert_refused_or_finite(|_, _, _| true);
+}
+
+/// Asserts that the numbers that a function picks, by the indices of the fit, the place and the number, give an error or
+/// finite maps.
+fn assert_refused_or_finite(is_picked: impl Fn(usize, usize, usize) -> bool) {
+    for (fit, maps) in every_maps().into_iter().enumerate() {
+        for (setter, (name, set)) in SETTERS.into_iter().enumerate().filter(|(_, (name, _))| have(&maps, name)) {
+            let values = VALUES.into_iter().enumerate().filter(|(value, _)| is_picked(fit, setter, *value));
+            for (_, value) in values {
                 let mut inputs = good();
                 inputs.settings.maps = maps;
                 inputs.settings.fit.casters = CasterPolicy::PerObject;

@@ -72,11 +72,11 @@ fn acne(plane: &Plane, filter: &Filter, texel: DVec2, offset: f64, depth: f64) -
     shadowed.count() as f64 / positions().count() as f64
 }
 
-/// Runs a proof for every fit, filter and slope.
+/// Runs a proof for every fit and filter, and every second slope.
 fn every_case(prove: impl Fn(&LightProjection, &Filter, &Plane, &str)) {
     for fit in fits() {
         for filter in filters() {
-            for (theta, azimuth) in slopes() {
+            for (theta, azimuth) in slopes().step_by(2) {
                 let place = format!(
                     "{}, texel {}, {:.1} degrees at {azimuth:.1}",
                     filter.name,

@@ -40,7 +40,8 @@ pub(super) fn no_std(_: &Machine) -> Result<()> {
         if target {
             command.args(["--target", BARE_TARGET]);
         }
-        process::run(&mut command)?;
+        // Without all features some lints ask for what the others do not allow.
+        process::run(process::without_lints(&mut command))?;
     }
     if target {
         println!("checked with no feature, each alone and all together, for {BARE_TARGET}");
@@ -111,7 +112,7 @@ fn in_copy_of_the_core(arguments: &[&str]) -> Result<()> {
     let [subcommand, rest @ ..] = arguments else { return Ok(()) };
     let mut command = process::cargo_here(subcommand);
     command.args(rest).current_dir(target_folder().join(COPY_OF_THE_CORE));
-    process::run(command.env("CARGO_TARGET_DIR", target_folder()))
+    process::run(process::without_lints(&mut command).env("CARGO_TARGET_DIR", target_folder()))
 }
 
 /// Checks the core with the oldest Rust that it promises, which is older than the workspace's.

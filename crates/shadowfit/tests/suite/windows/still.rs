@@ -131,6 +131,9 @@ fn resized(before: &FittedMaps, now: &FittedMaps) -> usize {
 /// Frames of search with effort after what is visible is known first, and one for the estimate from boxes.
 const BEGINNING: u16 = 6;
 
+/// Frames of the walk, in which most windows change their size several times.
+const FRAMES: u16 = 150;
+
 #[test]
 fn at_most_one_window_but_the_last_changes_its_size_in_a_frame() {
     for (technique, is_seen, light) in [
@@ -146,13 +149,13 @@ fn at_most_one_window_but_the_last_changes_its_size_in_a_frame() {
         };
         let mut before = run.frame(&at(0), light);
         let mut changes = 0;
-        for frame in 1..250 {
+        for frame in 1..FRAMES {
             let now = run.frame(&at(frame), light);
             let resized = resized(&before, &now);
             assert!(frame <= BEGINNING || resized <= 1, "{resized} sizes changed in frame {frame}");
             changes += usize::from(frame > BEGINNING) * resized;
             before = now;
         }
-        println!("{changes} changes of size in 250 frames");
+        println!("{changes} changes of size in {FRAMES} frames");
     }
 }
