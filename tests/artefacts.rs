@@ -13,7 +13,7 @@ use crate::support::software_gpu;
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [320, 180];
 
-/// The same where their texels and stripes are compared with pixels.
+/// Size of pictures whose texels or stripes are compared with pixels.
 const FINE: [u32; 2] = [640, 360];
 
 /// The recommended technique, one whose maps are slices of the view, and one of a single map.

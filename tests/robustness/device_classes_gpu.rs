@@ -69,8 +69,7 @@ const SINGLE: usize = 3;
 /// The class that can do least: WebGL2's limits.
 const LEAST: usize = 5;
 
-/// Whether the class is the one that can do least, or the one whose turn it is: what is drawn on all of them is drawn by
-/// the same shaders.
+/// Returns true for the class with the least limits and for one other class per thing. All classes share their shaders.
 fn in_turn(class: usize, thing: usize) -> bool {
     class == LEAST || thing % LEAST == class
 }

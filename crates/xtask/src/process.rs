@@ -165,7 +165,7 @@ pub(crate) fn lints_tests() -> bool {
     std::env::var(LINT_TESTS).is_ok_and(|value| !value.is_empty() && value != "0")
 }
 
-/// Lets the compiler compile the packages of the workspace, whatever is linted elsewhere.
+/// Lets rustc compile the packages of the workspace even if clippy compiles them for other commands.
 pub(crate) fn without_lints(command: &mut Command) -> &mut Command {
     command.env_remove(WRAPPER)
 }

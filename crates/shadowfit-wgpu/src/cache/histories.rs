@@ -54,7 +54,7 @@ fn settings() -> impl Strategy<Value = CacheSettings> {
 }
 
 proptest! {
-    // More than the usual 256, and by night as many as all others.
+    // At least 500 cases; PROPTEST_CASES raises the number by night.
     #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases.max(500)))]
 
     #[test]

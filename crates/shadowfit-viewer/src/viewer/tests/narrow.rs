@@ -14,7 +14,7 @@ fn draw(viewer: &mut Viewer, size: [f32; 2], events: Vec<Event>) -> Vec<(String,
     draw_after(viewer, size, FRAME, events)
 }
 
-/// The same so many seconds after the frame before.
+/// Draws a frame as [`draw`] does, a number of seconds after the previous frame.
 fn draw_after(viewer: &mut Viewer, size: [f32; 2], seconds: f32, events: Vec<Event>) -> Vec<(String, Role, Rect)> {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(size[0], size[1])));
     let input = RawInput { screen_rect, time: Some(viewer.clock), events, ..Default::default() };
@@ -139,7 +139,7 @@ fn gpu_every_control_of_the_panel_is_reached_by_scrolling() {
         let step = 0.4 * size[1];
         for _ in 0..(2500.0 / step) as u32 {
             let controls = draw(&mut viewer, size, vec![Event::PointerMoved(inside), wheel(-step)]);
-            // A second, in which the panel comes to rest.
+            // One second: the panel comes to rest.
             (0..2).for_each(|_| drop(draw_after(&mut viewer, size, 0.5, Vec::new())));
             assert_inside(&controls, size);
             let is_whole = |rect: &Rect| rect.top() >= 0.0 && rect.bottom() <= size[1];
