@@ -131,7 +131,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
             canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
         }
         if viewer.is_waiting() {
-            // A software driver draws on the cores that the thread needs whose result is waited for.
+            // A software driver draws on the cores that the awaited thread needs.
             std::thread::sleep((3 * begin.elapsed()).max(Duration::from_millis(5)));
         }
     }

@@ -41,7 +41,7 @@ pub(crate) fn as_rustdoc() -> Option<ExitCode> {
     Some(ExitCode::SUCCESS)
 }
 
-/// The arguments that write the documentation, from those that test it; `None` from others.
+/// Returns the arguments that write the documentation, given the arguments that test it. Returns `None` for all others.
 fn documenting(arguments: &[OsString]) -> Option<Vec<OsString>> {
     let is_test = |argument: &&OsString| argument.as_os_str() == OsStr::new("--test");
     arguments.iter().find(is_test)?;

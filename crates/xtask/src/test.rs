@@ -187,7 +187,7 @@ impl Suite {
     fn in_one_process(&self, parts: &[&str]) -> Command {
         let mut command = process::cargo("test");
         command.args(self.targets()).arg("--quiet").arg("--").args(parts).args(["--skip", OWN_PROCESS]);
-        // Each of them waits for the driver's threads half of the time, or for its own.
+        // Each test waits half of its time, for the driver's threads or for its own.
         let threads = 2 * std::thread::available_parallelism().map_or(1, usize::from);
         command.arg(format!("--test-threads={threads}"));
         command.args(self.left_out.iter().flat_map(|tests| ["--skip", tests.name_part]));

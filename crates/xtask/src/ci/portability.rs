@@ -25,9 +25,6 @@ const FEATURES: [&str; 6] = ["", "alloc", "serde", "bytemuck", "mint", "alloc,se
 /// The package that hashes fits.
 const DETERMINISM: &str = "shadowfit-determinism";
 
-/// Optimises the core little where it is built for a few fits alone: bits are the same, and that takes half of the time.
-const QUICK_CORE: [&str; 2] = ["--config", "profile.dev.package.shadowfit.opt-level=1"];
-
 /// The folder, in the target folder, of a workspace with a lock file of its own.
 const COPY_OF_THE_CORE: &str = "oldest-glam";
 
@@ -56,14 +53,12 @@ pub(super) fn no_std(_: &Machine) -> Result<()> {
 /// Compares the hash of the fits without SIMD and in WebAssembly with the pinned one; the ordinary tests do so on this
 /// machine as it is.
 pub(super) fn determinism(_: &Machine) -> Result<()> {
-    let package = ["--package", DETERMINISM];
-    process::run(process::cargo("test").args(package).args(["--features", "scalar-math"]).args(QUICK_CORE))?;
+    process::run(process::cargo("test").args(["--package", DETERMINISM, "--features", "scalar-math"]))?;
     if !has_target(WASM_TARGET) {
         println!("same bits without SIMD; not built for WebAssembly: rustup has no {WASM_TARGET}");
         return Ok(());
     }
-    let library = ["--lib", "--target", WASM_TARGET];
-    process::run(process::cargo("build").args(package).args(library).args(QUICK_CORE))?;
+    process::run(process::cargo("build").args(["--package", DETERMINISM, "--lib", "--target", WASM_TARGET]))?;
     if !process::succeeds(Command::new("node").arg("--version")) {
         println!("same bits without SIMD; built for WebAssembly, but not run there: node is missing");
         return Ok(());
@@ -78,9 +73,9 @@ pub(super) fn determinism(_: &Machine) -> Result<()> {
 pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
     // Both packages in each command: cargo would compile the core once more for the engine's features alone.
     let packages = ["--package", DETERMINISM, "--package", "engine", "--all-features"];
-    let oldest = with_oldest_glam(&[&["build"], &packages[..], &QUICK_CORE].concat())?;
+    let oldest = with_oldest_glam(&[&["build"], &packages[..]].concat())?;
     process::run(&mut Command::new(target_folder().join("debug/engine")))?;
-    in_copy_of_the_core(&[&["test"], &packages[..], &["--lib", "--tests"], &QUICK_CORE].concat())?;
+    in_copy_of_the_core(&[&["test"], &packages[..], &["--lib", "--tests"]].concat())?;
     println!("with glam {oldest} the core fits with the same bits, and an engine that pins it runs");
     Ok(())
 }

@@ -131,7 +131,7 @@ fn resized(before: &FittedMaps, now: &FittedMaps) -> usize {
 /// Frames of search with effort after what is visible is known first, and one for the estimate from boxes.
 const BEGINNING: u16 = 6;
 
-/// Frames of the walk. Most windows change their size several times during it.
+/// Frames of the walk. Windows change their size five times or more during it.
 const FRAMES: u16 = 150;
 
 #[test]
