@@ -432,6 +432,8 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
   });
 
   test('a link restores all of its state', async () => {
+    // Random actions before may have copied links of their own.
+    await viewer.page.evaluate(() => navigator.clipboard.writeText(''));
     const there = await viewer.play(['open plain', 'await loaded', 'play', 'technique stable-4', 'set bias.constant 2.5', 'set map.resolution 1024',
       'set light.azimuth 200', 'look 3 4 12 TO 0 1 0', 'view maps', 'compare on', 'frames 2', 'copy-link']);
     const link = await viewer.until(async () => {

@@ -106,7 +106,8 @@ fn with_oldest_glam(arguments: &[&str]) -> Result<String> {
 fn in_copy_of_the_core(arguments: &[&str]) -> Result<()> {
     let [subcommand, rest @ ..] = arguments else { return Ok(()) };
     let mut command = process::cargo_here(subcommand);
-    command.args(rest).current_dir(target_folder().join(COPY_OF_THE_CORE));
+    // Cargo would warn of each package with a profile of its own that is not in the copy.
+    command.args(rest).arg("--quiet").current_dir(target_folder().join(COPY_OF_THE_CORE));
     process::run(process::without_lints(&mut command).env("CARGO_TARGET_DIR", target_folder()))
 }
 
