@@ -4,7 +4,7 @@
 //
 // `cargo xtask web --test` runs it. Environment: PAGE is the address of the page, NATIVE the folder with the files that
 // `tour.txt` wrote on this machine, BROWSER the browser, ASSETS a folder of hostile files that may be absent. LONG=1
-// makes the random actions take ten minutes.
+// makes the random actions take ten minutes with each API.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync, existsSync } from 'node:fs';
@@ -381,10 +381,10 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
   });
 
   test('settings are kept from one visit to the next', async () => {
-    // The last movement of the test before may not be on show yet.
+    // The mouse of the previous test may still move the camera in the next frame.
     await viewer.play(['frames 3']);
     await viewer.page.evaluate(() => window.viewer.tell('save'));
-    // The viewer answers in turn, so the settings are kept once it has.
+    // Messages are answered in order: with this answer the page has kept the settings.
     const start = await viewer.facts();
     assert.ok(await viewer.page.evaluate(() => localStorage.getItem('shadowfit viewer')));
     await viewer.keepTasks();
@@ -432,7 +432,7 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
   });
 
   test('a link restores all of its state', async () => {
-    // Random actions before may have copied links of their own.
+    // Random actions may have copied another link before.
     await viewer.page.evaluate(() => navigator.clipboard.writeText(''));
     const there = await viewer.play(['open plain', 'await loaded', 'play', 'technique stable-4', 'set bias.constant 2.5', 'set map.resolution 1024',
       'set light.azimuth 200', 'look 3 4 12 TO 0 1 0', 'view maps', 'compare on', 'frames 2', 'copy-link']);

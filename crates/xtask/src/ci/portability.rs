@@ -106,7 +106,7 @@ fn with_oldest_glam(arguments: &[&str]) -> Result<String> {
 fn in_copy_of_the_core(arguments: &[&str]) -> Result<()> {
     let [subcommand, rest @ ..] = arguments else { return Ok(()) };
     let mut command = process::cargo_here(subcommand);
-    // Cargo would warn of each package with a profile of its own that is not in the copy.
+    // The copied profiles name packages that are not in the copy, and cargo would warn about each.
     command.args(rest).arg("--quiet").current_dir(target_folder().join(COPY_OF_THE_CORE));
     process::run(process::without_lints(&mut command).env("CARGO_TARGET_DIR", target_folder()))
 }
