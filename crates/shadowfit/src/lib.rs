@@ -182,10 +182,12 @@ mod view {
 /// The light: its axes, the texel lines across it, and what lies over an outline toward it.
 mod light {
     mod axes;
+    mod column;
     pub(crate) mod grid;
     mod outline;
 
     pub(crate) use axes::{Light, LightAxes, Roll, is_same_direction, is_vertical};
+    pub(crate) use column::Column;
     pub(crate) use outline::{Outline, OutlineScratch};
 }
 

@@ -95,16 +95,20 @@ impl Bias {
     /// side, which is conservative against acne. Settings that are not finite give biases that are
     /// not finite; [`Self::checked`] refuses those.
     ///
-    /// Of the [steps](BiasSettings::depth_steps) only what they are coarser than those of a 32-bit float counts: the
-    /// rounding of those is a part of the constant in texels.
+    /// [`BiasSettings::depth_steps`] of 1 covers the rounding of stored depths and of f32 positions wherever the map
+    /// and the receivers' vertices are. Up to its size, the constant in texels covers the rounding of positions too.
     pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &LightProjection) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
-        let steps = settings.depth_steps * (depth_step(storage, 1.0) - depth_step(DepthStorage::Float32, 1.0));
+        let rounding = settings.depth_steps * reach::rounding(fit) as f32;
+        let constant = settings.constant * texel;
+        let constant = constant + (rounding - constant.abs()).max(0.0);
+        // A surface that is shifted across the light is off by its slope times the shift.
+        let shifted = |bias: f32, shift: f32| if bias > 0.0 { bias + shift } else { bias };
         Self {
-            constant_depth: settings.constant * texel / fit.depth_range + steps,
-            slope_depth: settings.slope * texel / fit.depth_range,
-            normal_offset: settings.normal_offset * texel,
-            receiver_plane: settings.receiver_plane,
+            constant_depth: constant / fit.depth_range + settings.depth_steps * depth_step(storage, 1.0),
+            slope_depth: shifted(settings.slope * texel, rounding) / fit.depth_range,
+            normal_offset: shifted(settings.normal_offset * texel, rounding),
+            receiver_plane: shifted(settings.receiver_plane, rounding / fit.texel_size.min_element()),
         }
     }
 

@@ -33,11 +33,11 @@ pub struct Reach {
 /// sampler texture coordinates, to the nearest 1/256 of a texel.
 pub(crate) const HARDWARE_SNAP: f32 = 1.0 / 256.0;
 
-/// Roundings of 2⁻²⁴ by which the depth that a map stores for a point can differ from the depth
-/// that it is compared with, as a multiple of the farthest distance from the origin in the map's
-/// box: four operations a term, in each of two transforms, on terms that sum to at most twice that
-/// distance.
-const PRECISION_ROUNDINGS: f64 = 16.0;
+/// Roundings of 2⁻²⁴ by which the depth that a map stores for a point can differ from the depth that it is compared
+/// with, as a multiple of the farthest distance from the origin in the map's box, and again of that of the vertices:
+/// four operations a term, on terms that sum to at most twice that distance. Vertices of the stored surface are
+/// transformed where they are, and the receiver inside the map.
+const PRECISION_ROUNDINGS: f64 = 8.0;
 
 impl Reach {
     /// One comparison with the nearest texel: E = 0.5.
@@ -138,8 +138,9 @@ impl Technique {
     }
 }
 
-/// Greatest f32 rounding error of a position in the map's box, in metres.
+/// Greatest f32 rounding error between a receiver's position in the map's box and the surface that the map stores
+/// there, in metres.
 pub(crate) fn rounding(fit: &LightProjection) -> f64 {
-    let distances = fit.corners().map(|corner| checks::length(corner.as_dvec3()));
-    PRECISION_ROUNDINGS * UNIT * distances.into_iter().fold(0.0, f64::max)
+    let farthest = fit.farthest_corner();
+    PRECISION_ROUNDINGS * UNIT * (farthest + farthest.max(f64::from(fit.vertex_distance)))
 }

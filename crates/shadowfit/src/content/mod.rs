@@ -358,27 +358,44 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// Passes on each receiver's box that reaches into any of the views, with a state: boxes are passed on where
-    /// `is_new` of the bounds of their run is true.
+    /// Greatest distance from the origin of a corner of the receivers that the views see in a range of view depths, in
+    /// metres, and no less than `least`.
+    pub(crate) fn farthest_seen(&self, range: Range, least: f64) -> f64 {
+        let squared = |min: DVec3, max: DVec3| {
+            let corner = min.abs().max(max.abs());
+            corner.dot(corner)
+        };
+        let mut most = least * least;
+        let is_farther = |most: &f64, min, max| squared(min, max) > *most;
+        self.each_seen_receiver(range, &mut most, is_farther, |most, min, max| *most = squared(min, max).max(*most));
+        libm::sqrt(most)
+    }
+
+    /// Passes on each receiver's box that reaches into any of the views in a range of view depths, with a state: boxes
+    /// are passed on where `is_new` of the bounds of their run is true.
     pub(crate) fn each_seen_receiver<S>(
         &self,
+        range: Range,
         state: &mut S,
         is_new: impl Fn(&S, DVec3, DVec3) -> bool,
         mut visit: impl FnMut(&mut S, DVec3, DVec3),
     ) {
+        let (near, far) = (f64::from(range.near), f64::from(range.far));
         for (run, min, max) in self.receiver_groups.runs() {
             if !is_new(state, min, max) {
                 continue;
             }
-            for i in run.filter(|i| self.depths().any(|depths| depths[*i].x <= depths[*i].y)) {
+            let is_in = |depths: DVec2| depths.x <= depths.y.min(far) && depths.y >= near;
+            for i in run.filter(|i| self.depths().any(|depths| is_in(depths[*i]))) {
                 if let Some((min, max)) = self.receiver(i) {
                     visit(state, min, max);
                 }
             }
         }
-        for view in self.views() {
+        for view in self.standing.iter().flat_map(|_| self.views()) {
             let is_new = |state: &S, _, min, max| is_new(state, min, max);
-            self.each_standing_seen((&view, view.near, view.far), state, is_new, |state, _, _, (min, max)| {
+            let (near, far) = (view.near.max(near), view.far.min(far));
+            self.each_standing_seen((&view, near, far), state, is_new, |state, _, _, (min, max)| {
                 visit(state, min, max);
             });
         }

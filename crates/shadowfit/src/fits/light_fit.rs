@@ -49,6 +49,10 @@ pub struct LightProjection {
     pub texel_size: Vec2,
     /// Distance between the near and the far plane, in metres.
     pub depth_range: f32,
+    /// Greatest distance from [`Self::origin`] of a corner of the receivers' boxes in view, in metres, and 0 if it is
+    /// not known. Vertices there are rounded by a share of it, and with them all of a large triangle that reaches into
+    /// the map, so [biases](crate::bias) cover it.
+    pub vertex_distance: f32,
     /// Width and height of the map, in texels.
     pub resolution: UVec2,
     /// Depth range of the clip space.
@@ -123,6 +127,7 @@ impl LightProjection {
             box_max: box_max.as_vec3(),
             texel_size: (size.truncate() / resolution.as_dvec2()).as_vec2(),
             depth_range: volume.depth_range as f32,
+            vertex_distance: volume.vertex_distance as f32,
             resolution,
             depth,
             set_by: volume.set_by,
@@ -138,6 +143,9 @@ impl LightProjection {
         let moved = self.project(new_origin).as_vec3();
         let mut fit = *self;
         fit.origin = new_origin;
+        if fit.vertex_distance > 0.0 {
+            fit.vertex_distance += checks::length(new_origin - self.origin) as f32;
+        }
         fit.light_from_world.w_axis = moved.extend(1.0);
         (fit.clip_from_world, fit.uv_from_world) = products(&fit.light_from_world, &fit.clip_from_light, fit.depth);
         fit
@@ -197,6 +205,12 @@ impl LightProjection {
         let (mut min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
         min.z = max.z - f64::from(self.depth_range);
         (min, max)
+    }
+
+    /// Distance from [`Self::origin`] of the farthest corner of the box between the near and the far plane, in metres.
+    pub(crate) fn farthest_corner(&self) -> f64 {
+        let ((min, max), origin) = (self.clip_box(), self.light_from_world.w_axis.truncate().as_dvec3());
+        checks::length((min - origin).abs().max((max - origin).abs()))
     }
 
     /// Centre and half extents in light space of a box relative to [`Self::origin`], from its own, in f64.

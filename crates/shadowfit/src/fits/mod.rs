@@ -105,6 +105,7 @@ fn fit_whole(
     let range = Range { near: f32::MIN, far: distance };
     let mut volume = fit_map(content, light, rule, range, Snapping::Tight, points)?;
     volume.stabilise_depth(content.origin, None, 1.0);
+    volume.vertex_distance = content.farthest_seen(range, 0.0);
     LightProjection::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::checks::{ROUNDING, floor};
+use crate::base::checks::{self, ROUNDING, floor};
 use crate::fits::FitRule;
 use crate::light::LightAxes;
 use crate::light::grid::{Grid, anchor, quantised, stabilised_depth};
@@ -43,6 +43,8 @@ pub(crate) struct Volume {
     pub(crate) light_z: f64,
     /// Distance between near and far plane, in metres.
     pub(crate) depth_range: f64,
+    /// [`LightProjection::vertex_distance`](crate::LightProjection::vertex_distance).
+    pub(crate) vertex_distance: f64,
     /// What set the planes -x, +x, -y, +y, far, near.
     pub(crate) set_by: [Constraint; 6],
     pub(crate) is_empty: bool,
@@ -59,7 +61,7 @@ impl Volume {
         set_by: [Constraint; 6],
         is_empty: bool,
     ) -> Self {
-        Self { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
+        Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, set_by, is_empty, grid: None }
     }
 
     /// The box of a map on the world's grid, relative to an origin.
@@ -125,6 +127,11 @@ impl Volume {
             (self.min.z, self.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
             self.light_at_near_plane();
         }
+    }
+
+    /// Distance of the farthest corner of the box from the fit's origin, in metres.
+    pub(crate) fn farthest_corner(&self) -> f64 {
+        checks::length(self.min.abs().max(self.max.abs()))
     }
 
     /// Puts the light in the near plane, with the depth range from there to the far plane.

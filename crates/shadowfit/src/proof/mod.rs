@@ -230,8 +230,7 @@ fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> ([DVec2;
     let from = (moved + axes.project(offset)).truncate();
     let (low, high) = (min.truncate() - from, max.truncate() - from);
     let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
-    let farthest = (min - moved).abs().max((max - moved).abs());
-    (corners.map(|(x, y)| DVec2::new(x, y)), checks::length(farthest))
+    (corners.map(|(x, y)| DVec2::new(x, y)), fit.farthest_corner())
 }
 
 /// How far around the outline casters are read, in metres: the reach of the filter with the

@@ -8,7 +8,7 @@ use crate::base::{Boxes, FitError, moved};
 use crate::content::Content;
 use crate::demand::grid::Plane;
 use crate::fits::{Constraint, Depth, FitRule};
-use crate::light::LightAxes;
+use crate::light::{Column, LightAxes};
 use crate::view::Range;
 
 /// Boxes as the light sees them, those of the lists three elements each: least and greatest x and y, and z.
@@ -50,7 +50,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
             content,
             axes,
             receivers: for_receivers,
-            casters: if lists[1].is_some() { for_casters } else { for_receivers },
+            casters: for_casters,
             min: DVec3::MAX,
             max: DVec3::MIN,
             is_empty: false,
@@ -100,45 +100,110 @@ impl<'a, 'b> Shadows<'a, 'b> {
         (min - pad, max + pad)
     }
 
-    /// The depths of everything over a rectangle.
+    /// The depths of the parts of all boxes that lie over a rectangle.
     pub(super) fn depth(&self, (min, max): (DVec2, DVec2), rule: &FitRule) -> WindowDepth {
-        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        let [receivers, casters] = self.content.lists();
+        let mut over = Over::new(&self.axes, min, max);
         if !self.is_empty {
-            over(self.receivers, min, max, |z| (low, high) = (low.min(z.x), high.max(z.y)));
-            (low, high) = self.standing((min, max), (low, high));
+            over.add_list(receivers, self.receivers, self.content.origin);
+            over.add_standing(self.content);
         }
         let (mut far_by, mut near_by) = (Constraint::Receivers, Constraint::Receivers);
-        if low > high {
-            (low, high) = (self.min.z, self.max.z);
+        if over.low > over.high {
+            (over.low, over.high) = (self.min.z, self.max.z);
             (far_by, near_by) = (Constraint::View, Constraint::View);
         }
-        let covered = high;
+        let (low, covered, vertices) = (over.low, over.high, over.farthest_squared);
+        let mut high = covered;
         match rule.depth {
             Depth::AtCovered | Depth::Doubled => {}
             Depth::Extended(metres) => (high, near_by) = (high + metres, Constraint::CasterExtension),
             Depth::AtCasterBounds | Depth::AtCasters => {
-                over(self.casters, min, max, |z| high = high.max(z.y));
-                high = self.standing((min, max), (f64::MIN, high)).1;
+                // They move the near plane alone.
+                (over.low, over.farthest_squared) = (f64::MIN, f64::MAX);
+                over.add_list(casters, self.casters, self.content.origin);
+                if self.is_empty {
+                    over.add_list(receivers.filter(|_| casters.is_none()), self.receivers, self.content.origin);
+                    over.add_standing(self.content);
+                }
+                high = over.high;
                 near_by = if high > covered { Constraint::Casters } else { near_by };
             }
         }
         let farthest = min.abs().max(max.abs()).max_element() + low.abs().max(high.abs());
         let pad = ROUNDING * (farthest + high - low) + rule.margin + farthest * THINNEST;
-        WindowDepth { low: low - pad, high: high + pad, far_by, near_by }
+        WindowDepth { low: low - pad, high: high + pad, far_by, near_by, vertices: libm::sqrt(vertices) }
+    }
+}
+
+/// The depths of the parts of boxes that lie over a rectangle, in metres along the light's z.
+struct Over<'a> {
+    axes: &'a LightAxes,
+    column: Column,
+    low: f64,
+    high: f64,
+    /// Square of the greatest distance of a corner of these boxes from the origin, along the light's axes.
+    farthest_squared: f64,
+}
+
+impl<'a> Over<'a> {
+    /// No boxes over a rectangle. Corners that are no farther away than its own do not count.
+    fn new(axes: &'a LightAxes, min: DVec2, max: DVec2) -> Self {
+        let corner = min.abs().max(max.abs());
+        let column = Column::new(axes, min, max);
+        Self { axes, column, low: f64::MAX, high: f64::MIN, farthest_squared: corner.dot(corner) }
     }
 
-    /// A range of depths, widened by those of standing boxes over a rectangle.
-    fn standing(&self, (min, max): (DVec2, DVec2), mut depths: (f64, f64)) -> (f64, f64) {
-        let is_new = |(low, high): &(f64, f64), b_min, b_max| {
-            let b = projected(b_min, b_max, &self.axes);
-            is_over(&b, min, max) && (b[2].x < *low || b[2].y > *high)
-        };
-        self.content.each_standing(&mut depths, is_new, |(low, high), b_min, b_max| {
-            let [_, _, z] = projected(b_min, b_max, &self.axes);
-            (*low, *high) = (low.min(z.x), high.max(z.y));
-        });
-        depths
+    /// Adds the boxes of a list, which [`project`] has projected.
+    fn add_list(&mut self, list: Option<Boxes>, projected: &[DVec2], origin: DVec3) {
+        let Some(list) = list else { return };
+        for (aabb, b) in list.boxes.iter().zip(projected.as_chunks().0) {
+            if is_over(b, self.column.min, self.column.max) && self.is_new(b[2], b) {
+                let (min, max) = moved(aabb, list.origin - origin);
+                self.add((min, max), b);
+            }
+        }
     }
+
+    /// Adds the standing boxes.
+    fn add_standing(&mut self, content: &Content) {
+        let axes = self.axes;
+        let is_new = |over: &Self, min, max| {
+            let b = projected(min, max, axes);
+            let is_over = is_over(&b, over.column.min, over.column.max);
+            is_over && over.is_new(b[2], &b) && over.is_new(over.part((min, max), &b), &b)
+        };
+        content.each_standing(self, is_new, |over, min, max| over.add((min, max), &projected(min, max, axes)));
+    }
+
+    /// Whether a box with depths over the rectangle reaches beyond those so far, or has a corner farther away.
+    #[inline]
+    fn is_new(&self, z: DVec2, b: &[DVec2; PER_BOX]) -> bool {
+        z.x <= z.y && (z.x < self.low || z.y > self.high || farthest_squared(b) > self.farthest_squared)
+    }
+
+    fn add(&mut self, corners: (DVec3, DVec3), b: &[DVec2; PER_BOX]) {
+        let z = self.part(corners, b);
+        if z.x <= z.y {
+            (self.low, self.high) = (self.low.min(z.x), self.high.max(z.y));
+            self.farthest_squared = self.farthest_squared.max(farthest_squared(b));
+        }
+    }
+
+    /// Least and greatest depth of the part of a box over the rectangle; the least is above the greatest where there is
+    /// none. A large ground under a low sun is many times as deep as any of its parts.
+    fn part(&self, (min, max): (DVec3, DVec3), b: &[DVec2; PER_BOX]) -> DVec2 {
+        let (low, high) = self.column.depths(min, max);
+        let rounding = min.abs().max(max.abs()).element_sum() * ROUNDING;
+        DVec2::new(b[2].x.max(low - rounding), b[2].y.min(high + rounding))
+    }
+}
+
+/// Square of the greatest distance of a corner of a box along the light's axes from the origin.
+#[inline]
+fn farthest_squared(b: &[DVec2; PER_BOX]) -> f64 {
+    let (across, along) = (b[0].abs().max(b[1].abs()), b[2].x.abs().max(b[2].y.abs()));
+    across.dot(across) + along * along
 }
 
 /// A window's depths along the light's axes, in metres, and what set them.
@@ -147,20 +212,13 @@ pub(super) struct WindowDepth {
     pub(super) high: f64,
     pub(super) far_by: Constraint,
     pub(super) near_by: Constraint,
+    /// Greatest distance of a corner of the receivers' boxes from the origin, in metres.
+    pub(super) vertices: f64,
 }
 
 /// Greatest size of the last window over that of what it must hold: borders of a quarter of its texels on
 /// either side, and the texels of the grid's steps and of what is held.
 const WIDENING: f64 = 4.0;
-
-/// Passes on the z range of each box that lies over a rectangle.
-fn over(boxes: &[DVec2], min: DVec2, max: DVec2, mut visit: impl FnMut(DVec2)) {
-    for b in boxes.as_chunks::<PER_BOX>().0 {
-        if is_over(b, min, max) {
-            visit(b[2]);
-        }
-    }
-}
 
 /// Whether a box lies over a rectangle.
 fn is_over(b: &[DVec2; PER_BOX], min: DVec2, max: DVec2) -> bool {

@@ -132,7 +132,8 @@ fn volume(frame: &Frame, waste: f32, lattice: &Lattice, window: &mut Window, sha
     window.z = Some(grid.z);
     let side = Constraint::Window;
     let set_by = [side, side, side, side, depth.far_by, depth.near_by];
-    Volume::on_grid(axes, grid, resolution, origin, (set_by, shadows.is_empty))
+    let volume = Volume::on_grid(axes, grid, resolution, origin, (set_by, shadows.is_empty));
+    Volume { vertex_distance: depth.vertices, ..volume }
 }
 
 /// What a point costs whose texel is this many times too wide: the ratio's power of 3/2.
