@@ -3,6 +3,7 @@
 
 use egui::{Button, Color32, Grid, Response, RichText, Role, Stroke, Ui, WidgetInfo};
 use shadowfit::Constraint;
+use shadowfit::diagnostics::DepthRounding;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit_params::figures::{Figures, MAP_TINTS, MapFigures};
 
@@ -69,7 +70,11 @@ const HOLD: [Column; 5] = [
          a window, which is made for no distances, the width and height of what it holds across the light.",
     ),
     ("Texel", "Width and height of one texel across the light."),
-    ("Depth", "Extent of the map along the light."),
+    (
+        "Depth",
+        "Extent of the map along the light. ⚠ marks a map whose depths are rounded by more than its bias, so that lit \
+         surfaces darken in bands: raise the depth steps of the bias.",
+    ),
     ("Waste", "Share of the map's area that lies beside what it is made for."),
 ];
 
@@ -120,7 +125,7 @@ fn held(figures: &MapFigures) -> [Option<String>; 4] {
     [
         view_depths.or_else(|| is_window.then(|| size(figures.extent))),
         Some(if figures.is_empty { "empty".into() } else { size(figures.texel_size) }),
-        Some(length(figures.depth_range)),
+        Some(length(figures.depth_range) + if figures.rounding.is_covered() { "" } else { " ⚠" }),
         figures.waste.map(|waste| format!("{:.0}\u{a0}%", 100.0 * waste)),
     ]
 }
@@ -142,10 +147,14 @@ fn details(map: usize, figures: &MapFigures) -> String {
     let mut lines = vec![
         format!("Map {}{title}", map + 1),
         format!("Width and height: {}, in texels of {}", size(figures.extent), size(figures.texel_size)),
-        format!("Depth range: {}, in steps of {}", length(figures.depth_range), length(figures.depth_step)),
+        format!("Depth range: {}, in steps of {}", length(figures.depth_range), length(figures.rounding.step)),
         format!("Sides set by: left {left}, right {right}, bottom {bottom}, top {top}"),
         format!("Near plane (toward the light) set by {near}, far plane by {far}"),
     ];
+    if !figures.rounding.is_covered() {
+        let DepthRounding { needed, bias, .. } = figures.rounding;
+        lines.push(format!("Depths are rounded by {}, more than the bias of {}", length(needed), length(bias)));
+    }
     let drawn = [
         ("Casters kept", figures.casters.map(u64::from)),
         ("Draw calls", figures.draws.map(u64::from)),
@@ -207,7 +216,7 @@ mod tests {
             texel_size: [0.03, 0.005],
             extent: [61.44, 10.24],
             depth_range: 110.0,
-            depth_step: 0.000_013,
+            rounding: DepthRounding { step: 0.000_013, needed: 0.002, bias: 0.0005 },
             casters: Some(14),
             draws: None,
             triangles: Some(1_234),
@@ -220,6 +229,7 @@ mod tests {
             "110 m, in steps of 13.0 µm",
             "left view, right scene, bottom sphere, top held map",
             "Near plane (toward the light) set by casters, far plane by caster extension",
+            "Depths are rounded by 2.00 mm, more than the bias of 0.50 mm",
             "Casters kept: 14",
             "Triangles: 1\u{a0}234",
         ] {

@@ -6,7 +6,7 @@ mod legend;
 use glam::Vec3;
 use shadowfit::Constraint;
 use shadowfit::FittedMap;
-use shadowfit::diagnostics::depth_step;
+use shadowfit::diagnostics::{DepthRounding, depth_rounding};
 use shadowfit::settings::{MAX_MAPS, MapFormat};
 
 pub use legend::{EDGE_COLORS, ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
@@ -123,8 +123,8 @@ pub struct MapFigures {
     pub texel_size: [f32; 2],
     /// Extent of the map along the light, in metres.
     pub depth_range: f32,
-    /// Smallest depth difference that the map's format resolves everywhere in the range, in metres.
-    pub depth_step: f32,
+    /// The map's constant bias beside the rounding of its depths, in metres.
+    pub rounding: DepthRounding,
     /// Casters that are left after culling.
     pub casters: Option<u32>,
     /// Draw calls of its shadow pass.
@@ -143,7 +143,7 @@ impl MapFigures {
     /// The figures of a fitted map that is stored in `format`, with nothing drawn yet. `end` is the
     /// view depth at which shadows end, in metres, since the last map itself has no end.
     pub fn new(map: &FittedMap, end: f32, format: MapFormat) -> Self {
-        let FittedMap { projection: fit, near, far, .. } = map;
+        let FittedMap { projection: fit, bias, near, far, .. } = map;
         let view_depths = [*near, far.min(end)];
         let is_window = fit.set_by[0] == Constraint::Window;
         Self {
@@ -153,7 +153,7 @@ impl MapFigures {
             is_empty: fit.is_empty,
             texel_size: fit.texel_size.to_array(),
             depth_range: fit.depth_range,
-            depth_step: depth_step(format, fit.depth_range),
+            rounding: depth_rounding(fit, bias, format),
             casters: None,
             draws: None,
             triangles: None,

@@ -482,7 +482,8 @@ fn prove_set(
     let (technique, mut proof) = (fitter.technique(), Err(SunShadowsError::NoFrame));
     for (fitted, read) in fitter.fitted().iter().zip(maps) {
         // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
-        let map = FittedMap { projection: read.projection.relative_to(frame.origin), bias: read.bias, ..*fitted };
+        let FittedMap { projection, bias, .. } = read.relative_to(frame.origin);
+        let map = FittedMap { projection, bias, ..*fitted };
         let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.projection))
             .with_normal_offset(map.bias.normal_offset);
         let found = prove(&frame.input(), &map.projection, &query, &mut Scratch::new(&mut storage))?;

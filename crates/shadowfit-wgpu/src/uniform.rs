@@ -146,7 +146,8 @@ impl MapUniform {
     /// The same, with the change of a plane's depth whatever the bias.
     fn on_plane(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let ShadowMapDescriptor { filter, softness, .. } = descriptor;
-        let (fit, bias, range) = (map.projection.relative_to(origin), map.bias, map.depth_range());
+        let FittedMap { projection: fit, bias, .. } = map.relative_to(origin);
+        let range = map.depth_range();
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
         let [u, v] = depth_per_texel(&fit);
         Self {

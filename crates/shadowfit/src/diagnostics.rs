@@ -258,6 +258,39 @@ fn texture_point(fit: &LightProjection, point: DVec3) -> Result<DVec3, FitError>
     Ok(at.truncate())
 }
 
+/// The constant bias of a map beside the rounding that it must cover, in metres along the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct DepthRounding {
+    /// [Step](depth_step) of the map's format over its depth range.
+    pub step: f32,
+    /// The step, and how far f32 arithmetic shifts a receiver against the surface that the map stores: the
+    /// [`depth_precision`](crate::bias::depth_precision).
+    pub needed: f32,
+    /// [`Bias::constant_depth`].
+    pub bias: f32,
+}
+
+impl DepthRounding {
+    /// Whether the bias covers the rounding. Otherwise surfaces that face the light shadow themselves in bands.
+    pub fn is_covered(&self) -> bool {
+        // The bias itself is rounded, too.
+        self.bias >= self.needed * (1.0 - 1e-5)
+    }
+}
+
+/// Compares the constant bias of a map with the rounding of its depths. Both grow with the map's depth range and with the
+/// distance of the receivers' vertices; the [automatic bias](crate::settings::BiasSettings::automatic) always covers the
+/// rounding.
+pub fn depth_rounding(fit: &LightProjection, bias: &Bias, storage: impl Into<DepthStorage>) -> DepthRounding {
+    let storage = storage.into();
+    DepthRounding {
+        step: depth_step(storage, fit.depth_range),
+        needed: depth_precision(fit, storage) * fit.depth_range,
+        bias: bias.constant_depth * fit.depth_range,
+    }
+}
+
 /// Bias less what a plane needs. Where it is negative, so much bias is missing, and the plane
 /// shadows itself in stripes.
 #[derive(Clone, Copy, Debug, PartialEq)]

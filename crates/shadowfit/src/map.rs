@@ -4,7 +4,7 @@ use core::ops::Deref;
 
 use glam::{DVec3, UVec2};
 
-use crate::bias::Bias;
+use crate::bias::{Bias, rounding};
 use crate::fits::LightProjection;
 use crate::light::grid::GridAnchor;
 use crate::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
@@ -52,6 +52,15 @@ impl FittedMap {
     pub const fn ending_at(mut self, far: f32) -> Self {
         (self.far, self.covered_near) = (far, f32::MAX);
         self
+    }
+
+    /// The same map for shaders that take positions relative to another world position, in metres. f32 rounds positions
+    /// that are farther away more, and biases grow by that much unless they are 0.
+    #[must_use]
+    pub fn relative_to(&self, origin: DVec3) -> Self {
+        let projection = self.projection.relative_to(origin);
+        let more = (rounding(&projection) - rounding(&self.projection)).max(0.0) as f32;
+        Self { projection, bias: self.bias.widened(more, &projection), ..*self }
     }
 
     /// Where points read the map by view depth.

@@ -5,6 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use shadowfit::Constraint;
 use shadowfit::Technique;
+use shadowfit::diagnostics::DepthRounding;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit_egui::{Artefact, Changes, Tune, UserPreset};
 use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
@@ -51,7 +52,7 @@ fn map(index: usize) -> MapFigures {
         extent: [8.2 * scale, 8.2 * scale],
         texel_size: [0.004 * scale, 0.004 * scale],
         depth_range: 21.4 + 3.0 * scale,
-        depth_step: 0.000_013,
+        rounding: DepthRounding { step: 0.000_013, needed: 0.000_02, bias: 0.000_3 },
         casters: Some(214),
         draws: Some(61),
         triangles: Some(182_114),
@@ -126,7 +127,7 @@ pub(crate) fn wide_map() -> MapFigures {
         extent: [888.8, 888.8],
         texel_size: [0.8888, 0.8888],
         depth_range: 888.8,
-        depth_step: 0.000_088_8,
+        rounding: DepthRounding { step: 0.000_088_8, needed: 0.000_1, bias: 0.000_3 },
         casters: Some(8888),
         draws: Some(8888),
         triangles: Some(8_888_888),

@@ -1,6 +1,5 @@
 //! The rows of the biases.
 
-use shadowfit::diagnostics::DepthStorage;
 use shadowfit::settings::BiasSettings;
 
 use super::always_active;
@@ -60,8 +59,9 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Bias,
         label: "Depth steps",
         unit: "steps",
-        help: "Moves the compared depth toward the light by this many steps of the map's format, as coarse as it stores \
-           depths. 1 clears the bands of acne that a coarse format leaves; more only helps where hardware rounds badly.",
+        help: "Adds as much bias as rounding needs, this many times: a step of the map's format, and the rounding of \
+           positions where maps are deep or triangles large. 1 clears the bands that rounding leaves; more only helps \
+           where hardware rounds badly.",
         kind: Kind::Number(Number {
             min: 0.0,
             max: BiasSettings::MAX_DEPTH_STEPS as f64,
@@ -71,9 +71,6 @@ pub(super) const ROWS: &[Parameter] = &[
             unset: None,
         }),
         field: field!(technique.bias.depth_steps),
-        inert: |s| {
-            (DepthStorage::from(s.technique.format) == DepthStorage::Float32)
-                .then_some("The format's steps are too fine to matter; choose a coarser Format (map.format).")
-        },
+        inert: always_active,
     },
 ];

@@ -20,14 +20,21 @@ pub enum DepthStorage {
     Float32,
 }
 
-impl From<MapFormat> for DepthStorage {
-    fn from(format: MapFormat) -> Self {
+impl DepthStorage {
+    /// How a format of maps stores its depths.
+    pub(crate) const fn of(format: MapFormat) -> Self {
         match format {
             MapFormat::Depth32Float | MapFormat::R32Float | MapFormat::Rgba8Packed => Self::Float32,
             MapFormat::Depth16Unorm => Self::Unorm16,
             MapFormat::R16Float => Self::Float16,
             MapFormat::R8Grey => Self::Unorm8,
         }
+    }
+}
+
+impl From<MapFormat> for DepthStorage {
+    fn from(format: MapFormat) -> Self {
+        Self::of(format)
     }
 }
 

@@ -33,7 +33,7 @@ use core::f32::consts::SQRT_2;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
-pub(crate) use self::reach::HARDWARE_SNAP;
+pub(crate) use self::reach::{HARDWARE_SNAP, rounding};
 pub use self::reach::Reach;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
@@ -77,10 +77,9 @@ pub struct PlaneBias {
 /// receives next to no light. Normal offsets need no such limit.
 pub const MIN_COSINE: f32 = 0.01;
 
-/// Constant bias of [`BiasSettings::automatic`], in texels: it covers the rounding of f32 as long
-/// as no corner of the map's box is farther than 65536 texel sizes from the origin, 32 times the
-/// width of a 2048² map.
-const PRECISION_TEXELS: f32 = 1.0 / 16.0;
+/// Constant bias of [`BiasSettings::automatic`], in texels: room for normals that are not quite those of the surface.
+/// The rounding of depths and positions, which is less in most maps, is covered by [`BiasSettings::depth_steps`].
+const SPARE_TEXELS: f32 = 1.0 / 32.0;
 
 /// Error of the square of a sine that a shader computes from an f32 cosine: four roundings of 2⁻²⁴.
 pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 / 16_777_216.0;
@@ -99,16 +98,28 @@ impl Bias {
     /// and the receivers' vertices are. Up to its size, the constant in texels covers the rounding of positions too.
     pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &LightProjection) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
-        let rounding = settings.depth_steps * reach::rounding(fit) as f32;
+        let rounding = settings.depth_steps * rounding(fit) as f32;
         let constant = settings.constant * texel;
         let constant = constant + (rounding - constant.abs()).max(0.0);
-        // A surface that is shifted across the light is off by its slope times the shift.
-        let shifted = |bias: f32, shift: f32| if bias > 0.0 { bias + shift } else { bias };
+        let bias = Self {
+            constant_depth: 0.0,
+            slope_depth: settings.slope * texel / fit.depth_range,
+            normal_offset: settings.normal_offset * texel,
+            receiver_plane: settings.receiver_plane,
+        };
+        let constant_depth = constant / fit.depth_range + settings.depth_steps * depth_step(storage, 1.0);
+        Self { constant_depth, ..bias.widened(rounding, fit) }
+    }
+
+    /// This bias where positions are rounded by more, in metres: what is 0 stays 0. A surface that is shifted across the
+    /// light is off by its slope times the shift.
+    pub(crate) fn widened(self, rounding: f32, fit: &LightProjection) -> Self {
+        let more = |bias: f32, rounding: f32| if bias > 0.0 { bias + rounding } else { bias };
         Self {
-            constant_depth: constant / fit.depth_range + settings.depth_steps * depth_step(storage, 1.0),
-            slope_depth: shifted(settings.slope * texel, rounding) / fit.depth_range,
-            normal_offset: shifted(settings.normal_offset * texel, rounding),
-            receiver_plane: shifted(settings.receiver_plane, rounding / fit.texel_size.min_element()),
+            constant_depth: more(self.constant_depth, rounding / fit.depth_range),
+            slope_depth: more(self.slope_depth, rounding / fit.depth_range),
+            normal_offset: more(self.normal_offset, rounding),
+            receiver_plane: more(self.receiver_plane, rounding / fit.texel_size.min_element()),
         }
     }
 
@@ -214,9 +225,7 @@ impl Bias {
 }
 
 impl BiasSettings {
-    /// Biases in texels that clear self-shadowing on planes for a filter, at any fit whose box
-    /// stays within 65536 texel sizes of the origin; [`Bias::automatic`] has no such limit.
-    /// Geometric normals are assumed.
+    /// Biases that clear self-shadowing on planes for a filter, in any map. Geometric normals are assumed.
     ///
     /// It is the receiver-plane form, which needs to cover only the reach of one comparison, so that a wider disc of
     /// a soft filter needs no more. Compared
@@ -226,7 +235,7 @@ impl BiasSettings {
     pub fn automatic(filter: FilterKind) -> Self {
         let one_comparison = if filter == FilterKind::Point { Reach::POINT } else { Reach::HARDWARE_2X2 };
         Self {
-            constant: PRECISION_TEXELS,
+            constant: SPARE_TEXELS,
             slope: 0.0,
             normal_offset: 0.0,
             receiver_plane: one_comparison.taps + HARDWARE_SNAP,
@@ -239,7 +248,7 @@ impl BiasSettings {
     /// [ceiling](Softness::ceiling) of its disc, which is far.
     pub fn automatic_normal_offset(filter: FilterKind, softness: &Softness) -> Self {
         Self {
-            constant: PRECISION_TEXELS,
+            constant: SPARE_TEXELS,
             slope: 0.0,
             normal_offset: automatic_normal_offset(softness.reach(filter)),
             receiver_plane: 0.0,
@@ -297,7 +306,7 @@ pub fn depth_gradient(fit: &LightProjection, normal: Vec3) -> Result<Vec2, FitEr
 /// step of the format where it is coarsest (half for storing a depth, half where hardware rounds
 /// the compared one too).
 pub fn depth_precision(fit: &LightProjection, storage: impl Into<DepthStorage>) -> f32 {
-    (reach::rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
+    (rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
 }
 
 /// Normal offset, in texels and to be multiplied by sin θ, that clears self-shadowing on a plane whose slope has any

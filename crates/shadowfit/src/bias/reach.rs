@@ -33,11 +33,14 @@ pub struct Reach {
 /// sampler texture coordinates, to the nearest 1/256 of a texel.
 pub(crate) const HARDWARE_SNAP: f32 = 1.0 / 256.0;
 
-/// Roundings of 2⁻²⁴ by which the depth that a map stores for a point can differ from the depth that it is compared
-/// with, as a multiple of the farthest distance from the origin in the map's box, and again of that of the vertices:
-/// four operations a term, on terms that sum to at most twice that distance. Vertices of the stored surface are
-/// transformed where they are, and the receiver inside the map.
-const PRECISION_ROUNDINGS: f64 = 8.0;
+/// Roundings of 2⁻²⁴ between a receiver's depth and the depth that its surface stores there, as a multiple of the
+/// distance of the farthest corner of the map's box: four operations a term on terms that sum to twice that distance in
+/// the receiver's transform, and on the translation alone, which is one distance, in that of the vertices.
+const MAP_ROUNDINGS: f64 = 12.0;
+
+/// The same as a multiple of the distance of the farthest vertex: four operations a term in its transform, three where
+/// the rasteriser interpolates the depths of a triangle, and three where it interpolates the receiver's position.
+const VERTEX_ROUNDINGS: f64 = 10.0;
 
 impl Reach {
     /// One comparison with the nearest texel: E = 0.5.
@@ -142,5 +145,5 @@ impl Technique {
 /// there, in metres.
 pub(crate) fn rounding(fit: &LightProjection) -> f64 {
     let farthest = fit.farthest_corner();
-    PRECISION_ROUNDINGS * UNIT * (farthest + farthest.max(f64::from(fit.vertex_distance)))
+    UNIT * (MAP_ROUNDINGS * farthest + VERTEX_ROUNDINGS * farthest.max(f64::from(fit.vertex_distance)))
 }

@@ -366,27 +366,43 @@ impl<'a> Content<'a> {
             corner.dot(corner)
         };
         let mut most = least * least;
-        let is_farther = |most: &f64, min, max| squared(min, max) > *most;
-        self.each_seen_receiver(range, &mut most, is_farther, |most, min, max| *most = squared(min, max).max(*most));
+        let (near, far) = (f64::from(range.near), f64::from(range.far));
+        for (view, depths) in self.views().zip(self.depths()) {
+            let is_farther = |min, max| squared(min, max) > least * least && view.depths(min, max).is_some();
+            let runs = self.receiver_groups.runs().filter(|(_, min, max)| is_farther(*min, *max));
+            for i in runs.flat_map(|(run, _, _)| run) {
+                let DVec2 { x: first, y: last } = depths[i];
+                if first <= last.min(far)
+                    && last >= near
+                    && let Some((min, max)) = self.receiver(i)
+                {
+                    most = squared(min, max).max(most);
+                }
+            }
+        }
+        for view in self.standing.iter().flat_map(|_| self.views()) {
+            let is_farther = |most: &f64, _, min, max| squared(min, max) > *most;
+            let (near, far) = (view.near.max(near), view.far.min(far));
+            self.each_standing_seen((&view, near, far), &mut most, is_farther, |most, _, _, (min, max)| {
+                *most = squared(min, max).max(*most);
+            });
+        }
         libm::sqrt(most)
     }
 
-    /// Passes on each receiver's box that reaches into any of the views in a range of view depths, with a state: boxes
-    /// are passed on where `is_new` of the bounds of their run is true.
+    /// Passes on each receiver's box that reaches into any of the views, with a state: boxes are passed on where
+    /// `is_new` of the bounds of their run is true.
     pub(crate) fn each_seen_receiver<S>(
         &self,
-        range: Range,
         state: &mut S,
         is_new: impl Fn(&S, DVec3, DVec3) -> bool,
         mut visit: impl FnMut(&mut S, DVec3, DVec3),
     ) {
-        let (near, far) = (f64::from(range.near), f64::from(range.far));
         for (run, min, max) in self.receiver_groups.runs() {
             if !is_new(state, min, max) {
                 continue;
             }
-            let is_in = |depths: DVec2| depths.x <= depths.y.min(far) && depths.y >= near;
-            for i in run.filter(|i| self.depths().any(|depths| is_in(depths[*i]))) {
+            for i in run.filter(|i| self.depths().any(|depths| depths[*i].x <= depths[*i].y)) {
                 if let Some((min, max)) = self.receiver(i) {
                     visit(state, min, max);
                 }
@@ -394,8 +410,7 @@ impl<'a> Content<'a> {
         }
         for view in self.standing.iter().flat_map(|_| self.views()) {
             let is_new = |state: &S, _, min, max| is_new(state, min, max);
-            let (near, far) = (view.near.max(near), view.far.min(far));
-            self.each_standing_seen((&view, near, far), state, is_new, |state, _, _, (min, max)| {
+            self.each_standing_seen((&view, view.near, view.far), state, is_new, |state, _, _, (min, max)| {
                 visit(state, min, max);
             });
         }

@@ -18,7 +18,6 @@ use crate::content::Content;
 use crate::fits::covered::Shadowed;
 use crate::fits::{Constraint, Depth, FitRule, Volume};
 use crate::light::{LightAxes, Outline, OutlineScratch};
-use crate::view::Range;
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -117,7 +116,7 @@ pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), c
     let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
     let corners = corners((across.0.yx(), across.1.yx()));
     let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
-    content.each_seen_receiver(Range::ALL, &mut lowest, Highest::may_rise, Highest::add);
+    content.each_seen_receiver(&mut lowest, Highest::may_rise, Highest::add);
     (-lowest.z).max(covered - longer * FARTHER)
 }
 

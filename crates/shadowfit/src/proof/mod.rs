@@ -21,8 +21,9 @@ use glam::{DVec2, DVec3};
 
 use crate::base::checks::UNIT;
 use crate::base::{FitError, box_corners, checks};
-use crate::bias::{HARDWARE_SNAP, Reach};
+use crate::bias::{Bias, HARDWARE_SNAP, Reach};
 use crate::content::Content;
+use crate::diagnostics::{DepthRounding, DepthStorage, depth_rounding};
 use crate::fits::covered::{Detail, LightHull};
 use crate::fits::{Covers, FitInput, LightProjection, Scratch};
 use crate::light::{LightAxes, Outline, OutlineScratch};
@@ -64,6 +65,9 @@ pub enum CoverageProof {
         /// Its distance before the near plane, in metres, with the bound of the rounding.
         by: f32,
     },
+    /// There are no holes, but the map's depths are rounded by more than its constant bias, so that surfaces that face
+    /// the light shadow themselves.
+    DepthTooCoarse(DepthRounding),
 }
 
 impl CoverageProof {
@@ -96,6 +100,7 @@ pub struct Margins {
 ///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
 ///   offset; for maps that are [read by coverage](CoverageQuery::is_shared) those over any part of the map.
 ///   Nothing is proven of casters that are not given.
+/// - **Depth**: where the query names the map's bias, it must cover the rounding of depths.
 /// - **Rounding**: positions are taken as f32 relative to [`LightProjection::origin`], multiplied by
 ///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
 ///   to another origin need [`LightProjection::relative_to`] first, and a proof of that.
@@ -218,6 +223,12 @@ pub fn prove(
             return Ok(CoverageProof::CasterLost { point: fit.origin + point, by: -by as f32 });
         }
         margins.casters = by as f32;
+    }
+    if let Some((bias, storage)) = query.bias {
+        let rounding = depth_rounding(fit, &Bias { constant_depth: bias, ..Bias::default() }, storage);
+        if is_read && !rounding.is_covered() {
+            return Ok(CoverageProof::DepthTooCoarse(rounding));
+        }
     }
     Ok(CoverageProof::Proven(margins))
 }
@@ -379,6 +390,9 @@ pub struct CoverageQuery {
     /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none. The
     /// other policies make no difference here.
     pub casters: CasterPolicy,
+    /// [`Bias::constant_depth`] of the map, and how it stores depths: the bias must cover their
+    /// [rounding](depth_rounding). `None` requires nothing.
+    pub bias: Option<(f32, DepthStorage)>,
 }
 
 impl CoverageQuery {
@@ -386,7 +400,8 @@ impl CoverageQuery {
     /// shadow distance.
     pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
         let (near, far) = (f32::MIN, settings.map.max_distance);
-        Self { near, far, reach, normal_offset: 0.0, is_shared: false, casters: settings.map.casters }
+        let casters = settings.map.casters;
+        Self { near, far, reach, normal_offset: 0.0, is_shared: false, casters, bias: None }
     }
 
     /// What one of several maps is made for: the receivers from [`FittedMap::covered_near`] to
@@ -396,7 +411,8 @@ impl CoverageQuery {
     pub const fn of_map(map: &FittedMap, settings: &Technique, reach: Reach) -> Self {
         let far = map.far.min(settings.fit.max_distance);
         let (near, is_shared) = (map.covered_near.min(far), settings.shares_maps());
-        Self { near, far, reach, normal_offset: 0.0, is_shared, casters: settings.fit.casters }
+        let bias = Some((map.bias.constant_depth, DepthStorage::of(settings.format)));
+        Self { near, far, reach, normal_offset: 0.0, is_shared, casters: settings.fit.casters, bias }
     }
 
     /// This query with another [`normal_offset`](Self::normal_offset).
@@ -409,6 +425,9 @@ impl CoverageQuery {
     pub(super) fn checked(&self) -> Result<Range, FitError> {
         checks::finite("the query's near distance", f64::from(self.near))?;
         checks::finite("the query's far distance", f64::from(self.far))?;
+        if let Some((bias, _)) = self.bias {
+            checks::finite("the query's constant bias", f64::from(bias))?;
+        }
         checks::within("the query's normal offset", f64::from(self.normal_offset), 0.0, checks::MAX_LENGTH)?;
         self.reach.checked()?;
         if self.near > self.far {

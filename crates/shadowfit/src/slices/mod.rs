@@ -63,9 +63,9 @@ pub(crate) fn place(
     } else {
         placer.fit(before.map(|before| &before.depths), &mut held.depths)?
     };
-    // 3. How far away vertices of what they hold lie: of large boxes alone that is beyond what the maps reach.
+    // 3. The farthest vertices of the receivers in view. Only large boxes have some beyond the maps' own corners.
     let reach = maps.iter().flatten().map(|map| map.volume.farthest_corner()).fold(0.0, f64::max);
-    let farthest = frame.content.farthest_seen(frame.range, 2.0 * reach);
+    let farthest = frame.content.farthest_seen(frame.range, reach);
     maps.iter_mut().flatten().for_each(|map| map.volume.vertex_distance = farthest);
     // 4. Depths from which no point chooses a map that has none.
     set_empty_ranges_apart(&mut maps[..settings.count as usize]);

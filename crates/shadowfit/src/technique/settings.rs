@@ -328,8 +328,8 @@ pub(crate) const DEFAULT_WASTE: f32 = 1.8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct BiasSettings {
-    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/16,
-    /// for the rounding of depths in f32.
+    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/32, for normals that
+    /// are not quite those of the surface.
     pub constant: f32,
     /// Depth bias times the tangent of the angle between the surface normal and the light, in
     /// texel sizes. Default: 0.
@@ -344,9 +344,9 @@ pub struct BiasSettings {
     /// built from it. 0 turns it off. Default: 1 + 1/256; the fraction covers the hardware's
     /// rounding of positions in the map.
     pub receiver_plane: f32,
-    /// Constant depth bias in [steps](crate::diagnostics::depth_step) of the map's format beyond those of a 32-bit
-    /// float, 0..=16: one covers what storing and comparing a depth can round. Formats of 32 bits ignore it.
-    /// Default: 1.
+    /// Bias in roundings, 0..=16. One covers a [step](crate::diagnostics::depth_step) of the map's format, and the
+    /// rounding of f32 positions: [`Self::constant`] is raised to it, and the other biases, unless they are 0, grow by
+    /// it. Default: 1.
     pub depth_steps: f32,
 }
 

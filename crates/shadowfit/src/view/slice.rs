@@ -26,11 +26,6 @@ pub(crate) struct Range {
     pub(crate) far: f32,
 }
 
-impl Range {
-    /// All view depths.
-    pub(crate) const ALL: Self = Self { near: f32::MIN, far: f32::MAX };
-}
-
 /// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
 /// they leave nothing of it.
 #[inline(always)]

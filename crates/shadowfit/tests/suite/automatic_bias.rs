@@ -8,10 +8,10 @@ use std::f32::consts::FRAC_PI_2;
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
-use shadowfit::bias::{MIN_COSINE, depth_gradient, depth_precision, normal_offset};
+use shadowfit::bias::{MIN_COSINE, Reach, depth_gradient, depth_precision, normal_offset};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, depth_step_at};
-use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FitKind, MapFormat};
+use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3, Vec3Swizzles};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat};
 use shadowfit::{Bias, DepthConvention, LightProjection};
 
 use crate::filters::{Filter, filters};
@@ -133,6 +133,60 @@ impl Case {
     }
 }
 
+/// A plane drawn as one large triangle: its vertices are rounded by their distance, and with them all of it.
+struct Triangle<'a> {
+    case: &'a Case,
+    vertices: [Vec3; 3],
+    /// Texture coordinates and depth of the vertices, as the vertex shader has them.
+    projected: [Vec3; 3],
+}
+
+impl<'a> Triangle<'a> {
+    /// Weights of the three vertices at a place, by two of their coordinates.
+    fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> DVec3 {
+        let whole = (b - a).perp_dot(c - a);
+        let (v, w) = ((at - a).perp_dot(c - a) / whole, (b - a).perp_dot(at - a) / whole);
+        DVec3::new(1.0 - v - w, v, w)
+    }
+
+    /// A sum as the rasteriser computes it in f32.
+    fn interpolated(weights: DVec3, [a, b, c]: [f32; 3]) -> f32 {
+        let weights = weights.as_vec3();
+        a * weights.x + b * weights.y + c * weights.z
+    }
+
+    /// The plane's point as the fragment shader gets it: interpolated between the vertices.
+    fn point(&self) -> Vec3 {
+        let normal = self.case.normal.abs();
+        let across = |v: Vec3| {
+            let v = if normal.x >= normal.max_element() { v.yzx() } else { v };
+            if normal.y >= normal.max_element() { v.xz().as_dvec2() } else { v.xy().as_dvec2() }
+        };
+        let weights = Self::weights(self.vertices.map(across), across(self.case.point));
+        Vec3::from_array([0, 1, 2].map(|i| Self::interpolated(weights, self.vertices.map(|v| v[i]))))
+    }
+
+    /// Depth that the triangle stores at a texel's centre.
+    fn depth(&self, storage: DepthStorage, centre: DVec2) -> Option<f64> {
+        let uv = centre / self.case.fit.resolution.as_dvec2();
+        let weights = Self::weights(self.projected.map(|p| p.truncate().as_dvec2()), uv);
+        let depth = f64::from(Self::interpolated(weights, self.projected.map(|p| p.z)));
+        let step = |depth: f64| f64::from(depth_step_at(storage, 1.0, depth as f32).unwrap());
+        (0.0..=1.0).contains(&depth).then(|| (depth / step(depth)).round() * step(depth))
+    }
+
+    /// Depth by which the nearest texel in a filter's reach lies before what it is compared with; positive is acne.
+    fn acne(&self, bias: &Bias, filter: &Filter, storage: DepthStorage) -> f64 {
+        let (offset, depth) = self.case.on_plane(bias);
+        let (at, compared) = self.case.look_up(self.point(), offset, depth);
+        let is_reversed = self.case.fit.depth == DepthConvention::Reversed;
+        let before = |depth: f64| if is_reversed { depth - compared } else { compared - depth };
+        let snapped = (at * SNAPS).round() / SNAPS;
+        let depths = filter.texels(snapped).filter_map(|centre| self.depth(storage, centre));
+        depths.map(before).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
 /// Fits of any camera and light, with maps from 64 texels on and uneven texels, relative to the eye
 /// or to points up to 60 boxes away, where f32 is coarse.
 fn any_fit() -> impl Strategy<Value = LightProjection> {
@@ -219,6 +273,44 @@ proptest! {
                     let acne = case.acne_under(&bias, &filter, storage);
                     prop_assert!(acne <= 0.0, "{}, {storage:?}: {acne:e} with {bias:?}", filter.name);
                 }
+            }
+        }
+    }
+
+    /// A ground of many kilometres in one triangle, close to the eye.
+    #[test]
+    fn the_automatic_biases_clear_large_triangles(mut case in any_case(), (size, turn) in (float(0.5, 5.0), float(0.0, 6.3))) {
+        let size = case.fit.depth_range.max(case.fit.box_max.x - case.fit.box_min.x) * 10.0_f32.powf(size);
+        let (a, b) = case.normal.any_orthonormal_pair();
+        let vertices = [0.3, 2.3, 4.5].map(|angle: f32| case.point + (a * (angle + turn).cos() + b * (angle + turn).sin()) * size);
+        case.fit.vertex_distance = vertices.map(Vec3::length).into_iter().fold(0.0, f32::max);
+        // The plane is that of the rounded vertices.
+        let [p, q, r] = vertices.map(Vec3::as_dvec3);
+        let normal = (q - p).cross(r - p).normalize();
+        let normal = if normal.dot(case.normal.as_dvec3()) < 0.0 { -normal } else { normal };
+        let moved = normal * (p - case.point.as_dvec3()).dot(normal);
+        (case.point, case.normal) = ((case.point.as_dvec3() + moved).as_vec3(), normal.as_vec3());
+        let projected = vertices.map(|vertex| apply(&case.fit.uv_from_world, vertex));
+        let triangle = Triangle { case: &case, vertices, projected };
+        for filter in filters() {
+            for storage in STORAGES {
+                for bias in [
+                    Bias::automatic(filter.reach, storage, &case.fit).unwrap(),
+                    Bias::automatic_receiver_plane(filter.reach, storage, &case.fit).unwrap(),
+                ] {
+                    let acne = triangle.acne(&bias, &filter, storage);
+                    prop_assert!(acne <= 0.0, "{}, {storage:?}: {acne:e} with {bias:?}", filter.name);
+                }
+            }
+        }
+        // The default technique compares each texel of the hardware's 2×2 with the plane's own depth.
+        for format in MapFormat::ALL {
+            for (kind, reach) in [(FilterKind::Point, Reach::POINT), (FilterKind::Pcf5x5, Reach::HARDWARE_2X2)] {
+                let bias = Bias::from_texels(&BiasSettings::automatic(kind), format, &case.fit);
+                let all = filters();
+                let filter = all.iter().find(|filter| filter.reach == reach).expect("a filter of this reach");
+                let acne = triangle.acne(&bias, filter, format.into());
+                prop_assert!(acne <= 0.0, "{kind:?}, {format:?}: {acne:e} with {bias:?}");
             }
         }
     }

@@ -127,7 +127,7 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
             Bias::from_texels(&settings, MapFormat::default(), &fit)
         );
     }
-    let bias = Bias::from_texels(&settings, MapFormat::default(), &fit);
+    let bias = Bias::from_texels(&settings.with_depth_steps(0.0), MapFormat::default(), &fit);
     assert_eq!(bias.constant_depth, 0.5 * texel / fit.depth_range);
     assert_eq!(bias.slope_depth, 2.0 * texel / fit.depth_range);
     assert_eq!(bias.normal_offset, 3.0 * texel);
