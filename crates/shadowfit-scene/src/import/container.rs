@@ -63,7 +63,7 @@ pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> R
     Ok(Source { root, binary: binary.map(<[u8]>::to_vec), ignored_extensions, channels_without_node })
 }
 
-/// Removes the animation channels that move no node, such as those of KHR_animation_pointer, and returns their number.
+/// Removes the animation channels that move no node, such as channels of `KHR_animation_pointer`. Returns their number.
 /// glTF allows them, but the gltf crate refuses their file.
 fn drop_channels_without_node(json: &mut Value) -> usize {
     let mut dropped = 0;

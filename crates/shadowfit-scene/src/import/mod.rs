@@ -199,7 +199,7 @@ fn import<'a>(
     let rest = scene.pose(None, 0.0);
     check_extent(&scene, &rest, &tree)?;
     scene.sun = scene.sun_of(&rest);
-    view::note_suns(&scene, &rest, &mut notes);
+    view::note_views(&scene, &rest, &mut notes);
     scene.notes = notes.finish();
     Ok(scene)
 }

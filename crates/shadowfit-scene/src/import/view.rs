@@ -89,8 +89,13 @@ fn sun(light: &Light, name: String, node: usize) -> SceneSun {
     SceneSun { name, node, color, intensity: light.intensity.max(0.0) }
 }
 
-/// Notes the sun that is taken of several, and suns that cannot be.
-pub(crate) fn note_suns(scene: &Scene, rest: &Pose, notes: &mut Notes) {
+/// Notes the sun that is taken of several, and cameras and suns that cannot be.
+pub(crate) fn note_views(scene: &Scene, rest: &Pose, notes: &mut Notes) {
+    for (camera, number) in scene.cameras.iter().zip(1..) {
+        if camera.placement(rest).is_none() {
+            notes.add(format!("camera {number} ignored: its node has no size"));
+        }
+    }
     let count = scene.suns.len();
     match scene.strongest_sun() {
         None if count > 0 => notes.add(format!("{count} directional lights without intensity ignored")),

@@ -184,6 +184,15 @@ fn placements_have_the_roll_of_their_node_and_neither_its_scale_nor_its_shear() 
 }
 
 #[test]
+fn a_camera_whose_node_has_no_size_has_no_placement_and_a_note() {
+    let lens = perspective(r#""yfov":1,"znear":0.1"#);
+    let nodes = SEEN.replace(r#""name":"a","#, r#""name":"a","scale":[0,0,0],"#);
+    let scene = scene("flat_camera", &nodes, &cameras(&[lens.clone(), lens.clone(), lens].join(",")));
+    assert!(scene.cameras[0].placement(&scene.pose(None, 0.0)).is_none());
+    assert!(scene.notes.iter().any(|note| note.contains("camera 1 ignored")), "{:?}", scene.notes);
+}
+
+#[test]
 fn animation_channels_without_a_node_are_ignored_with_a_note() {
     let pointer = r#","extensionsUsed":["KHR_animation_pointer"],"animations":[{"channels":[
         {"sampler":0,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/extensions/KHR_lights_punctual/lights/0/intensity"}}}},
