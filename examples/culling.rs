@@ -119,7 +119,8 @@ fn measure(
             continue;
         }
         let is_first = scenarios.previous(index).is_none();
-        let view = View { camera: frame.camera(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
+        let view =
+            View { camera: frame.camera().into(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
         let maps = prepared.fit_next(&mut fitter, named.inputs, &view)?;
         if !is_first {
             sums.add(gpu, (&mut renderer, &target), &mut drawn, (&view, &maps))?;
@@ -146,7 +147,7 @@ impl Sums {
     ) -> Result<()> {
         let atmosphere = Atmosphere::default();
         for (sums, culling) in [(&mut self.whole, Culling::WholeMap), (&mut self.swept, Culling::Swept)] {
-            let frame = Frame { culling, ..Frame::new(&view.camera, view.direction, maps, &atmosphere) };
+            let frame = Frame { culling, ..Frame::new(view.camera, view.direction, maps, &atmosphere) };
             let statistics = renderer.draw(gpu, scene, &frame, target)?;
             for (sum, map) in sums.iter_mut().zip(&statistics.maps) {
                 sum.casters += map.casters;

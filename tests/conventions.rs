@@ -77,7 +77,7 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
             &MapView::from_eye(fit.origin, Vec3::NEG_Z),
             &ShadowMapDescriptor::default(),
         );
-        let frame = FrameUniform::new(&camera(), to_light, true, &Atmosphere::default(), [16, 9]);
+        let frame = FrameUniform::new(camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
         assert_eq!(frame.to_light, to_light.to_array(), "{light:?}");
         // Moving toward the light lowers the depth of the plain convention.
@@ -107,7 +107,7 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
 #[test]
 fn the_camera_s_uniform_has_reversed_depth_and_rays_through_its_pixels() {
     let camera = camera();
-    let frame = FrameUniform::new(&camera, Vec3::Y, true, &Atmosphere::default(), [160, 100]);
+    let frame = FrameUniform::new(camera, Vec3::Y, true, &Atmosphere::default(), [160, 100]);
     let frustum = camera.frustum().expect("a good camera");
     let axis = |row: [f32; 4]| Vec4::from(row).truncate();
     let corners_xy = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];

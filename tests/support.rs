@@ -42,7 +42,7 @@ pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {
         near,
         far: far.expect("a far plane"),
     };
-    View { camera, direction: scene.sun.expect("a sun").direction, is_first: true }
+    View { camera: camera.into(), direction: scene.sun.expect("a sun").direction, is_first: true }
 }
 
 /// The folder of the workspace.

@@ -34,7 +34,7 @@ pub(crate) fn time(bench: &Bench, files: &[PathBuf]) -> Result<Table> {
         let eye = if rows.is_empty() { builtin::default_camera().0.as_dvec3() } else { middle };
         let fly = FlyCamera::look_at(eye, middle + glam::DVec3::new(0.1, 0.0, -1.0));
         let aspect = SIZE[0] as f32 / SIZE[1] as f32;
-        let camera = fly.perspective(&CameraSettings::default(), aspect);
+        let camera = fly.camera(&CameraSettings::default(), aspect);
         let view = View { camera, direction: LightSettings::default().direction(), is_first: true };
         let mut evaluator = Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() });
         let maps = prepared.fit_alone(&mut ShadowFitter::new(&technique), Inputs::default(), &view)?;

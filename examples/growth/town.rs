@@ -68,7 +68,7 @@ impl Town {
     pub(crate) fn seen(&self, frames: usize, technique: &Technique) -> Result<Vec<Seen>> {
         let in_reach = self.boxes.iter().filter(|aabb| aabb.min.length().min(aabb.max.length()) < FAR * 1.5);
         let tracer = Tracer::new(self.boxes.iter().take(1).chain(in_reach.skip(1)).flat_map(triangles));
-        let see = |frame| Ok(see_by_rays(&tracer, &Self::camera(frame), Self::direction(), technique)?);
+        let see = |frame| Ok(see_by_rays(&tracer, Self::camera(frame), Self::direction(), technique)?);
         (0..frames).map(see).collect()
     }
 }

@@ -125,7 +125,7 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known], technique: &Tec
         scene: frame.scene,
         is_first: before.is_none(),
         seen: match before.zip(tracer) {
-            Some((before, tracer)) => Some(see_by_rays(tracer, &before.camera(), direction, technique)?),
+            Some((before, tracer)) => Some(see_by_rays(tracer, before.camera(), direction, technique)?),
             None => None,
         },
     })

@@ -35,9 +35,10 @@ pub(crate) struct Drawing {
     /// Store depths in a colour texture of 32-bit floats, compared by hand
     #[arg(long)]
     color_format: bool,
-    /// Units of the scene to a metre: shadow rays start a thousandth of a metre over the surface
-    #[arg(long, default_value_t = 1.0, value_name = "N", value_parser = positive)]
-    units_per_metre: f64,
+    /// Units of the scene to a metre: shadow rays start a thousandth of a metre over the surface [default: a thousandth of
+    /// a unit, less in a scene below 2 units, more where coordinates exceed 1000]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    units_per_metre: Option<f64>,
     /// Angular radius of the sun, in degrees (the real one's is 0.27): truth becomes a mean of many rays
     #[arg(long, default_value_t = 0.0, value_name = "DEG", value_parser = radius)]
     sun_radius: f64,
@@ -69,13 +70,18 @@ impl Drawing {
     pub(crate) fn judging(&self) -> Judging {
         Judging {
             size: self.size,
-            ray_offset: 1e-3 * self.units_per_metre,
+            ray_offset: 1e-3 * self.units_per_metre.unwrap_or(1.0),
             sun_radius: self.sun_radius.to_radians(),
             sun_rays: self.sun_rays,
             crawl: !self.no_crawl,
             area: self.area,
             subject_only: false,
         }
+    }
+
+    /// Whether the units are given, by which shadow rays start.
+    pub(crate) const fn sets_units(&self) -> bool {
+        self.units_per_metre.is_some()
     }
 
     /// What fits are given where no technique says otherwise.

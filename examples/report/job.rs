@@ -12,7 +12,7 @@ use shadowfit_study::{Comparison, Judging, View};
 use shadowfit_truth::Tracer;
 
 use crate::drawing::{Drawing, positive};
-use crate::path::{CameraPath, find};
+use crate::path::{CameraPath, find, follow};
 
 /// Name of the scene that is drawn without a file.
 const BUILT_IN: &str = "courtyard";
@@ -20,6 +20,8 @@ const BUILT_IN: &str = "courtyard";
 const GIB: f64 = (1u64 << 30) as f64;
 /// Share of a scene's size from which on the offset of shadow rays is coarse.
 const COARSE_OFFSET: f64 = 5e-4;
+/// Share by which an offset that follows from the scene's size may differ from that share.
+const ROUNDING: f64 = 1e-6;
 /// Bytes of a vertex in the scene and, where the adapter is the CPU, on the GPU: 48 and 64.
 const BYTES_A_VERTEX: u64 = 112;
 /// Bytes of a triangle in its indices, here and twice on the GPU, and in what the software adapter keeps of a pass.
@@ -34,10 +36,16 @@ pub(crate) struct Job {
     /// Camera path, TOML or JSON [default: an orbit and a flight that are found in the scene]
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
+    /// Follow a camera of the file instead of a path, by its number from 1; with --play through its animation
+    #[arg(long, value_name = "N", conflicts_with = "path")]
+    camera: Option<u32>,
     /// Direction toward the sun: azimuth from +z toward +x and elevation, in degrees [default: the path's, else the
-    /// scene's]
+    /// scene's, which its animation may move]
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = light, allow_hyphen_values = true)]
     light: Option<LightSettings>,
+    /// Take a directional light of the file for the sun, by its number from 1 [default: the strongest]
+    #[arg(long, value_name = "N", conflicts_with = "light")]
+    sun: Option<u32>,
     /// Play the scene's first animation, so many frames of the path a second
     #[arg(long, value_name = "FPS")]
     play: Option<f32>,
@@ -60,6 +68,15 @@ pub(crate) struct JobFrame {
     pub(crate) seconds: Option<f32>,
 }
 
+/// The sun of a scene.
+#[derive(Clone, Copy, Debug)]
+enum Sunlight {
+    /// The directional light of an index, which animations may move.
+    OfFile(usize),
+    /// One with this direction of travel.
+    Still(Vec3),
+}
+
 /// A job that can begin.
 pub(crate) struct Prepared {
     pub(crate) comparison: Comparison,
@@ -80,7 +97,7 @@ impl Job {
         let scene = self.load()?;
         scene.warnings(&self.scene).for_each(|warning| eprintln!("{warning}"));
         self.check_memory(&scene)?;
-        let sun = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction));
+        let sun = self.sun_of(&scene)?;
         let animates = !scene.animations.is_empty();
         ensure!(
             self.play.is_none() || animates,
@@ -93,11 +110,16 @@ impl Job {
         );
         let mut notes = Vec::new();
         let scene_notes = scene.notes.clone();
-        let judging = self.drawing.judging();
-        let comparison = Comparison::new(self.drawing.gpu()?, scene, judging)?;
+        let mut comparison = Comparison::new(self.drawing.gpu()?, scene, self.drawing.judging())?;
+        if !self.drawing.sets_units() {
+            comparison.judging.ray_offset = comparison.scene().ray_offset();
+        }
+        let judging = comparison.judging;
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
         let path = if let Some(file) = &self.path {
             CameraPath::read(file, aspect)?
+        } else if let Some(camera) = self.camera {
+            follow(comparison.scene().scene(), camera, self.play, aspect)?
         } else {
             let (bounds, rays) = (comparison.scene().bounds(), comparison.scene().rays());
             let origin = rays.origin;
@@ -108,10 +130,32 @@ impl Job {
             notes.extend(found.notes);
             found.path
         };
-        let light = self.light.or(path.light).or(sun).unwrap_or_default();
-        let frames = self.frames(&path, &light);
+        let fixed = if self.sun.is_some() { None } else { self.light.or(path.light) };
+        let sun = sun.filter(|_| fixed.is_none());
+        let scene = comparison.scene().scene();
+        let frames = self.frames(&path, |seconds| match sun {
+            Some(Sunlight::OfFile(index)) => {
+                let pose = scene.pose(seconds.map(|_| 0), seconds.unwrap_or(0.0));
+                scene.suns[index].direction(&pose).and_then(LightSettings::from_direction)
+            }
+            Some(Sunlight::Still(direction)) => LightSettings::from_direction(direction),
+            None => fixed,
+        });
+        let first = frames.first().and_then(|frame| LightSettings::from_direction(frame.view.direction));
+        let light = fixed.or(first).unwrap_or_default();
         notes.extend(ray_offset_note(comparison.scene().bounds().size(), judging.ray_offset));
         Ok(Prepared { comparison, judging, path, light, frames, notes, scene_notes })
+    }
+
+    /// Returns the chosen or strongest directional light of the file, or the sun of a built-in scene.
+    fn sun_of(&self, scene: &Scene) -> Result<Option<Sunlight>> {
+        let still = || scene.sun.map(|sun| Sunlight::Still(sun.direction));
+        let Some(number) = self.sun else { return Ok(scene.strongest_sun().map(Sunlight::OfFile).or_else(still)) };
+        let count = scene.suns.len();
+        let index = (number as usize).checked_sub(1).filter(|index| *index < count);
+        let index = index
+            .with_context(|| format!("--sun {number}: the file has {count} directional lights, counted from 1"))?;
+        Ok(Some(Sunlight::OfFile(index)))
     }
 
     /// The scene's name in reports.
@@ -148,32 +192,40 @@ impl Job {
         Ok(())
     }
 
-    fn frames(&self, path: &CameraPath, light: &LightSettings) -> Vec<JobFrame> {
-        let direction = light.direction();
+    /// The frames of a path, with the light at a time of the animation, in seconds; the default light where there is none.
+    fn frames(&self, path: &CameraPath, light: impl Fn(Option<f32>) -> Option<LightSettings>) -> Vec<JobFrame> {
+        let seconds = |index: usize| self.play.map(|fps| index as f32 / fps);
         let names = path.names();
         let frames = path.frames.iter().zip(names).enumerate().map(|(index, (frame, name))| JobFrame {
             name,
             group: frame.group.clone(),
             view: View {
                 camera: frame.camera,
-                direction,
+                direction: light(seconds(index)).unwrap_or_default().direction(),
                 is_first: index == 0 || path.frames[index - 1].group != frame.group,
             },
-            seconds: self.play.map(|fps| index as f32 / fps),
+            seconds: seconds(index),
         });
         frames.collect()
     }
 }
 
-/// Says when shadow rays start so far over the surfaces that they pass over what lies close together.
+/// Says when shadow rays do not start a millimetre over the surfaces, and when they start so far over them that they pass
+/// over what lies close together.
 fn ray_offset_note(size: Vec3, offset: f64) -> Option<String> {
     let size = f64::from(size.length());
-    (offset > size * COARSE_OFFSET).then(|| {
+    let (millimetres, usual) = (offset * 1e3, Judging::default().ray_offset);
+    if offset > size * COARSE_OFFSET * (1.0 + ROUNDING) {
+        return Some(format!(
+            "Shadow rays start {millimetres} mm over the surfaces, which is much for a scene {size:.2} m across: where \
+             surfaces lie closer together, truth takes them for lit and the map for shadowed (false shadow). Without \
+             --units-per-metre the distance follows from the scene's size."
+        ));
+    }
+    (offset != usual).then(|| {
         format!(
-            "Shadow rays start {:.3} mm over the surfaces, which is much for a scene {size:.2} m across: where \
-             surfaces lie closer together, truth takes them for lit and the map for shadowed (false shadow). \
-             --units-per-metre 0.1 measures ten times finer.",
-            offset * 1e3
+            "Shadow rays start {millimetres:.4} mm over the surfaces of this scene, which is {size:.3} m across. \
+             --units-per-metre N starts them N mm over the surfaces."
         )
     })
 }

@@ -5,15 +5,17 @@
 
 mod file;
 mod find;
+mod follow;
 mod probe;
 mod route;
 #[cfg(test)]
 mod scenes;
 
-use shadowfit::PerspectiveCamera;
+use shadowfit::Camera;
 use shadowfit_params::tool::LightSettings;
 
 pub(crate) use find::find;
+pub(crate) use follow::follow;
 
 /// Cameras in the order in which they are rendered.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +30,7 @@ pub(crate) struct CameraPath {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathFrame {
     /// Right-handed world, y up unless the path says otherwise, metres.
-    pub(crate) camera: PerspectiveCamera,
+    pub(crate) camera: Camera,
     /// Such as `orbit`; frames of a group follow each other, and the camera jumps between groups.
     pub(crate) group: String,
 }

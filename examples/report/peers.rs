@@ -223,7 +223,7 @@ fn choice(maps: &[Vec<FitMap>]) -> MapSelection {
 
 fn view(frame: &Frame, is_first: bool) -> View {
     let direction = DVec3::from_array(frame.light_dir).as_vec3();
-    View { camera: frame.camera(), direction, is_first }
+    View { camera: frame.camera().into(), direction, is_first }
 }
 
 fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<FittedMap>> {

@@ -102,7 +102,10 @@ mod tests {
     fn path() -> CameraPath {
         let (eye, forward, up) = (glam::DVec3::ZERO, glam::Vec3::NEG_Z, glam::Vec3::Y);
         let camera = PerspectiveCamera { eye, forward, up, fov_y: 1.0, aspect: 1.5, near: 0.1, far: 10.0 };
-        CameraPath { frames: vec![crate::path::PathFrame { camera, group: "orbit".into() }], light: None }
+        CameraPath {
+            frames: vec![crate::path::PathFrame { camera: camera.into(), group: "orbit".into() }],
+            light: None,
+        }
     }
 
     #[test]

@@ -29,7 +29,7 @@ fn what_was_drawn_before_the_device_was_lost_cannot_be_read_after_it() {
     let gpu = open_renderer_gpu();
     let (mut renderer, mut scene) = renderer(&gpu);
     let (camera, atmosphere) = (camera(), Atmosphere::default());
-    let frame = Frame::new(&camera, glam::Vec3::NEG_Y, &[], &atmosphere);
+    let frame = Frame::new(camera, glam::Vec3::NEG_Y, &[], &atmosphere);
     let (target, probe) = (renderer.target(&gpu, SIZE), ProbeTargets::new(&gpu.device, SIZE));
     renderer.draw(&gpu, &mut scene, &frame, &target).expect("a frame");
     renderer.draw_probe(&gpu, &mut scene, &frame, &probe).expect("a probe");
@@ -47,7 +47,7 @@ fn a_probe_on_a_lost_device_is_an_error() {
     let gpu = open_renderer_gpu();
     let (mut renderer, mut scene) = renderer(&gpu);
     let (camera, atmosphere) = (camera(), Atmosphere::default());
-    let frame = Frame::new(&camera, glam::Vec3::NEG_Y, &[], &atmosphere);
+    let frame = Frame::new(camera, glam::Vec3::NEG_Y, &[], &atmosphere);
     let targets = ProbeTargets::new(&gpu.device, SIZE);
     gpu.device.destroy();
     let probed = renderer.probe(&gpu, &mut scene, &frame, &targets);

@@ -14,7 +14,7 @@ fn each_split_has_coarser_texels_than_the_one_before() {
     for splits in ["practical", "uniform", "logarithmic"] {
         let technique = bench.sample.technique(&bench.values(None, &[("splits", splits)]));
         let camera = bench.sample.seen_by(None, 16.0 / 9.0);
-        let view = View { camera, direction: bench.sample.direction.normalize(), is_first: true };
+        let view = View { camera: camera.into(), direction: bench.sample.direction.normalize(), is_first: true };
         let maps = bench.scene.fit_alone(&mut ShadowFitter::new(&technique), Inputs::default(), &view).expect("maps");
         assert_eq!(maps.len(), 4);
         let texels: Vec<f32> = maps.iter().map(|map| map.projection.texel_size.max_element()).collect();

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use shadowfit::PerspectiveCamera;
 use shadowfit::glam::Vec3;
-use shadowfit::{Aabb, Technique};
+use shadowfit::{Aabb, Camera, Lens, PerspectiveCamera, Technique};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Scene, load_gltf};
 use shadowfit_study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, View};
@@ -31,10 +30,10 @@ const MORE_SCENES: [&str; 8] = [
     "bevy_terrain/Mountains.gltf",
 ];
 
-/// Views of the middle of a scene from two sides.
-fn views(bounds: Aabb) -> [View; 2] {
+/// Views of the middle of a scene from two sides, and an orthographic one.
+fn views(bounds: Aabb) -> [View; 3] {
     let (centre, radius) = ((bounds.min + bounds.max) * 0.5, (bounds.size().length() * 0.5).max(1e-3));
-    [Vec3::new(0.6, 0.5, 0.7), Vec3::new(-0.5, 0.25, 0.4)].map(|away| {
+    let views = [Vec3::new(0.6, 0.5, 0.7), Vec3::new(-0.5, 0.25, 0.4)].map(|away| {
         let eye = centre + away * radius;
         let camera = PerspectiveCamera {
             eye: eye.as_dvec3(),
@@ -45,8 +44,11 @@ fn views(bounds: Aabb) -> [View; 2] {
             near: radius * 1e-3,
             far: radius * 6.0,
         };
-        View { camera, direction: Vec3::new(-0.5, -0.7, -0.4).normalize(), is_first: true }
-    })
+        View { camera: camera.into(), direction: Vec3::new(-0.5, -0.7, -0.4).normalize(), is_first: true }
+    });
+    let lens = Lens::Orthographic { half_height: radius * 0.5 };
+    let flat = View { camera: Camera { lens, ..views[0].camera }, ..views[0] };
+    [views[0], views[1], flat]
 }
 
 /// A technique with few errors, and one with all kinds of them.

@@ -93,7 +93,7 @@ impl Arrangement {
         let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
         comparison.add(*technique).expect("a technique");
         let camera = PerspectiveCamera { eye: self.camera.eye + away.as_dvec3(), ..self.camera };
-        let view = View { camera, direction: self.direction, is_first: true };
+        let view = View { camera: camera.into(), direction: self.direction, is_first: true };
         let outcomes = comparison.frame(&view, &mut SharedTruth::default()).expect("a frame");
         outcomes[0].judged.tally.clone()
     }

@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{Quat, Vec3};
 use shadowfit::settings::{Edges, FilterKind, SoftRadius, Softness};
-use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit::{Camera, PerspectiveCamera, Technique};
 use shadowfit_scene::builtin::{BuiltinScene, default_scene};
 use shadowfit_scene::{AlphaMode, Scene};
 use shadowfit_study::{Comparison, Judging, SharedTruth, View};
@@ -59,7 +59,7 @@ fn views(scene: &Scene) -> [View; 2] {
     let view = start_view(scene, SIZE);
     let target = view.camera.eye + view.camera.forward.as_dvec3() * 8.0;
     let away = Quat::from_rotation_y(2.0) * (view.camera.eye - target).as_vec3();
-    let camera = PerspectiveCamera {
+    let camera = Camera {
         eye: target + away.as_dvec3() + Vec3::Y.as_dvec3(),
         forward: -(away + Vec3::Y).normalize(),
         ..view.camera
@@ -127,7 +127,7 @@ fn seen_from(eye: Vec3) -> View {
         near: 0.1,
         far: 60.0,
     };
-    View { camera, direction: Vec3::new(-0.6, -1.0, -0.35).normalize(), is_first: true }
+    View { camera: camera.into(), direction: Vec3::new(-0.6, -1.0, -0.35).normalize(), is_first: true }
 }
 
 #[test]

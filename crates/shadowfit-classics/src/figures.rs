@@ -160,7 +160,7 @@ impl Bench<'_> {
         scene: &mut PreparedScene,
         values: &SampleValues,
     ) -> Result<Vec<(&'static str, f64)>> {
-        let camera = PixelCamera::new(&scene.camera_for_rays(self.camera), self.size);
+        let camera = PixelCamera::new(scene.camera_for_rays(self.camera), self.size);
         let truth = crate::occlusion::truth(scene.rays(), &camera);
         let mut errors = Vec::new();
         for (name, options) in METHODS {
@@ -180,7 +180,7 @@ impl Bench<'_> {
         let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(technique), 1)?;
         let judging = Judging { size: self.size, ray_offset: RAY_OFFSET, crawl: false, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
-        let view = View { camera: *self.camera, direction: self.sample.direction, is_first: true };
+        let view = View { camera: self.camera.into(), direction: self.sample.direction, is_first: true };
         let maps = scene.fit_alone(&mut ShadowFitter::new(technique), Inputs::default(), &view)?;
         evaluator.judge_async(&self.gpu, scene, &view, &maps, &mut SharedTruth::default()).await
     }
@@ -194,7 +194,7 @@ impl Bench<'_> {
             drawer.probe(&self.gpu, scene, self.sample, frame, self.size).await.context("the sample's shadows")?;
         let origin = scene.origin();
         let rays = scene.rays();
-        let camera = PixelCamera::new(&scene.camera_for_rays(self.camera), self.size);
+        let camera = PixelCamera::new(scene.camera_for_rays(self.camera), self.size);
         // The light's matrix takes positions relative to the eye.
         let clip_from_world =
             frame.light.clip_from_world.as_dmat4() * DMat4::from_translation(origin - self.camera.eye);

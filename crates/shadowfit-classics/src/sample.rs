@@ -168,7 +168,7 @@ impl Sample {
     pub fn camera(&self) -> (FlyCamera, CameraSettings) {
         let SampleView { eye, forward, fov_y, near, far, speed } = self.view;
         let camera = FlyCamera::look_at(eye, eye + forward.as_dvec3());
-        (camera, CameraSettings { fov_y, near, far, speed })
+        (camera, CameraSettings { fov_y, near, far, speed, ..CameraSettings::default() })
     }
 }
 

@@ -52,6 +52,8 @@ pub enum Command {
     Reset,
     /// Put the camera back to where it began. A button of the panel.
     ResetCamera,
+    /// Take the camera's roll away.
+    LevelCamera,
     /// Put the eye at a point and look at another, both in metres.
     LookAt {
         /// Position of the eye.

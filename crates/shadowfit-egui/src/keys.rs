@@ -152,6 +152,7 @@ fn picture() -> Vec<KeyHelp> {
         key("I", "shadow map inset", Command::NextInset),
         key("O", "outside view", Command::ToggleOutside),
         key("G", "freeze the fit", Command::ToggleFreeze),
+        key("N", "level the camera", Command::LevelCamera),
         key("L", "animate the sun", Command::ToggleSun),
         key("Space", "play or pause", Command::TogglePlay),
     ]

@@ -1,6 +1,6 @@
 //! The card that says why a pixel is as it is.
 
-use egui::{Area, Context, Frame, Grid, Id, Order, Pos2, RichText, Ui, Vec2};
+use egui::{Align2, Area, Context, Frame, Grid, Id, Order, Pos2, Rect, RichText, Ui, Vec2};
 
 use crate::PixelClass;
 use crate::maps;
@@ -38,7 +38,12 @@ pub struct WhyCard<'a> {
 impl WhyCard<'_> {
     /// The lines of the list: name and value.
     fn lines(&self) -> impl Iterator<Item = (&'static str, String)> {
-        let position = self.position.map(|[x, y, z]| format!("{x:.2}, {y:.2}, {z:.2} m"));
+        let position = self.position.map(|[x, y, z]| {
+            // A hundredth, or three digits in the model of a small thing.
+            let largest = x.abs().max(y.abs()).max(z.abs()).max(1e-6);
+            let decimals = (2.0 - largest.log10().floor()).clamp(2.0, 8.0) as usize;
+            format!("{x:.decimals$}, {y:.decimals$}, {z:.decimals$} m")
+        });
         [
             ("Position", position),
             ("Texel", self.texel.map(|[x, y]| format!("{x}, {y}"))),
@@ -79,16 +84,25 @@ pub fn why_card(ui: &mut Ui, why: &WhyCard<'_>) {
     });
 }
 
-/// The [`why_card`] on a ground of its own beside `pointer`, kept within the window. It lets the pointer through.
-pub fn why_overlay(ctx: &Context, pointer: Pos2, why: &WhyCard<'_>) {
+/// Shows the [`why_card`] on a ground of its own beside `pointer`, within `picture`: right of the pointer if there is room,
+/// else left of it. A picture smaller than the card cuts it off. It lets the pointer through.
+pub fn why_overlay(ctx: &Context, picture: Rect, pointer: Pos2, why: &WhyCard<'_>) {
+    let frame = Frame::popup(&ctx.global_style());
+    let sides = frame.total_margin().sum().x;
+    let width = WIDTH.min(picture.width() - sides).max(0.0);
+    let room = |side: f32| side >= GAP + width + sides;
+    let is_left = !room(picture.right() - pointer.x) && room(pointer.x - picture.left());
+    let (pivot, aside) = if is_left { (Align2::RIGHT_TOP, -GAP) } else { (Align2::LEFT_TOP, GAP) };
     Area::new(Id::unique("shadowfit why"))
         .order(Order::Tooltip)
         .interactable(false)
-        .fixed_pos(pointer + Vec2::splat(GAP))
-        .constrain_to(ctx.content_rect())
+        .pivot(pivot)
+        .fixed_pos(pointer + Vec2::new(aside, GAP))
+        .constrain_to(picture)
         .show(ctx, |ui| {
-            Frame::popup(ui.style()).show(ui, |ui| {
-                ui.set_width(WIDTH);
+            ui.set_clip_rect(picture);
+            frame.show(ui, |ui| {
+                ui.set_width(width);
                 why_card(ui, why);
             });
         });

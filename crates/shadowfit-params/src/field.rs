@@ -64,6 +64,16 @@ impl Plain for u32 {
     }
 }
 
+impl Plain for Option<u32> {
+    fn value(&self) -> Value {
+        self.map_or(Value::Unset, |number| number.value())
+    }
+
+    fn assign(&mut self, value: Value) {
+        *self = value.number().map(|number| number as u32);
+    }
+}
+
 impl Plain for Option<f32> {
     fn value(&self) -> Value {
         self.map_or(Value::Unset, |number| number.value())

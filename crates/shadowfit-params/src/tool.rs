@@ -14,6 +14,9 @@ pub struct LightSettings {
     /// Hour of the day by the sun, within [`DAY`], whose sun is used instead of the two angles; `None`
     /// for these. Default: `None`.
     pub hour: Option<f32>,
+    /// Number of the file's directional light, counted from 1, whose direction the tool keeps in the two angles;
+    /// `None` for angles that a person sets. A light that the file lacks counts as `None`. Default: `None`.
+    pub file: Option<u32>,
     /// Compass angle of the point that the light comes from, in radians from +z toward +x. Default:
     /// 0.6.
     pub azimuth: f32,
@@ -28,7 +31,7 @@ pub struct LightSettings {
 
 impl Default for LightSettings {
     fn default() -> Self {
-        Self { hour: None, azimuth: 0.6, elevation: 0.75, animate: false, animate_speed: 0.1 }
+        Self { hour: None, file: None, azimuth: 0.6, elevation: 0.75, animate: false, animate_speed: 0.1 }
     }
 }
 
@@ -41,14 +44,23 @@ const LATITUDE: f64 = 40.0 * core::f64::consts::PI / 180.0;
 /// Angle that the sun turns in an hour, in radians.
 const TURN_IN_AN_HOUR: f64 = core::f64::consts::PI / 12.0;
 
-/// Least and greatest flying speed, in metres a second: from crawling over a chair to crossing a mountain range.
-pub const FLYING_SPEEDS: (f32, f32) = (0.1, 1_000.0);
+/// Least and greatest flying speed, in metres a second: for models below a millimetre and for lands of some 1000 km.
+pub const FLYING_SPEEDS: (f32, f32) = (1e-5, 1e6);
+
+/// Least and greatest height of an orthographic picture, in metres.
+pub const HEIGHTS: (f32, f32) = (1e-4, 1e5);
 
 /// Lens and speed of the free-flying camera. Its position is not a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSettings {
+    /// Number of the file's camera, counted from 1, that the tool follows; `None` for a camera that a person flies. A
+    /// camera that the file lacks counts as `None`. Default: `None`.
+    pub file: Option<u32>,
     /// Vertical field of view, in radians. Default: π/4.
     pub fov_y: f32,
+    /// Height of the picture of an orthographic lens, in metres, used instead of the field of view; `None` for a
+    /// perspective. Within [`HEIGHTS`]. Default: `None`.
+    pub height: Option<f32>,
     /// Distance of the near plane, in metres. Default: 0.1.
     pub near: f32,
     /// Distance of the far plane, in metres. Default: 200.
@@ -59,7 +71,7 @@ pub struct CameraSettings {
 
 impl Default for CameraSettings {
     fn default() -> Self {
-        Self { fov_y: core::f32::consts::FRAC_PI_4, near: 0.1, far: 200.0, speed: 5.0 }
+        Self { file: None, fov_y: core::f32::consts::FRAC_PI_4, height: None, near: 0.1, far: 200.0, speed: 5.0 }
     }
 }
 
@@ -199,6 +211,9 @@ pub struct ViewSettings {
     /// Stored depths that insets show as black and as white, 0..=1; `None` for the range in which the
     /// scene lies. Default: `None`.
     pub inset_depths: Option<[f32; 2]>,
+    /// Distance above the surface at which the shadow rays of judge and exact edges start, in metres; `None` for one that
+    /// suits the scene's size. Default: `None`.
+    pub ray_offset: Option<f32>,
     /// Whether the view from outside is shown beside the picture as well. Default: no.
     pub outside_beside: bool,
     /// Keeps the current fit while the camera flies on. Default: no.
@@ -217,6 +232,7 @@ impl Default for ViewSettings {
             inset: InsetMaps::One,
             inset_map: 1,
             inset_depths: None,
+            ray_offset: None,
             outside_beside: false,
             freeze_fit: false,
             play: true,
@@ -277,20 +293,28 @@ impl LightSettings {
         }
     }
 
+    /// Sets the angles of a light that travels in `direction` (world axes, any length). One that is zero or not finite
+    /// changes nothing.
+    pub fn point_along(&mut self, direction: Vec3) {
+        if let Some(light) = Self::from_direction(direction) {
+            (self.azimuth, self.elevation) = (light.azimuth, light.elevation);
+        }
+    }
+
     /// Moves an animated sun on by `seconds`: over the day and from its evening to its morning where there
-    /// is an hour, else around the vertical. A sun that is not animated stays.
+    /// is an hour, else around the vertical, away from the file's light. A sun that is not animated stays.
     pub fn advance(&mut self, seconds: f32) {
         use core::f32::consts::{PI, TAU};
         if !self.animate {
             return;
         }
         let turned = self.animate_speed * seconds;
-        match &mut self.hour {
-            Some(hour) => {
-                let next = *hour - DAY.0 + turned / TURN_IN_AN_HOUR as f32;
-                *hour = DAY.0 + next.rem_euclid(DAY.1 - DAY.0);
-            }
-            None => self.azimuth = (self.azimuth + turned + PI).rem_euclid(TAU) - PI,
+        if let Some(hour) = &mut self.hour {
+            let next = *hour - DAY.0 + turned / TURN_IN_AN_HOUR as f32;
+            *hour = DAY.0 + next.rem_euclid(DAY.1 - DAY.0);
+        } else {
+            self.file = None;
+            self.azimuth = (self.azimuth + turned + PI).rem_euclid(TAU) - PI;
         }
     }
 

@@ -1,7 +1,7 @@
 //! What a frame shows: plain data.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{FittedMap, PerspectiveCamera};
+use shadowfit::{Camera, FittedMap};
 use shadowfit_wgpu::Culling;
 
 use crate::uniform::Atmosphere;
@@ -11,7 +11,7 @@ use crate::{Inset, JudgedPicture, Line, Marks, Overlay, Quad};
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// Eye and lens that the picture is seen through.
-    pub camera: &'a PerspectiveCamera,
+    pub camera: Camera,
     /// Unit direction of travel of the light.
     pub direction: Vec3,
     /// The shadow maps with their biases, in order of their `far`; empty where there is nothing to fit.
@@ -48,18 +48,18 @@ pub struct Frame<'a> {
     /// Left, top, width and height of the part of the picture that is drawn, in pixels; all of it where `None`. The rest
     /// of the picture and of its depth buffer stays as it was; in probes it is as the sky.
     pub scissor: Option<[u32; 4]>,
+    /// Least distance above the surface at which the rays of exact edges start, in metres. Default: a millimetre.
+    pub ray_offset: f32,
 }
+
+/// Least distance above the surface at which the rays of exact edges start, in metres, for scenes of some metres.
+const RAY_OFFSET: f32 = 1e-3;
 
 impl<'a> Frame<'a> {
     /// A plain picture with shadows, for a light that travels along `direction` (unit, world axes).
-    pub fn new(
-        camera: &'a PerspectiveCamera,
-        direction: Vec3,
-        maps: &'a [FittedMap],
-        atmosphere: &'a Atmosphere,
-    ) -> Self {
+    pub fn new(camera: impl Into<Camera>, direction: Vec3, maps: &'a [FittedMap], atmosphere: &'a Atmosphere) -> Self {
         Self {
-            camera,
+            camera: camera.into(),
             direction,
             maps,
             maps_stay: false,
@@ -75,13 +75,14 @@ impl<'a> Frame<'a> {
             insets: &[],
             quads: &[],
             scissor: None,
+            ray_offset: RAY_OFFSET,
         }
     }
 
     /// The same frame seen through another camera, while points still choose their maps from this one's.
     #[must_use]
-    pub fn seen_through(self, camera: &'a PerspectiveCamera) -> Self {
-        Self { camera, choice: Some(self.chooser()), ..self }
+    pub fn seen_through(self, camera: impl Into<Camera>) -> Self {
+        Self { camera: camera.into(), choice: Some(self.chooser()), ..self }
     }
 
     /// Eye and unit forward direction from which view depths are counted.

@@ -1,7 +1,7 @@
 //! A picture that was judged against rays, as overlays and marks look it up.
 
 use glam::DMat4;
-use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit::{Camera, DepthConvention};
 
 use crate::target::DEPTH_FORMAT;
 use crate::uniform::JudgedUniform;
@@ -17,10 +17,11 @@ pub struct JudgedPicture<'a> {
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
     /// Camera that it was judged with.
-    pub camera: PerspectiveCamera,
+    pub camera: Camera,
     /// Its depth buffer, of one sample, such as [`ProbeTargets::depth_view`](crate::ProbeTargets::depth_view) of the
     /// probe that was judged. Surfaces that the judged camera did not see then count as not judged; without it they have
-    /// the class of the surface that hid them. Not needed where the frame has the same camera.
+    /// the class of the surface that hid them, and so they have with an orthographic camera. Not needed where the frame has
+    /// the same camera.
     pub depth: Option<&'a wgpu::TextureView>,
 }
 
@@ -73,7 +74,7 @@ impl JudgedInput {
         &self,
         gpu: &Gpu,
         judged: Option<JudgedPicture<'_>>,
-        camera: &PerspectiveCamera,
+        camera: &Camera,
         size: [u32; 2],
     ) -> wgpu::BindGroup {
         let uniform = judged.map(|judged| JudgedUniform::new(&judged, camera, size)).unwrap_or_default();
@@ -97,20 +98,21 @@ const LABEL: &str = "judged picture";
 
 impl JudgedUniform {
     /// The uniform of a judged picture, for a picture of `viewport` pixels through a camera.
-    pub fn new(judged: &JudgedPicture<'_>, camera: &PerspectiveCamera, viewport: [u32; 2]) -> Self {
-        let clip = |camera: &PerspectiveCamera| camera.clip_from_world(DepthConvention::Reversed).as_dmat4();
+    pub fn new(judged: &JudgedPicture<'_>, camera: &Camera, viewport: [u32; 2]) -> Self {
+        let clip = |camera: &Camera| camera.clip_from_world(DepthConvention::Reversed).as_dmat4();
         let clip_from_world = clip(&judged.camera) * DMat4::from_translation(camera.eye - judged.camera.eye);
         let world_from_ndc = clip(camera).inverse();
         let size = judged.size.map(|side| side as f32);
         let is_same = judged.camera == *camera;
+        let reads_depths = judged.depth.is_some() && !is_same && !judged.camera.lens.is_orthographic();
         let scale = [0, 1].map(|i| if is_same { size[i] / viewport[i] as f32 } else { 0.0 });
         Self {
             clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
             world_from_ndc: world_from_ndc.as_mat4().to_cols_array_2d(),
             size,
             scale,
-            // The same camera sees the same surfaces.
-            near: if judged.depth.is_some() && !is_same { judged.camera.near } else { 0.0 },
+            // The same camera sees the same surfaces, and the shader reads the depths of perspectives alone.
+            near: if reads_depths { judged.camera.near } else { 0.0 },
             far: judged.camera.far,
             viewport: viewport.map(|side| side as f32),
         }

@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit::{Camera, DepthConvention};
 use shadowfit_params::figures::linear_map_tints;
 use shadowfit_scene::{Material, Texture};
 use shadowfit_wgpu::MAX_MAPS;
@@ -41,11 +41,12 @@ impl Default for Atmosphere {
 pub struct FrameUniform {
     /// Clip space (reversed depth) from world positions relative to the eye.
     pub clip_from_world: [[f32; 4]; 4],
-    /// Ray of a pixel = `ray_right * ndc.x + ray_up * ndc.y + ray_forward`, relative to the eye.
+    /// A line of sight moves by `ray_right * ndc.x + ray_up * ndc.y` from the middle of the picture: at a view depth of
+    /// 1 m for a perspective, at any view depth for an orthographic lens. In metres.
     pub ray_right: [f32; 4],
     /// See `ray_right`.
     pub ray_up: [f32; 4],
-    /// See `ray_right`.
+    /// Unit direction of view.
     pub ray_forward: [f32; 4],
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
@@ -63,27 +64,24 @@ pub struct FrameUniform {
     pub ground: [f32; 4],
     /// Width and height of the picture, in pixels.
     pub viewport: [f32; 2],
-    /// Keeps the struct a multiple of 16 bytes.
-    pub padding: [f32; 2],
+    /// View depth of the near plane, in metres.
+    pub near: f32,
+    /// 1 where all lines of sight are parallel, 0 for a perspective.
+    pub parallel: f32,
     /// Linear [`MAP_TINTS`](shadowfit_params::figures::MAP_TINTS), for overlays; alpha is 1.
     pub map_tints: [[f32; 4]; MAX_MAPS],
 }
 
 impl FrameUniform {
     /// The uniform of a frame; `to_light` is unit, `viewport` in pixels.
-    pub fn new(
-        camera: &PerspectiveCamera,
-        to_light: Vec3,
-        shadows: bool,
-        sky: &Atmosphere,
-        viewport: [u32; 2],
-    ) -> Self {
+    pub fn new(camera: impl Into<Camera>, to_light: Vec3, shadows: bool, sky: &Atmosphere, viewport: [u32; 2]) -> Self {
+        let camera: Camera = camera.into();
         let view = camera.view_from_world();
-        let half_height = (camera.fov_y * 0.5).tan();
+        let half = camera.half_size().as_vec2();
         Self {
             clip_from_world: camera.clip_from_world(DepthConvention::Reversed).to_cols_array_2d(),
-            ray_right: (view.row(0) * (half_height * camera.aspect)).to_array(),
-            ray_up: (view.row(1) * half_height).to_array(),
+            ray_right: (view.row(0) * half.x).to_array(),
+            ray_up: (view.row(1) * half.y).to_array(),
             ray_forward: (-view.row(2)).to_array(),
             to_light: to_light.to_array(),
             shadows: if shadows { 1.0 } else { 0.0 },
@@ -93,7 +91,8 @@ impl FrameUniform {
             horizon: sky.horizon.extend(0.0).to_array(),
             ground: sky.ground.extend(0.0).to_array(),
             viewport: viewport.map(|side| side as f32),
-            padding: [0.0; 2],
+            near: camera.near,
+            parallel: if camera.lens.is_orthographic() { 1.0 } else { 0.0 },
             map_tints: linear_map_tints().map(|tint| tint.extend(1.0).to_array()),
         }
     }

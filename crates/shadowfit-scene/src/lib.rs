@@ -13,6 +13,7 @@ mod plain;
 mod pose;
 mod sample;
 mod scene;
+mod view;
 
 pub use deform::Deformed;
 pub use error::SceneError;
@@ -21,6 +22,7 @@ pub use import::{DecodeImage, DecodedImage, LoadStep, SceneSize, gltf_images, lo
 pub use import::{decode_image, load_gltf, load_gltf_scene, load_gltf_with_progress};
 pub use pose::{Instance, Pose, Triangle};
 pub use scene::*;
+pub use view::Placement;
 
 /// Compiles the examples of the README.
 #[cfg(doctest)]

@@ -24,7 +24,9 @@ pub struct Scene {
     pub animations: Vec<Animation>,
     /// Cameras, in the order of their nodes.
     pub cameras: Vec<SceneCamera>,
-    /// The first directional light of the file, or the built-in scene's own.
+    /// Directional lights of the file, in the order of their nodes; empty for built-in scenes.
+    pub suns: Vec<SceneSun>,
+    /// The strongest of [`Scene::suns`] at rest, or the built-in scene's own sun; `None` if no directional light shines.
     pub sun: Option<Sun>,
     /// Index of the node that, with its descendants, cameras should look at, if the scene has one.
     pub subject: Option<usize>,
@@ -270,7 +272,20 @@ pub enum Lens {
     },
 }
 
-/// A directional light of a scene.
+/// A directional light of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSun {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Index of the node that carries it; its light travels along the node's -z.
+    pub node: usize,
+    /// Linear colour, each component at least 0.
+    pub color: Vec3,
+    /// Illuminance, in lux, at least 0.
+    pub intensity: f32,
+}
+
+/// The sun of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// Unit direction of travel of the light, in world space at rest.

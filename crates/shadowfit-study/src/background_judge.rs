@@ -242,7 +242,7 @@ mod tests {
             near: 0.1,
             far: 150.0,
         };
-        View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
+        View { camera: camera.into(), direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
     }
 
     fn wait(judge: &mut BackgroundJudge) -> Result<JudgeResult> {

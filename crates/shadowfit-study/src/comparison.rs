@@ -22,9 +22,10 @@ struct Entry {
 /// Techniques that are compared in a scene.
 #[derive(Debug)]
 pub struct Comparison {
+    /// How pictures of the techniques that are added from now on are judged.
+    pub judging: Judging,
     gpu: Gpu,
     scene: PreparedScene,
-    judging: Judging,
     entries: Vec<Entry>,
 }
 

@@ -6,7 +6,8 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use shadowfit::FittedMap;
 use shadowfit_render::{
-    Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RayError, RenderTarget, Renderer, Statistics,
+    Atmosphere, Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RayError, RenderTarget, Renderer,
+    Statistics,
 };
 use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
@@ -48,7 +49,13 @@ impl Evaluator {
         Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None, drawn: Vec::new() }
     }
 
-    /// Draws the maps of a frame and its shaded picture.
+    /// Returns the frame of a view. Rays of exact edges start at the judge's distance above the surface.
+    fn frame<'a>(&self, view: &View, maps: &'a [FittedMap], atmosphere: &'a Atmosphere) -> Frame<'a> {
+        Frame { ray_offset: self.judging.ray_offset as f32, ..view.frame(maps, atmosphere) }
+    }
+
+    /// Draws the maps of a frame and its shaded picture. Rays of exact edges start at the judge's distance
+    /// above the surface.
     ///
     /// # Errors
     ///
@@ -62,6 +69,7 @@ impl Evaluator {
     ) -> Result<Statistics, ShadowMapError> {
         // Without rays edges are filtered, and the renderer says so.
         let _rays = self.make_rays(gpu, scene);
+        let frame = &Frame { ray_offset: self.judging.ray_offset as f32, ..*frame };
         let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, frame, picture)?;
         self.drawn.clear();
         self.drawn.extend_from_slice(frame.maps);
@@ -87,7 +95,7 @@ impl Evaluator {
         query: &PixelQuery,
     ) -> Result<PixelRead> {
         let atmosphere = view.atmosphere();
-        let frame = Frame { maps_stay: true, ..view.frame(&self.drawn, &atmosphere) };
+        let frame = Frame { maps_stay: true, ..self.frame(view, &self.drawn, &atmosphere) };
         Ok(self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, query)?)
     }
 
@@ -110,7 +118,8 @@ impl Evaluator {
     ) -> Result<Vec<u8>> {
         let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
         let picture = kept.unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
-        self.draw(gpu, scene, &view.frame(maps, &view.atmosphere()), &picture)?;
+        let atmosphere = view.atmosphere();
+        self.draw(gpu, scene, &view.frame(maps, &atmosphere), &picture)?;
         let pixels = picture.read(gpu);
         self.picture = Some(picture);
         Ok(pixels?)
@@ -359,7 +368,7 @@ impl Evaluator {
         let kept = targets.filter(|targets| targets.size == self.judging.size);
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
         let atmosphere = view.atmosphere();
-        let frame = Frame { choice, ..view.frame(maps, &atmosphere) };
+        let frame = Frame { choice, ..self.frame(view, maps, &atmosphere) };
         self.make_rays(gpu, scene)?;
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::demand;
 use shadowfit::demand::needed_texel;
 use shadowfit::demand::{Seen, SeenSpace};
-use shadowfit::{FitError, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique, ViewFrustum};
+use shadowfit::{Camera, FitError, FitInput, FittedMaps, ShadowFitter, Technique, ViewFrustum};
 use shadowfit_params::Inputs;
 use shadowfit_truth::Tracer;
 
@@ -81,8 +81,8 @@ impl PosedScene {
             None if rays == RayUse::IfReady => return Ok(()),
             None => self.shared_rays(),
         };
-        let camera = self.camera_for_rays(&view.camera);
-        let seen = see_by_rays(&rays.tracer, &camera, view.direction, fitter.technique())?;
+        let camera = self.camera_for_rays(view.camera);
+        let seen = see_by_rays(&rays.tracer, camera, view.direction, fitter.technique())?;
         fitter.see(seen.moved(self.origin()));
         Ok(())
     }
@@ -96,37 +96,41 @@ impl PosedScene {
 /// As [`SeenSpace::new`].
 pub fn see_by_rays(
     tracer: &Tracer,
-    camera: &PerspectiveCamera,
+    camera: impl Into<Camera>,
     direction: Vec3,
     technique: &Technique,
 ) -> Result<Seen, FitError> {
+    let camera: Camera = camera.into();
     let settings = &technique.fit;
     let space = SeenSpace::new(&camera.frustum()?, direction, settings.up, settings.max_distance)?;
     let mut seen = Seen::new(space);
     let world_from_view = camera.view_from_world().inverse();
     let [right, up, back] =
         [world_from_view.x_axis, world_from_view.y_axis, world_from_view.z_axis].map(|axis| axis.truncate().as_dvec3());
-    let tan_y = (f64::from(camera.fov_y) * 0.5).tan();
-    let tan_x = tan_y * f64::from(camera.aspect);
-    let pixel = 2.0 * tan_y / f64::from(demand::PIXELS);
+    let (half, is_orthographic) = (camera.half_size(), camera.lens.is_orthographic());
+    let pixel = 2.0 * half.y / f64::from(demand::PIXELS);
     for row in 0..ROWS {
         for column in 0..COLUMNS {
-            let x = (2.0 * (f64::from(column) + 0.5) / f64::from(COLUMNS) - 1.0) * tan_x;
-            let y = (1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(ROWS)) * tan_y;
-            let ray: DVec3 = right * x + up * y - back;
-            let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3()) else { continue };
+            let x = (2.0 * (f64::from(column) + 0.5) / f64::from(COLUMNS) - 1.0) * half.x;
+            let y = (1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(ROWS)) * half.y;
+            let aside: DVec3 = right * x + up * y;
+            // Lines of sight meet in the eye, or are parallel.
+            let (from, ray) = if is_orthographic { (aside, -back) } else { (DVec3::ZERO, aside - back) };
+            let Some(hit) = tracer.first_hit((camera.eye + from).as_vec3(), ray.as_vec3()) else { continue };
             let normal = tracer.normal(hit.triangle).as_dvec3();
             let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
             let depth = f64::from(hit.distance);
-            // How far the point moves on its surface when the ray moves across the picture at a depth of one metre.
+            // How far the point moves on its surface when the line of sight moves by one metre: at a depth of one metre
+            // for a perspective.
             let slide = |across: DVec3| across - ray * (across.dot(normal) / ray.dot(normal));
             let [right, down] = [slide(right), slide(-up)];
             if normal.dot(direction.as_dvec3()) < 0.0 {
                 let texel = needed_texel(right.as_vec3(), down.as_vec3(), direction);
                 seen.count_depth(hit.distance, -texel.log2());
             }
-            let [right, down] = [right, down].map(|step| (step * (pixel * depth)).as_vec3());
-            if let Some(cell) = space.demand.index((ray * depth).as_vec3(), normal.as_vec3(), right, down) {
+            let spread = if is_orthographic { 1.0 } else { depth };
+            let [right, down] = [right, down].map(|step| (step * (pixel * spread)).as_vec3());
+            if let Some(cell) = space.demand.index((from + ray * depth).as_vec3(), normal.as_vec3(), right, down) {
                 seen.count_cell(cell);
             }
         }
@@ -136,6 +140,7 @@ pub fn see_by_rays(
 
 #[cfg(test)]
 mod tests {
+    use shadowfit::PerspectiveCamera;
     use shadowfit_render::Renderer;
     use shadowfit_scene::builtin::default_scene;
     use shadowfit_testing::renderer_gpu;
@@ -163,7 +168,7 @@ mod tests {
             near: 0.1,
             far: 150.0,
         };
-        View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
+        View { camera: camera.into(), direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
     }
 
     /// A fitter of a technique by name, and what its fits are given.
@@ -228,15 +233,14 @@ mod tests {
     fn rays_count_places_and_depths_in_world_positions() {
         let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
         let ground = [corner(-50.0, 50.0), corner(50.0, 50.0), corner(0.0, -50.0)];
-        let camera =
-            PerspectiveCamera { eye: DVec3::new(0.0, 2.0, 5.0), forward: Vec3::NEG_Z, ..view(0.0, true).camera };
-        let seen = see_by_rays(&Tracer::new([ground]), &camera, Vec3::NEG_Y, &Technique::default());
+        let camera = Camera { eye: DVec3::new(0.0, 2.0, 5.0), forward: Vec3::NEG_Z, ..view(0.0, true).camera };
+        let seen = see_by_rays(&Tracer::new([ground]), camera, Vec3::NEG_Y, &Technique::default());
         let origin = DVec3::new(1e5, 0.0, -2e5);
         let seen = seen.expect("a camera that makes sense").moved(origin);
         assert_eq!(seen.demand().space.origin, origin + camera.eye);
         assert!(seen.demand().counts.iter().sum::<u32>() > 100);
         assert!(seen.histogram().bins.iter().sum::<u32>() > 100);
-        let from_below = see_by_rays(&Tracer::new([ground]), &camera, Vec3::Y, &Technique::default());
+        let from_below = see_by_rays(&Tracer::new([ground]), camera, Vec3::Y, &Technique::default());
         let from_below = from_below.expect("a camera that makes sense");
         assert_eq!(from_below.histogram().bins.iter().sum::<u32>(), 0, "what faces away does not count");
     }

@@ -17,8 +17,8 @@ pub fn atmosphere(sight: f32) -> Atmosphere {
 impl View {
     /// A plain picture of the view, with the shadows that these maps give. Where they were drawn last, they are not drawn
     /// again.
-    pub fn frame<'a>(&'a self, maps: &'a [FittedMap], atmosphere: &'a Atmosphere) -> Frame<'a> {
-        Frame { maps_may_stay: true, ..Frame::new(&self.camera, self.direction, maps, atmosphere) }
+    pub fn frame<'a>(&self, maps: &'a [FittedMap], atmosphere: &'a Atmosphere) -> Frame<'a> {
+        Frame { maps_may_stay: true, ..Frame::new(self.camera, self.direction, maps, atmosphere) }
     }
 
     /// Sun and sky with a haze that suits the camera's far plane.
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn haze_thins_with_the_distance_that_it_suits() {
-        let view = View { camera: camera(10.0), direction: Vec3::NEG_Y, is_first: true };
+        let view = View { camera: camera(10.0).into(), direction: Vec3::NEG_Y, is_first: true };
         let own = view.atmosphere().haze_per_metre;
         let near = |value: f32, expected: f32| (value - expected).abs() <= 1e-6 * expected;
         assert!(near(atmosphere(20.0).haze_per_metre, own / 2.0));
@@ -59,11 +59,11 @@ mod tests {
 
     #[test]
     fn a_frame_seen_from_outside_keeps_the_eye_that_chooses_the_maps() {
-        let view = View { camera: camera(10.0), direction: Vec3::NEG_Y, is_first: true };
+        let view = View { camera: camera(10.0).into(), direction: Vec3::NEG_Y, is_first: true };
         let outside = PerspectiveCamera { eye: DVec3::new(5.0, 6.0, 7.0), ..camera(100.0) };
         let atmosphere = view.atmosphere();
         let inside = view.frame(&[], &atmosphere);
-        let drawn = inside.seen_through(&outside);
+        let drawn = inside.seen_through(outside);
         assert_eq!((drawn.camera.eye, drawn.choice), (outside.eye, Some((DVec3::ZERO, Vec3::NEG_Z))));
         assert_eq!(inside.choice, None);
     }

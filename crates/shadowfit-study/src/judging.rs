@@ -1,7 +1,7 @@
 //! How pictures are judged, and the truth that all techniques of a frame share.
 
 use glam::DVec3;
-use shadowfit::PerspectiveCamera;
+use shadowfit::Camera;
 use shadowfit_truth::{PixelCamera, Truth, TruthLight, TruthSettings};
 
 use crate::View;
@@ -53,8 +53,8 @@ impl Judging {
 
     /// The rays of a view's pixels, relative to the world position `origin`, in metres, that of the scene's rays.
     pub(crate) fn pixel_camera(&self, origin: DVec3, view: &View) -> PixelCamera {
-        let camera = PerspectiveCamera { eye: view.camera.eye - origin, ..view.camera };
-        PixelCamera::new(&camera, self.size)
+        let camera = Camera { eye: view.camera.eye - origin, ..view.camera };
+        PixelCamera::new(camera, self.size)
     }
 }
 

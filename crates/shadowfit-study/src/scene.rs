@@ -4,8 +4,8 @@
 use core::fmt;
 use std::sync::Arc;
 
-use glam::DVec3;
-use shadowfit::{Aabb, PerspectiveCamera};
+use glam::{DVec3, Vec3};
+use shadowfit::{Aabb, Camera};
 use shadowfit_params::BoxSource;
 use shadowfit_render::{DeviceFault, Gpu, GpuScene, RayError};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
@@ -22,6 +22,24 @@ const NEAR_THE_ORIGIN: f32 = 1000.0;
 fn origin_of(bounds: &Aabb) -> DVec3 {
     let middle = (bounds.min + bounds.max) * 0.5;
     if middle.abs().max_element() <= NEAR_THE_ORIGIN { DVec3::ZERO } else { middle.as_dvec3().round() }
+}
+
+/// Distance above the surface at which shadow rays start, in metres, in scenes of 2 m to 1 km.
+const RAY_OFFSET: f64 = 1e-3;
+/// Greatest share of a scene's size that this distance is, so that rays start below the next surface of a small model.
+const RAY_OFFSET_PER_SIZE: f64 = 5e-4;
+/// Least share of the greatest coordinate that it is, about 16 times the rounding of an f32 position.
+const RAY_OFFSET_PER_COORDINATE: f64 = 1e-6;
+
+/// Returns the distance above the surface at which shadow rays start, in metres, for a scene with these bounds whose rays
+/// are relative to `origin`: a millimetre, less in models below 2 m, more where coordinates exceed 1 km.
+fn ray_offset(bounds: &Aabb, origin: DVec3) -> f64 {
+    let size = f64::from((bounds.max - bounds.min).length());
+    let farthest = |corner: Vec3| (corner.as_dvec3() - origin).abs().max_element();
+    let coordinate = farthest(bounds.min).max(farthest(bounds.max));
+    // A scene without a size has no surfaces whose distance matters.
+    let largest = if size > 0.0 { size * RAY_OFFSET_PER_SIZE } else { RAY_OFFSET };
+    RAY_OFFSET.min(largest).max(coordinate * RAY_OFFSET_PER_COORDINATE)
 }
 
 /// Why a scene cannot be made ready, with its name.
@@ -83,6 +101,7 @@ pub struct PosedScene {
     clusters: SceneBoxes,
     objects: SceneBoxes,
     origin: DVec3,
+    ray_offset: f64,
     rays: PosedRays,
 }
 
@@ -117,6 +136,7 @@ impl PreparedScene {
             clusters,
             objects,
             origin: origin_of(&bounds),
+            ray_offset: ray_offset(&bounds, origin_of(&bounds)),
             rays: PosedRays::default(),
         };
         Ok(Self { gpu_scene, no_gpu_rays: None, posed })
@@ -192,6 +212,7 @@ impl PosedScene {
             clusters: self.clusters.clone(),
             objects: self.objects.clone(),
             origin: self.origin,
+            ray_offset: self.ray_offset,
             rays: self.rays.snapshot(),
         }
     }
@@ -220,6 +241,12 @@ impl PosedScene {
     pub fn subject_bounds(&self) -> Aabb {
         let subject = self.scene.subject.and_then(|subject| self.scene.node_bounds(&self.pose, subject));
         subject.unwrap_or(self.bounds)
+    }
+
+    /// Distance above the surface at which shadow rays start by default, in metres: a millimetre, less for a scene smaller
+    /// than 2 m, more where coordinates exceed 1 km. It stays while the scene moves.
+    pub fn ray_offset(&self) -> f64 {
+        self.ray_offset
     }
 
     /// World position that [`Self::rays`] are relative to, in metres.
@@ -267,8 +294,9 @@ impl PosedScene {
     }
 
     /// A camera relative to the origin of the rays.
-    pub fn camera_for_rays(&self, camera: &PerspectiveCamera) -> PerspectiveCamera {
-        PerspectiveCamera { eye: camera.eye - self.origin, ..*camera }
+    pub fn camera_for_rays(&self, camera: impl Into<Camera>) -> Camera {
+        let camera = camera.into();
+        Camera { eye: camera.eye - self.origin, ..camera }
     }
 
     /// Number of triangles, every instance counted.

@@ -177,11 +177,11 @@ mod tests {
     #[test]
     fn a_number_out_of_its_range_is_written_as_the_nearest_one_within() {
         let mut settings = Settings::default();
-        settings.camera.near = 0.004;
+        settings.camera.near = 4e-8;
         let file: toml::Table = toml::from_str(&settings_to_toml(&settings, "")).expect("TOML");
         let mut read = Settings::default();
         settings_from_toml(&file, &mut read).expect("it can be read");
-        assert_eq!(read.camera.near, 0.01);
+        assert_eq!(read.camera.near, 1e-6);
     }
 
     #[test]

@@ -362,7 +362,8 @@ mod tests {
                 aspect: 16.0 / 9.0,
                 near: 0.1,
                 far: 40.0,
-            },
+            }
+            .into(),
             direction: Vec3::new(0.5, -0.7, -0.2).normalize(),
             is_first,
         };

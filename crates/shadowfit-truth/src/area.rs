@@ -80,21 +80,21 @@ fn seen(
     side: u32,
 ) -> Option<Area> {
     let ray = camera.ray_of(pixel);
-    let width = 2.0 * camera.tan_half_fov.y / f64::from(camera.size[1]) * camera.view_depth(on_plane);
+    let width = 2.0 * camera.half_size.y / f64::from(camera.size[1]) * camera.spread(camera.view_depth(on_plane));
     let [right, down] = camera.pixel_axes();
     let (mut points, mut free, mut is_single) = (0_u32, 0_u32, true);
     let rays = settings.light.with_rays(side * side).rays();
     for index in 0..side * side {
         let place = |number: u32| (f64::from(number) + 0.5) / f64::from(side) - 0.5;
-        let through = ray + right * place(index % side) + down * place(index / side);
-        let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), through.as_vec3()) else {
+        let through = camera.moved(&ray, right * place(index % side) + down * place(index / side));
+        let Some(hit) = tracer.first_hit(through.origin.as_vec3(), through.direction.as_vec3()) else {
             is_single = false;
             continue;
         };
         let plane = tracer.plane_normal(hit.triangle);
-        let depth = tracer.refine(hit, plane, camera.eye, through);
-        let position = camera.eye + through * depth;
-        let facing = if plane.dot(through) > 0.0 { -plane } else { plane };
+        let depth = tracer.refine(hit, plane, through.origin, through.direction);
+        let position = through.at(depth);
+        let facing = if plane.dot(through.direction) > 0.0 { -plane } else { plane };
         is_single &= (position - on_plane).dot(normal).abs() <= width && facing.dot(normal) >= SAME_SURFACE;
         points += 1;
         let is_facing = facing.dot(settings.light.ray_from(position).direction) > 0.0;

@@ -53,7 +53,7 @@ pub mod fuzzed {
 
 pub use ambient::{AmbientSettings, AmbientTruth};
 pub use area::{AreaTally, area};
-pub use camera::PixelCamera;
+pub use camera::{PixelCamera, PixelRay};
 pub use class::Class;
 pub use crawl::{Crawl, MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};

@@ -156,7 +156,7 @@ impl PixelTruth<'_> {
     /// Pixels per texel along the worse axis, in the map that the point reads; infinite where the surface
     /// is edge-on to the light.
     fn texel_width(&self, choice: &MapSelection, pixel: usize, point: &TruthPoint) -> f32 {
-        let steps = self.camera.pixel_steps(self.camera.ray_of(pixel), point.normal, point.view_depth);
+        let steps = self.camera.pixel_steps(&self.camera.ray_of(pixel), point.normal, point.view_depth);
         let pixels = pixels_per_texel(choice.map.gradients(&choice.position).texels_per_step(steps)) as f32;
         if pixels.is_nan() { f32::INFINITY } else { pixels }
     }

@@ -19,8 +19,8 @@ pub(crate) struct SeenPoint {
 /// The nearest triangle at a pixel between the near and the far plane.
 pub(crate) fn seen_by_ray(tracer: &Tracer, camera: &PixelCamera, pixel: usize) -> Option<u32> {
     let ray = camera.ray_of(pixel);
-    let hit = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3())?;
-    let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), camera.eye, ray);
+    let hit = tracer.first_hit(ray.origin.as_vec3(), ray.direction.as_vec3())?;
+    let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), ray.origin, ray.direction);
     (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
 }
 
@@ -34,7 +34,8 @@ pub(crate) fn seen_point(tracer: &Tracer, camera: &PixelCamera, pixel: usize, tr
     let nearest = depths.into_iter().fold(f64::INFINITY, f64::min).max(camera.near);
     let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(camera.far);
     // A ray within the plane gives NaN, which `max` and `min` drop.
-    let view_depth = (normal.dot(corners[0] - camera.eye) / normal.dot(ray)).max(nearest).min(farthest);
-    let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
-    SeenPoint { position: camera.eye + ray * view_depth, normal, view_depth }
+    let along = normal.dot(ray.direction);
+    let view_depth = (normal.dot(corners[0] - ray.origin) / along).max(nearest).min(farthest);
+    let normal = if along > 0.0 { -normal } else { normal };
+    SeenPoint { position: ray.at(view_depth), normal, view_depth }
 }

@@ -80,12 +80,13 @@ impl Search {
         let view = &mut self.settings.view;
         (view.mode, view.play, view.freeze_fit, view.shadows) = (ViewMode::Final, false, false, true);
         self.settings.light.animate = false;
+        self.settings.camera.height = None;
         let light = self.settings.light.direction();
         let scene = &self.scene;
         let origin = scene.origin();
         let subject = relative_to(origin, &scene.subject_bounds());
         let has_subject = scene.scene().subject.is_some();
-        let lens = scene.camera_for_rays(&PerspectiveCamera { aspect: ASPECT, ..self.lens });
+        let lens = self.lens_for_rays();
         let mut settings = self.settings;
         let search = ViewSearch::new(scene, settings.inputs, light);
         let place = Place::new(&search, light, subject, has_subject, lens);
@@ -106,10 +107,15 @@ impl Search {
 }
 
 impl Search {
+    /// Returns the level camera relative to the origin of the rays.
+    fn lens_for_rays(&self) -> PerspectiveCamera {
+        PerspectiveCamera { aspect: ASPECT, up: Vec3::Y, eye: self.lens.eye - self.scene.origin(), ..self.lens }
+    }
+
     /// What to look for in the present view with the present settings.
     pub(crate) fn narrate(&self) -> String {
         let search = ViewSearch::new(&self.scene, self.settings.inputs, self.settings.light.direction());
-        let camera = self.scene.camera_for_rays(&PerspectiveCamera { aspect: ASPECT, ..self.lens });
+        let camera = self.lens_for_rays();
         narration::tell(self.artefact, &search, &camera, &self.settings)
     }
 }
@@ -163,7 +169,7 @@ impl Place {
     fn new(search: &ViewSearch<'_>, light: Vec3, bounds: Aabb, has_subject: bool, lens: PerspectiveCamera) -> Self {
         let mut shadows = search.shadows(&bounds);
         shadows.sort_by(|a, b| a.reach.total_cmp(&b.reach));
-        let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);
+        let radius = ((bounds.max - bounds.min).length() * 0.5).max(f32::MIN_POSITIVE);
         let whole = Self { bounds, center: (bounds.min + bounds.max) * 0.5, radius, lens, shadows };
         let Some(long) = whole.shadows.get(whole.shadows.len() * 3 / 4).copied() else { return whole };
         if has_subject || long.reach > radius * LARGE_REACH {
@@ -425,8 +431,8 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
 
 /// Distance beyond which hardly anything is seen, in metres.
 pub(crate) fn farthest_seen(scene: &PosedScene, light: Vec3, camera: &PerspectiveCamera) -> Option<f32> {
-    let camera = PerspectiveCamera { aspect: ASPECT, ..*camera };
-    let pixels = ViewSearch::new(scene, Inputs::default(), light).look(&scene.camera_for_rays(&camera));
+    let camera = PerspectiveCamera { aspect: ASPECT, eye: camera.eye - scene.origin(), ..*camera };
+    let pixels = ViewSearch::new(scene, Inputs::default(), light).look(&camera);
     let mut distances: Vec<f32> = pixels.iter().flatten().map(|seen| seen.distance).collect();
     distances.sort_by(f32::total_cmp);
     let index = (distances.len() as f32 * 0.98) as usize;

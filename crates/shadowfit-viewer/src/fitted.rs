@@ -1,14 +1,14 @@
 //! The maps of a view, and which of them a point reads.
 
 use glam::DVec3;
-use shadowfit::{FittedMaps, PerspectiveCamera, Technique, ViewFrustum};
+use shadowfit::{Camera, FittedMaps, Technique, ViewFrustum};
 
 /// The maps of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fitted {
     /// The camera of the view, whose view depths choose among maps that are read by view depth; `None` where nothing
     /// was fitted.
-    pub(crate) camera: Option<PerspectiveCamera>,
+    pub(crate) camera: Option<Camera>,
     /// How the maps are read.
     pub(crate) technique: Technique,
     /// View depth at which shadows end, in metres.
@@ -18,7 +18,8 @@ pub(crate) struct Fitted {
 }
 
 impl Fitted {
-    pub(crate) fn new(camera: PerspectiveCamera, technique: &Technique, maps: &FittedMaps) -> Self {
+    pub(crate) fn new(camera: impl Into<Camera>, technique: &Technique, maps: &FittedMaps) -> Self {
+        let camera = camera.into();
         let end = camera.far.min(technique.fit.max_distance);
         Self { camera: Some(camera), technique: *technique, end, maps: *maps }
     }
@@ -53,7 +54,7 @@ impl Fitted {
 mod tests {
     use glam::{DVec2, Vec3};
     use shadowfit::settings::{MapSelection, SplitScheme};
-    use shadowfit::{FitInput, FitState, Scratch};
+    use shadowfit::{FitInput, FitState, PerspectiveCamera, Scratch};
 
     use shadowfit::Slices;
 

@@ -5,6 +5,7 @@
 //! technique B, `sample.` an option of the sample, `was.` of the settings from before the artefact on show, and `ill.` of
 //! the technique that shows it, where it is fixed. Files have their name alone: no page can open a path.
 
+use std::f32::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -15,7 +16,6 @@ use shadowfit_egui::Artefact;
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, PARAMETERS, ParameterError};
 use shadowfit_render::FlyCamera;
-use shadowfit_render::camera::MAX_PITCH;
 use shadowfit_scene::builtin::BuiltinScene;
 
 use crate::source::{OPTION_PREFIX, SceneSource};
@@ -305,20 +305,26 @@ fn number(text: &str) -> Result<f32> {
     Ok(number)
 }
 
-/// Position in metres, and yaw and pitch in degrees.
+/// Position in metres, and yaw, pitch and, if there is one, roll in degrees.
 fn camera(text: &str) -> Result<FlyCamera> {
-    let what = "give x, y and z in metres, yaw and pitch in degrees";
+    let what = "give x, y and z in metres, yaw, pitch and perhaps roll in degrees";
     let numbers = text.split(',').map(|word| word.trim().parse().ok()).collect::<Option<Vec<f64>>>();
-    let [x, y, z, yaw, pitch] = numbers.and_then(|numbers| numbers.try_into().ok()).context(what)?;
-    let [yaw, pitch] = [yaw, pitch].map(|degrees: f64| degrees.to_radians() as f32);
-    ensure!([x, y, z].iter().all(|place| place.abs() <= FARTHEST) && yaw.is_finite() && pitch.is_finite(), what);
-    Ok(FlyCamera { position: DVec3::new(x, y, z), yaw, pitch: pitch.clamp(-MAX_PITCH, MAX_PITCH) })
+    let mut numbers = numbers.context(what)?;
+    if numbers.len() == 5 {
+        numbers.push(0.0);
+    }
+    let [x, y, z, yaw, pitch, roll] = numbers.try_into().ok().context(what)?;
+    let [yaw, pitch, roll] = [yaw, pitch, roll].map(|degrees: f64| degrees.to_radians() as f32);
+    let is_finite = [yaw, pitch, roll].iter().all(|angle| angle.is_finite());
+    ensure!([x, y, z].iter().all(|place| place.abs() <= FARTHEST) && is_finite, what);
+    Ok(FlyCamera { position: DVec3::new(x, y, z), yaw, pitch: pitch.clamp(-FRAC_PI_2, FRAC_PI_2), roll })
 }
 
 /// The text that [`camera`] reads, to the bit.
 fn camera_text(camera: &FlyCamera) -> String {
     let [x, y, z] = camera.position.to_array();
-    format!("{x},{y},{z},{},{}", degrees_text(camera.yaw), degrees_text(camera.pitch))
+    let roll = if camera.roll == 0.0 { String::new() } else { format!(",{}", degrees_text(camera.roll)) };
+    format!("{x},{y},{z},{},{}{roll}", degrees_text(camera.yaw), degrees_text(camera.pitch))
 }
 
 /// An angle in degrees with the fewest decimals that restore the radians.
@@ -367,7 +373,8 @@ mod tests {
     fn any_camera(random: &mut Random) -> FlyCamera {
         let mut number = |most: f32| (2.0 * random.share() - 1.0) * most;
         let position = DVec3::from_array([(); 3].map(|()| f64::from(number(1e7))));
-        FlyCamera { position, yaw: number(10.0), pitch: number(MAX_PITCH) }
+        let roll = number(1.0).max(0.0);
+        FlyCamera { position, yaw: number(10.0), pitch: number(FRAC_PI_2), roll }
     }
 
     #[test]
@@ -410,7 +417,8 @@ mod tests {
     #[test]
     fn what_is_as_the_scene_has_it_is_left_out() {
         assert_eq!(Link::default().to_fragment(), "#v=1&scene=courtyard");
-        let camera = FlyCamera { position: DVec3::new(1.5, 2.0, -3.0), yaw: 90.0_f32.to_radians(), pitch: -0.0 };
+        let camera =
+            FlyCamera { position: DVec3::new(1.5, 2.0, -3.0), yaw: 90.0_f32.to_radians(), pitch: -0.0, roll: 0.0 };
         let settings = vec![("view.mode".to_owned(), "error".to_owned())];
         let link = Link { camera: Some(camera), settings, ..Link::default() };
         assert_eq!(link.to_fragment(), "#v=1&scene=courtyard&camera=1.5,2,-3,90,-0&view.mode=error");

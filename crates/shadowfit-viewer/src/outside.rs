@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::culling::{Reader, caster_volumes};
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{CasterVolume, FittedMap, LightProjection, PerspectiveCamera};
+use shadowfit::{Camera, CasterVolume, FittedMap, LightProjection, PerspectiveCamera};
 use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::{Line, box_lines};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -130,7 +130,7 @@ fn arrow(fit: &LightProjection, color: Vec4) -> [Line; 3] {
 }
 
 /// A camera that sees all of the frustum and the boxes from behind and above the inner camera.
-pub(crate) fn camera(inner: &PerspectiveCamera, fitted: &Fitted) -> PerspectiveCamera {
+pub(crate) fn camera(inner: &Camera, fitted: &Fitted) -> PerspectiveCamera {
     let mut points: Vec<DVec3> = vec![inner.eye];
     let frustum = fitted.frustum().and_then(|frustum| frustum.slice(frustum.near, reach(fitted)).ok());
     points.extend(frustum.iter().flat_map(|f| f.corners.map(|corner| f.origin + corner.as_dvec3())));
@@ -149,7 +149,7 @@ pub(crate) fn camera(inner: &PerspectiveCamera, fitted: &Fitted) -> PerspectiveC
         let [across, along] = [offset.dot(right) / inner.aspect, offset.dot(up)].map(|side| side.abs() / tangent);
         across.max(along) + offset.dot(away)
     };
-    let distance = offsets().map(needed).fold(1e-3, f32::max) * ROOM;
+    let distance = offsets().map(needed).fold(f32::MIN_POSITIVE, f32::max) * ROOM;
     let radius = offsets().map(Vec3::length).fold(0.0, f32::max);
     PerspectiveCamera {
         eye: center + (away * distance).as_dvec3(),

@@ -2,6 +2,7 @@
 
 mod merge;
 
+use std::f32::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -93,23 +94,30 @@ struct SavedView {
     position: [f64; 3],
     yaw: f32,
     pitch: f32,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    roll: f32,
+}
+
+/// Whether a saved angle can be left out.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(angle: &f32) -> bool {
+    *angle == 0.0
 }
 
 impl From<FlyCamera> for SavedView {
     fn from(camera: FlyCamera) -> Self {
-        let [yaw, pitch] = [camera.yaw, camera.pitch].map(f32::to_degrees);
-        Self { position: camera.position.to_array(), yaw, pitch }
+        let [yaw, pitch, roll] = [camera.yaw, camera.pitch, camera.roll].map(f32::to_degrees);
+        Self { position: camera.position.to_array(), yaw, pitch, roll }
     }
 }
 
 impl SavedView {
     /// `None` where a number is not finite.
     fn camera(self) -> Option<FlyCamera> {
-        let mut camera =
-            FlyCamera { position: DVec3::from_array(self.position), yaw: self.yaw.to_radians(), pitch: 0.0 };
-        camera.pitch =
-            self.pitch.to_radians().clamp(-shadowfit_render::camera::MAX_PITCH, shadowfit_render::camera::MAX_PITCH);
-        (camera.position.is_finite() && camera.yaw.is_finite() && camera.pitch.is_finite()).then_some(camera)
+        let [yaw, pitch, roll] = [self.yaw, self.pitch, self.roll].map(f32::to_radians);
+        let position = DVec3::from_array(self.position);
+        let is_finite = position.is_finite() && [yaw, pitch, roll].iter().all(|angle| angle.is_finite());
+        is_finite.then(|| FlyCamera { position, yaw, pitch: pitch.clamp(-FRAC_PI_2, FRAC_PI_2), roll })
     }
 }
 
@@ -253,7 +261,7 @@ pub(crate) mod tests {
 
     /// A state in which everything differs from that of a first start.
     pub(crate) fn saved() -> Saved {
-        let camera = FlyCamera { position: DVec3::new(1e5, 2.0, -3.5), yaw: 0.5, pitch: -0.25 };
+        let camera = FlyCamera { position: DVec3::new(1e5, 2.0, -3.5), yaw: 0.5, pitch: -0.25, roll: 0.75 };
         let mut saved = Saved {
             theme: Theme::Light,
             scene: SceneSource::from_text("some/town.glb").with_index(Some(1)).expect("files have scenes"),

@@ -168,6 +168,7 @@ pub(crate) const ACTIONS: &[Action] = &[
     plain("undo", "undoes the last change", Command::Undo),
     plain("redo", "does again what was undone", Command::Redo),
     plain("reset", "puts settings and camera back to where they began", Command::Reset),
+    plain("level", "takes the camera's roll away", Command::LevelCamera),
     plain("reset-camera", "puts the camera back to where it began", Command::ResetCamera),
     command("bookmark", "1..9", "saves the view under a number", |words| words.digit().map(Command::SetBookmark)),
     command("goto", "1..9", "goes to a saved view", |words| words.digit().map(Command::GoToBookmark)),

@@ -20,13 +20,15 @@ mod depth_tests;
 #[cfg(test)]
 mod edges_tests;
 #[cfg(test)]
+mod file_tests;
+#[cfg(test)]
 mod live_tests;
 #[cfg(all(test, target_os = "linux"))]
 mod own_process_memory_tests;
 
 use core::fmt;
 
-use shadowfit::{Aabb, FittedMap, PerspectiveCamera};
+use shadowfit::{Aabb, Camera, FittedMap};
 use shadowfit_params::tool::Settings;
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
 use shadowfit_scene::Scene;
@@ -97,6 +99,8 @@ pub struct Stage {
     why: why::PixelQuestion,
     reads_depths: bool,
     sample: Option<SampleShow>,
+    /// Number of the file's camera whose lens the settings have taken.
+    followed: Option<u32>,
 }
 
 /// Views that a technique is tuned for.
@@ -123,6 +127,7 @@ impl Stage {
         Ok(Self {
             settings: home.0,
             camera: home.1,
+            followed: home.0.camera.file,
             animation: 0,
             split: 0.5,
             gpu,
@@ -161,6 +166,7 @@ impl Stage {
         self.scene = scene;
         self.home = home::home(&self.scene);
         (self.settings, self.camera) = self.home;
+        self.followed = self.settings.camera.file;
         (self.seconds, self.animation) = (0.0, 0);
         self.artefact = ArtefactShow::default();
         self.why = why::PixelQuestion::default();
@@ -255,12 +261,16 @@ impl Stage {
     /// Moves camera, sun and animation on by `seconds`.
     pub fn update(&mut self, input: &FlyInput, seconds: f32) {
         let input = self.steer_sample(input, seconds);
+        if input.moves() {
+            self.settings.camera.file = None;
+        }
         self.camera.update(&mut self.settings.camera, &input, seconds);
         self.settings.light.advance(seconds);
         self.clock += seconds;
         if self.plays() {
             self.set_time(self.seconds + seconds);
         }
+        self.follow_file();
     }
 
     /// Whether an animation moves the scene from frame to frame.
@@ -268,10 +278,11 @@ impl Stage {
         self.settings.view.play && self.animation < self.scene().animations.len()
     }
 
-    /// Poses the scene at a time of its animation, in seconds.
+    /// Poses the scene at a time of its animation, in seconds, with the sun and camera of the file where they are followed.
     pub fn set_time(&mut self, seconds: f32) {
         self.seconds = seconds;
         self.scene.set_time(&self.gpu, self.animation, seconds);
+        self.follow_file();
     }
 
     /// Time of the animation, in seconds.
@@ -287,6 +298,7 @@ impl Stage {
     /// Back to the settings and the view that the scene was opened with.
     pub fn reset(&mut self) {
         (self.settings, self.camera) = self.home;
+        self.followed = self.settings.camera.file;
         self.artefact = ArtefactShow::default();
         self.side.fitted = None;
         if let Some(show) = &mut self.sample {
@@ -294,14 +306,24 @@ impl Stage {
         }
     }
 
-    /// Back to the view that the scene was opened with; settings stay.
+    /// Back to the view that the scene was opened with, which follows the file's camera again; settings stay, except for the
+    /// height of an orthographic picture, which flying changes.
     pub fn reset_camera(&mut self) {
         self.set_camera(self.sample_reset().unwrap_or(self.home.1));
+        let home = self.home.0.camera;
+        (self.settings.camera.file, self.settings.camera.height) = (home.file, home.height);
     }
 
-    /// Puts the camera somewhere else: the next view starts a new path.
+    /// Levels the camera: takes its roll away. It follows no camera of the file any more.
+    pub fn level_camera(&mut self) {
+        self.camera.roll = 0.0;
+        self.settings.camera.file = None;
+    }
+
+    /// Puts the camera somewhere else: the next view starts a new path, and follows no camera of the file.
     pub fn set_camera(&mut self, camera: FlyCamera) {
         self.camera = camera;
+        self.settings.camera.file = None;
         let is_frozen = self.settings.view.freeze_fit;
         self.side.cut(is_frozen);
         if let Some(other) = &mut self.other {
@@ -315,13 +337,13 @@ impl Stage {
     }
 
     /// The camera with its lens, for a picture of the given size.
-    pub fn perspective(&self, size: [u32; 2]) -> PerspectiveCamera {
-        self.camera.perspective(&self.settings.camera, size[0] as f32 / size[1] as f32)
+    pub fn camera_of(&self, size: [u32; 2]) -> Camera {
+        self.camera.camera(&self.settings.camera, size[0] as f32 / size[1] as f32)
     }
 
     /// The present view as it is fitted and judged, for a picture of the given size.
     fn view(&self, size: [u32; 2]) -> View {
-        View { camera: self.perspective(size), direction: self.settings.light.direction(), is_first: false }
+        View { camera: self.camera_of(size), direction: self.settings.light.direction(), is_first: false }
     }
 
     /// Views to tune a technique for: the present one, and those of a short flight from it, so that crawl is measured too.
@@ -333,7 +355,7 @@ impl Stage {
             let along = camera.right() * 0.6 + camera.forward() * 0.4;
             camera.position += (along * (step * index as f32)).as_dvec3();
             camera.yaw += TUNE_TURN * index as f32;
-            let camera = camera.perspective(&self.settings.camera, size[0] as f32 / size[1] as f32);
+            let camera = camera.camera(&self.settings.camera, size[0] as f32 / size[1] as f32);
             View { camera, direction, is_first: index == 0 }
         });
         views.collect()
@@ -388,7 +410,8 @@ impl Stage {
 
     /// The first side, and the shot that it draws into a picture of a size.
     fn shot(&mut self, size: [u32; 2]) -> (&mut Side, Shot<'_>) {
-        let camera = self.perspective(size);
+        self.follow_file();
+        let camera = self.camera_of(size);
         let (plays, blink) = (self.plays(), self.blink());
         let shot = Shot {
             gpu: &self.gpu,

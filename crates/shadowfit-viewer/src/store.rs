@@ -260,7 +260,7 @@ mod tests {
     }
 
     fn camera() -> FlyCamera {
-        FlyCamera { position: DVec3::ONE, yaw: 0.0, pitch: 0.0 }
+        FlyCamera { position: DVec3::ONE, yaw: 0.0, pitch: 0.0, roll: 0.0 }
     }
 
     fn preset(name: &str) -> NamedTechnique {

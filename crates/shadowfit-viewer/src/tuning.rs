@@ -32,6 +32,8 @@ pub(crate) struct Task {
     /// Animation and its time, in seconds.
     pub(crate) pose: (usize, f32),
     pub(crate) settings: Settings,
+    /// Distance above the surface at which shadow rays start, in metres.
+    pub(crate) ray_offset: f64,
     pub(crate) views: Vec<View>,
     /// Whether the technique is that of side B.
     pub(crate) is_of_other: bool,
@@ -191,7 +193,7 @@ impl Task {
     async fn run(self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tuned> {
         let gpu = Gpu::headless(self.adapter).await?;
         let scene = Scene::clone(&self.scene);
-        let judging = Judging { size: SIZE, ..Judging::default() };
+        let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
         let mut comparison = Comparison::new(gpu, scene, judging)?;
         comparison.set_time(self.pose.0, self.pose.1);
         let Settings { technique: start, inputs, .. } = self.settings;

@@ -26,8 +26,12 @@ impl State {
         if settings.light.animate {
             (settings.light.azimuth, settings.light.hour) = (0.0, settings.light.hour.map(|_| 0.0));
         }
-        // The wheel and the view search change it all the time.
-        settings.camera.speed = 0.0;
+        if settings.light.file.is_some() {
+            (settings.light.azimuth, settings.light.elevation) = (0.0, 0.0);
+        }
+        // The wheel, flights and the view search change them all the time.
+        let camera = &mut settings.camera;
+        (camera.speed, camera.file, camera.height) = (0.0, None, camera.height.map(|_| 1.0));
         Self { settings, ..self.clone() }
     }
 
@@ -38,7 +42,12 @@ impl State {
             light.azimuth = last.azimuth;
             light.hour = light.hour.map(|_| last.hour.unwrap_or(12.0));
         }
-        self.settings.camera.speed = now.settings.camera.speed;
+        if light.file.is_some() {
+            (light.azimuth, light.elevation) = (last.azimuth, last.elevation);
+        }
+        let (camera, last) = (&mut self.settings.camera, &now.settings.camera);
+        (camera.speed, camera.file) = (last.speed, last.file);
+        camera.height = camera.height.map(|height| last.height.unwrap_or(height));
         self
     }
 

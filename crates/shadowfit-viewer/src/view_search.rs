@@ -60,7 +60,7 @@ impl<'a> ViewSearch<'a> {
     /// where nothing can be fitted.
     pub(crate) fn fit(&self, technique: &Technique, camera: &PerspectiveCamera) -> Option<Fitted> {
         let camera = PerspectiveCamera { eye: self.world(camera.eye), ..*camera };
-        let view = View { camera, direction: self.direction, is_first: true };
+        let view = View { camera: camera.into(), direction: self.direction, is_first: true };
         let maps = self.scene.fit_alone(&mut ShadowFitter::new(technique), self.inputs, &view).ok()?;
         Some(Fitted::new(camera, technique, &maps))
     }

@@ -169,10 +169,12 @@ mod technique;
 mod view {
     mod camera;
     mod frustum;
+    mod lens;
     mod slice;
 
     pub use camera::PerspectiveCamera;
     pub use frustum::ViewFrustum;
+    pub use lens::{Camera, Lens};
     pub(crate) use slice::{
         EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
         slice_corners,
@@ -260,7 +262,7 @@ pub use map::{FittedMap, FittedMaps, PlacedBy};
 pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};
 pub use technique::{Maps, OneMap, PRESETS, Preset, Slices, Technique, Windows, settings};
-pub use view::{PerspectiveCamera, ViewFrustum};
+pub use view::{Camera, Lens, PerspectiveCamera, ViewFrustum};
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

@@ -11,7 +11,7 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use shadowfit::PerspectiveCamera;
+use shadowfit::{Camera, Lens};
 use shadowfit_params::tool::LightSettings;
 
 use super::{CameraPath, PathFrame};
@@ -19,7 +19,7 @@ use super::{CameraPath, PathFrame};
 /// Frames of a path; more than anybody waits for, so a number beyond it is a slip.
 const MAX_FRAMES: u64 = 100_000;
 /// Vertical field of view, in degrees: narrower than a telescope or wider than flat pictures bear is a slip.
-const FOV_RANGE: std::ops::RangeInclusive<f64> = 1.0..=170.0;
+const FOV_RANGE: std::ops::RangeInclusive<f64> = 0.1..=179.5;
 /// Decimals of an angle that always give the same f32 back.
 const MAX_DECIMALS: i32 = 12;
 /// Group of keys that name none.
@@ -32,6 +32,9 @@ struct PathFile {
     /// Vertical field of view, in degrees.
     #[serde(default = "default_fov")]
     fov_y_deg: f64,
+    /// Height of an orthographic picture, in metres, used instead of the field of view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    height: Option<f64>,
     /// View depth of the near plane, in metres.
     near: f64,
     /// View depth of the far plane, in metres.
@@ -70,12 +73,17 @@ struct Key {
     target: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     forward: Option<[f32; 3]>,
+    /// Direction that appears upward, instead of the file's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    up: Option<[f32; 3]>,
 }
 
 /// A key whose numbers have been checked.
 struct View {
     eye: DVec3,
     forward: Vec3,
+    /// Unless it is the file's.
+    up: Option<Vec3>,
     group: String,
 }
 
@@ -114,7 +122,7 @@ impl CameraPath {
     ///
     /// # Errors
     ///
-    /// When the path is empty, or its frames differ in lens or up, for which a file has one place only.
+    /// When the path is empty, or its frames differ in lens, for which a file has one place only.
     pub(crate) fn to_text(&self, file: &Path) -> Result<String> {
         let content = self.content()?;
         match Format::of(file)? {
@@ -133,17 +141,20 @@ impl CameraPath {
 
     fn content(&self) -> Result<PathFile> {
         let Some(PathFrame { camera: lens, .. }) = self.frames.first() else { bail!("a path without frames") };
-        let shared = |camera: &PerspectiveCamera| (camera.fov_y, camera.near, camera.far, camera.up);
+        let shared = |camera: &Camera| (camera.lens, camera.near, camera.far);
         let keys = self.frames.iter().map(|PathFrame { camera, group }| {
-            ensure!(
-                shared(camera) == shared(lens),
-                "the frames differ in fov, near, far or up; a file has one of each"
-            );
+            ensure!(shared(camera) == shared(lens), "the frames differ in lens, near or far; a file has one of each");
             let (eye, forward) = (camera.eye.to_array(), camera.forward.to_array());
-            Ok(Key { group: Some(group.clone()), eye, target: None, forward: Some(forward) })
+            let up = (camera.up != lens.up).then(|| camera.up.to_array());
+            Ok(Key { group: Some(group.clone()), eye, target: None, forward: Some(forward), up })
         });
+        let (fov_y_deg, height) = match lens.lens {
+            Lens::Perspective { fov_y } => (degrees(fov_y), None),
+            Lens::Orthographic { half_height } => (default_fov(), Some(2.0 * decimal(half_height))),
+        };
         Ok(PathFile {
-            fov_y_deg: degrees(lens.fov_y),
+            fov_y_deg,
+            height,
             near: decimal(lens.near),
             far: decimal(lens.far),
             up: (lens.up != Vec3::Y).then(|| lens.up.to_array()),
@@ -202,7 +213,7 @@ fn line(text: &str, error: &toml::de::Error) -> String {
 
 impl PathFile {
     /// A camera at the origin with this file's lens.
-    fn lens(&self, aspect: f32) -> Result<PerspectiveCamera> {
+    fn lens(&self, aspect: f32) -> Result<Camera> {
         let fov = self.fov_y_deg;
         ensure!(
             FOV_RANGE.contains(&fov),
@@ -216,11 +227,16 @@ impl PathFile {
         ensure!(near < far, "near: {} is not less than far, which is {}", self.near, self.far);
         let up = self.up.map_or(Vec3::Y, Vec3::from_array);
         ensure!(up.is_finite() && up != Vec3::ZERO, "up: {up} is not a direction");
-        let fov_y = radians(fov);
-        Ok(PerspectiveCamera { eye: DVec3::ZERO, forward: Vec3::NEG_Z, up, fov_y, aspect, near, far })
+        let is_height = |height: &f64| *height > 0.0 && height.is_finite();
+        ensure!(self.height.as_ref().is_none_or(is_height), "height: it is not a number of metres above 0");
+        let lens = match self.height {
+            Some(height) => Lens::Orthographic { half_height: (height * 0.5) as f32 },
+            None => Lens::Perspective { fov_y: radians(fov) },
+        };
+        Ok(Camera { eye: DVec3::ZERO, forward: Vec3::NEG_Z, up, lens, aspect, near, far })
     }
 
-    fn frames(&self, lens: PerspectiveCamera, views: &[View]) -> Result<Vec<PathFrame>> {
+    fn frames(&self, lens: Camera, views: &[View]) -> Result<Vec<PathFrame>> {
         ensure!(!views.is_empty(), "keys: there are none; a path needs at least one");
         ensure!(self.frames_per_key > 0, "frames_per_key: 0 leaves no frames; 1 renders the keys themselves");
         let count = self.frames_per_key.saturating_mul(views.len() as u64);
@@ -234,7 +250,8 @@ impl PathFile {
             let steps = if next.is_some() { self.frames_per_key } else { 1 };
             for step in 0..steps {
                 let (eye, forward) = between(view, next.unwrap_or(view), step as f64 / steps as f64);
-                let camera = PerspectiveCamera { eye, forward, ..lens };
+                // The key's own up stays until the next key.
+                let camera = Camera { eye, forward, up: view.up.unwrap_or(lens.up), ..lens };
                 camera.frustum().map_err(|error| {
                     anyhow!(
                         "keys[{index}]: no camera can be made of it: {error}; where it looks along up, set another up"
@@ -268,8 +285,10 @@ fn view((index, key): (usize, &Key)) -> Result<View> {
     };
     ensure!(forward.try_normalize().is_some(), "keys[{index}].forward: {forward} is not a direction");
     let group = key.group.clone().unwrap_or_else(|| DEFAULT_GROUP.to_owned());
+    let up = key.up.map(Vec3::from_array);
+    ensure!(up.is_none_or(|up| up.try_normalize().is_some()), "keys[{index}].up: it is not a direction");
     ensure!(!group.is_empty(), "keys[{index}].group: an empty name; leave it out for \"{DEFAULT_GROUP}\"");
-    Ok(View { eye, forward, group })
+    Ok(View { eye, forward, up, group })
 }
 
 /// Unit direction from the eye to what it looks at.
@@ -358,6 +377,10 @@ eye = [9.0, 1.7, 5.0]
 forward = [0.0, 0.0, 2.0]
 "#;
 
+    fn fov(degrees: f64) -> Lens {
+        Lens::Perspective { fov_y: radians(degrees) }
+    }
+
     fn parsed(text: &str) -> Result<CameraPath> {
         CameraPath::parse(text, Format::Toml, 1.5)
     }
@@ -382,7 +405,7 @@ forward = [0.0, 0.0, 2.0]
         assert!(path.frames[1].camera.forward.abs_diff_eq(Vec3::new(half, 0.0, -half), 1e-6));
         assert_eq!(path.names(), ["path/0", "path/1", "path/2", "far/0"]);
         let camera = path.frames[3].camera;
-        assert_eq!((camera.fov_y, camera.aspect, camera.near, camera.far), (50f32.to_radians(), 1.5, 0.1, 200.0));
+        assert_eq!((camera.lens, camera.aspect, camera.near, camera.far), (fov(50.0), 1.5, 0.1, 200.0));
         let light = path.light.expect("a sun");
         assert_eq!((light.azimuth, light.elevation), (radians(37.0), std::f32::consts::FRAC_PI_4));
     }
@@ -393,7 +416,7 @@ forward = [0.0, 0.0, 2.0]
         let toml = "near = 0.1\nfar = 9\nkeys = [{eye = [0, 1, 2], target = [0, 1, 0]}]";
         let path = CameraPath::parse(json, Format::Json, 2.0).expect("JSON");
         assert_eq!(path, CameraPath::parse(toml, Format::Toml, 2.0).expect("TOML"));
-        assert_eq!(path.frames[0].camera.fov_y, 60f32.to_radians());
+        assert_eq!(path.frames[0].camera.lens, fov(60.0));
         assert!(path.light.is_none() && path.frames.len() == 1);
     }
 
@@ -404,7 +427,8 @@ forward = [0.0, 0.0, 2.0]
         path.frames[0].camera.eye = DVec3::new(0.1 + 0.2, -1e-9, 123_456.789);
         path.frames[0].camera.forward = Vec3::new(third, -0.3, 0.7);
         for frame in &mut path.frames {
-            (frame.camera.near, frame.camera.far, frame.camera.fov_y) = (third * 0.1, 1e6 * third, third);
+            (frame.camera.near, frame.camera.far) = (third * 0.1, 1e6 * third);
+            frame.camera.lens = Lens::Perspective { fov_y: third };
         }
         for (name, format) in [("a.toml", Format::Toml), ("a.json", Format::Json)] {
             let text = path.to_text(Path::new(name)).expect("text");
@@ -417,6 +441,14 @@ forward = [0.0, 0.0, 2.0]
         path.frames.pop();
         let text = path.to_text(Path::new("a.toml")).expect("text");
         assert_eq!(parsed(&text).expect("a path"), path);
+        let lens = Lens::Orthographic { half_height: third };
+        path.frames.iter_mut().for_each(|frame| frame.camera.lens = lens);
+        let text = path.to_text(Path::new("a.toml")).expect("text");
+        assert_eq!(parsed(&text).expect("a path"), path, "{text}");
+        path.frames.push(path.frames[0].clone());
+        path.frames[1].camera.up = Vec3::new(0.1, 0.2, third);
+        let text = path.to_text(Path::new("a.toml")).expect("text");
+        assert_eq!(parsed(&text).expect("a path").frames.last(), path.frames.last(), "{text}");
         path.frames[0].camera.near *= 2.0;
         assert!(path.to_text(Path::new("a.toml")).is_err());
     }
@@ -434,9 +466,9 @@ forward = [0.0, 0.0, 2.0]
             ("near = 0.1", "near = 1e-60", "near: 0.000"),
             ("near = 0.1", "near = 200.0", "near: 200 is not less than far, which is 200"),
             ("far = 200.0", "far = inf", "far: inf is not a distance"),
-            ("50.0", "0.0", "fov_y_deg: 0 is not between 1 and 170"),
-            ("50.0", "180.0", "fov_y_deg: 180 is not between 1 and 170"),
-            ("50.0", "nan", "fov_y_deg: NaN is not between 1 and 170"),
+            ("50.0", "0.0", "fov_y_deg: 0 is not between 0.1 and 179.5"),
+            ("50.0", "180.0", "fov_y_deg: 180 is not between 0.1 and 179.5"),
+            ("50.0", "nan", "fov_y_deg: NaN is not between 0.1 and 179.5"),
             ("target = [0.0, 1.7, 0.0]", "target = [0.0, 1.7, 5.0]", "keys[0].target: it is where the eye is"),
             ("target = [0.0, 1.7, 0.0]", "target = [nan, 1.7, 5.0]", "keys[0].target: [NaN, 1.7, 5] is not a position"),
             ("target = [0.0, 1.7, 0.0]", "target = [1e300, 0, 0]", "keys[0].target: it is too near"),

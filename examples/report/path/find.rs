@@ -6,7 +6,7 @@
 use anyhow::{Result, ensure};
 use glam::Vec3;
 use rayon::prelude::*;
-use shadowfit::{Aabb, PerspectiveCamera};
+use shadowfit::{Aabb, Camera, PerspectiveCamera};
 use shadowfit_truth::Tracer;
 
 use super::probe::{Probe, is_a_point};
@@ -85,7 +85,7 @@ pub(crate) fn find(tracer: &Tracer, bounds: Aabb, aspect: f32) -> Result<Found> 
                 .to_owned(),
         ),
     }
-    let farthest = |camera: &PerspectiveCamera| {
+    let farthest = |camera: &Camera| {
         bounds.corners().map(|corner| corner.distance(camera.eye.as_vec3())).into_iter().fold(0.0, f32::max)
     };
     let far = frames.iter().map(|frame| farthest(&frame.camera)).fold(0.0, f32::max) * FAR_MARGIN;
@@ -97,7 +97,7 @@ pub(crate) fn find(tracer: &Tracer, bounds: Aabb, aspect: f32) -> Result<Found> 
 }
 
 fn frames(group: &str, cameras: Vec<PerspectiveCamera>) -> Vec<PathFrame> {
-    cameras.into_iter().map(|camera| PathFrame { camera, group: group.to_owned() }).collect()
+    cameras.into_iter().map(|camera| PathFrame { camera: camera.into(), group: group.to_owned() }).collect()
 }
 
 /// A camera at the origin whose near plane's corners stay within the clearance. Its far plane is set last.
@@ -234,7 +234,7 @@ fn serving(probe: &Probe, eyes: &[Vec3], pitch: f32, lens: PerspectiveCamera) ->
         let ahead = (eyes[(index + AHEAD).min(last)] - from).with_y(0.0).try_normalize()?;
         let forward = ahead * pitch.cos() - Vec3::Y * pitch.sin();
         let camera = PerspectiveCamera { eye: eyes[index].as_dvec3(), forward, ..lens };
-        let seen = probe.look(&camera);
+        let seen = probe.look(camera);
         (seen.share >= FILLED && seen.distance >= ROOM * probe.clearance).then_some(camera)
     };
     (0..eyes.len()).map(camera).collect()
@@ -255,7 +255,7 @@ mod tests {
         find(&Tracer::new(triangles.iter().copied()), bounds(triangles), ASPECT).expect("a path")
     }
 
-    fn cameras<'a>(found: &'a Found, group: &'a str) -> Vec<&'a PerspectiveCamera> {
+    fn cameras<'a>(found: &'a Found, group: &'a str) -> Vec<&'a Camera> {
         found.path.frames.iter().filter(|frame| frame.group == group).map(|frame| &frame.camera).collect()
     }
 

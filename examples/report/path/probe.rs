@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
-use shadowfit::PerspectiveCamera;
+use shadowfit::Camera;
 use shadowfit_truth::Tracer;
 
 /// Directions that rays are sent in, 13° apart: enough to find out on which side of a surface a place is.
@@ -77,11 +77,13 @@ impl<'a> Probe<'a> {
         self.tracer.first_hit(eye, Vec3::NEG_Y).map_or(f32::INFINITY, |hit| hit.distance)
     }
 
-    pub(super) fn look(&self, camera: &PerspectiveCamera) -> Seen {
+    pub(super) fn look(&self, camera: impl Into<Camera>) -> Seen {
+        let camera: Camera = camera.into();
         let forward = camera.forward.normalize();
         let right = forward.cross(camera.up).normalize();
-        let up = right.cross(forward) * (camera.fov_y * 0.5).tan();
-        let right = right * (camera.fov_y * 0.5).tan() * camera.aspect;
+        let half = camera.half_size().as_vec2();
+        let up = right.cross(forward) * half.y;
+        let right = right * half.x;
         let place = |index: usize, count: usize| (index as f32 + 0.5) / count as f32 * 2.0 - 1.0;
         let rays = (0..VIEW_RAYS[0] * VIEW_RAYS[1]).map(|ray| {
             forward + right * place(ray % VIEW_RAYS[0], VIEW_RAYS[0]) + up * place(ray / VIEW_RAYS[0], VIEW_RAYS[1])
@@ -136,6 +138,8 @@ fn nearest(point: Vec3, corners: &[Vec3; 3]) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use shadowfit::PerspectiveCamera;
+
     use super::*;
     use crate::path::scenes::{cuboid, room};
 
@@ -196,7 +200,7 @@ mod tests {
             near: 0.1,
             far: 10.0,
         };
-        let seen = Probe::new(&tracer, 0.1).look(&camera);
+        let seen = Probe::new(&tracer, 0.1).look(camera);
         assert!(seen.share == 0.5 && seen.distance > 1.0, "{seen:?}");
     }
 }

@@ -104,7 +104,7 @@ fn factors(shadowed: &[f32], unshadowed: &[f32]) -> Vec<f32> {
 /// which Bevy may draw or not.
 fn expected(tracer: &Tracer, camera: &PixelCamera, to_light: DVec3, seen: &[Option<u32>]) -> Vec<Option<f64>> {
     let of_pixel = |(pixel, seen): (usize, &Option<u32>)| {
-        let ray = camera.ray_of(pixel);
+        let ray = camera.ray_of(pixel).direction;
         match seen {
             Some(triangle) => Some(brightness(tracer.normal(*triangle).as_dvec3(), -ray.normalize(), to_light)),
             None => tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3()).is_none().then_some(0.0),

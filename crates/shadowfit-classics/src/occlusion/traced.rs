@@ -44,7 +44,7 @@ impl Traced {
             Some((_, Err(TryRecvError::Disconnected), _)) | None => None,
         };
         if self.done.as_ref().is_none_or(|(of, _)| *of != key) {
-            let camera = PixelCamera::new(&scene.camera_for_rays(camera), size);
+            let camera = PixelCamera::new(scene.camera_for_rays(camera), size);
             if waits {
                 self.done = Some((key.clone(), trace(scene.rays(), &camera)));
             } else if let Some(rays) = ready(scene).filter(|_| self.under_way.is_none()) {

@@ -106,9 +106,9 @@ fn typed_numbers_are_set_in_the_shown_unit_and_clamped() {
     type_into(&mut harness, "light.elevation", "30");
     assert_eq!(harness.state().settings.light.elevation, 30_f32.to_radians());
     type_into(&mut harness, "camera.near", "-1");
-    assert_eq!(harness.state().settings.camera.near, 0.01);
+    assert_eq!(harness.state().settings.camera.near, 1e-6);
     type_into(&mut harness, "camera.near", "nonsense");
-    assert_eq!(harness.state().settings.camera.near, 0.01);
+    assert_eq!(harness.state().settings.camera.near, 1e-6);
 }
 
 #[test]

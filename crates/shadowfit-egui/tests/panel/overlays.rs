@@ -143,13 +143,43 @@ fn what_is_not_known_of_a_pixel_gets_no_line() {
 }
 
 #[test]
-fn the_card_of_a_pixel_stays_within_the_window() {
-    let corner = Pos2::new(395.0, 295.0);
-    let mut harness =
-        small([400.0, 300.0]).build_ui_state(move |ui, (): &mut ()| why_overlay(ui.ctx(), corner, &WHY), ());
+fn the_card_of_a_pixel_stays_within_the_picture_beside_the_pointer() {
+    // Pictures of windows from phones to 4K, with a bar above and a panel to the right.
+    for size in [[360.0, 300.0], [840.0, 620.0], [900.0, 640.0], [3200.0, 1800.0]] {
+        let picture = Rect::from_min_size(Pos2::new(12.0, 40.0), size.into());
+        let window = [size[0] + 352.0, size[1] + 80.0];
+        for share in [Vec2::ZERO, Vec2::ONE, Vec2::new(0.99, 0.02), Vec2::new(0.03, 0.97), Vec2::splat(0.5)] {
+            let pointer = picture.lerp_inside(share);
+            let shown = move |ui: &mut egui::Ui, (): &mut ()| why_overlay(ui.ctx(), picture, pointer, &WHY);
+            let mut harness = small(window).build_ui_state(shown, ());
+            harness.run();
+            let area = harness.ctx.memory(|memory| memory.area_rect(egui::Id::unique("shadowfit why")));
+            let card = area.expect("a card");
+            assert!(picture.expand(0.5).contains_rect(card), "{size:?}, {share}: {card:?}");
+            let covers = card.contains(pointer);
+            assert!(!covers || size[0] < 600.0, "{size:?}, {share}: {card:?} hides {pointer}");
+            assert_no_text_is_clipped(&harness, "the card");
+        }
+    }
+}
+
+#[test]
+fn a_picture_smaller_than_the_card_cuts_it_off() {
+    let picture = Rect::from_min_size(Pos2::new(50.0, 60.0), Vec2::new(120.0, 40.0));
+    let shown = move |ui: &mut egui::Ui, (): &mut ()| why_overlay(ui.ctx(), picture, picture.center(), &WHY);
+    let mut harness = small([400.0, 300.0]).build_ui_state(shown, ());
     harness.run();
-    let last = harness.get_by_label("2.71").rect();
-    assert!(last.right() <= 400.0 && last.bottom() <= 300.0, "{last:?}");
+    let shapes = &harness.output().shapes;
+    let is_within = |shape: &egui::epaint::ClippedShape| picture.expand(0.5).contains_rect(shape.clip_rect);
+    assert!(shapes.iter().filter(|shape| shape.clip_rect.height() < 200.0).all(is_within));
+    assert!(shapes.iter().any(is_within));
+}
+
+#[test]
+fn positions_in_small_models_have_three_digits() {
+    let small_model = WhyCard { position: Some([0.0123, -0.004, 0.0]), ..WHY };
+    let harness = small([300.0, 300.0]).build_ui_state(move |ui, (): &mut ()| why_card(ui, &small_model), ());
+    harness.get_by_label("0.0123, -0.0040, 0.0000 m");
 }
 
 fn help(size: [f32; 2]) -> Harness<'static, bool> {

@@ -6,7 +6,7 @@ use shadowfit::settings::MAX_MAPS;
 
 use super::{always_active, pull_near};
 use crate::field::{Field, Plain as _, choice, field};
-use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, InsetMaps, Settings, ViewMode};
+use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, HEIGHTS, InsetMaps, Settings, ViewMode};
 use crate::{ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Unset, Value};
 
 /// In the order that they are shown.
@@ -41,9 +41,17 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Light,
         label: "Azimuth",
         unit: "deg",
-        help: "Compass angle of the point that the light comes from, from +z toward +x.",
+        help: "Compass angle of the point that the light comes from, from +z toward +x. Setting it takes the sun from the \
+           file.",
         kind: Kind::Number(Number { min: 0.0, max: 360.0, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
-        field: Field { get: |s| Some(Value::Number(turn(f64::from(s.light.azimuth)))), ..field!(light.azimuth) },
+        field: Field {
+            get: |s| Some(Value::Number(turn(f64::from(s.light.azimuth)))),
+            set: |s, value| {
+                s.light.azimuth.assign(value);
+                s.light.file = None;
+            },
+            ..field!(light.azimuth)
+        },
         inert: by_angles,
     },
     Parameter {
@@ -52,9 +60,40 @@ pub(super) const ROWS: &[Parameter] = &[
         label: "Elevation",
         unit: "deg",
         help: "Angle of the sun above the horizon. A low sun throws long shadows and grazes the ground, which is \
-           the hardest case for biases.",
+           the hardest case for biases. Setting it takes the sun from the file.",
         kind: Kind::Number(Number { min: 0.0, max: 90.0, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
-        field: field!(light.elevation),
+        field: Field {
+            set: |s, value| {
+                s.light.elevation.assign(value);
+                s.light.file = None;
+            },
+            ..field!(light.elevation)
+        },
+        inert: by_angles,
+    },
+    Parameter {
+        id: "light.file",
+        group: Group::Light,
+        label: "Sun of the file",
+        unit: "",
+        help: "Number of the file's directional light that is the sun. It moves as the file's animation moves it. The menu \
+           Scene lists the lights by name.",
+        kind: Kind::Number(Number {
+            min: 1.0,
+            max: MOST_OF_A_FILE,
+            step: 1.0,
+            logarithmic: false,
+            decimals: 0,
+            unset: Some(Unset {
+                option: ChoiceOption {
+                    id: "by_hand",
+                    label: "By hand",
+                    help: "The sun stands where time of day, azimuth and elevation say.",
+                },
+                initial: 1.0,
+            }),
+        }),
+        field: field!(light.file),
         inert: by_angles,
     },
     Parameter {
@@ -79,14 +118,56 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: |s| (!s.light.animate).then_some("The sun stands still; turn on Animate."),
     },
     Parameter {
+        id: "camera.file",
+        group: Group::Camera,
+        label: "Camera of the file",
+        unit: "",
+        help: "Number of the file's camera that is followed, also while the file's animation moves it. Flying ends that. The \
+           menu Scene lists the cameras by name.",
+        kind: Kind::Number(Number {
+            min: 1.0,
+            max: MOST_OF_A_FILE,
+            step: 1.0,
+            logarithmic: false,
+            decimals: 0,
+            unset: Some(Unset {
+                option: ChoiceOption { id: "free", label: "Free flight", help: "The camera goes where you fly it." },
+                initial: 1.0,
+            }),
+        }),
+        field: field!(camera.file),
+        inert: always_active,
+    },
+    Parameter {
+        id: "camera.height",
+        group: Group::Camera,
+        label: "Height of the view",
+        unit: "m",
+        help: "Height of the picture of an orthographic lens, whose lines of sight are parallel. Flying forward or back changes \
+           it.",
+        kind: Kind::Number(Number {
+            min: HEIGHTS.0 as f64,
+            max: HEIGHTS.1 as f64,
+            step: 0.1,
+            logarithmic: true,
+            decimals: 2,
+            unset: Some(Unset {
+                option: ChoiceOption { id: "perspective", label: "Perspective", help: "The lens has a field of view." },
+                initial: 10.0,
+            }),
+        }),
+        field: field!(camera.height),
+        inert: always_active,
+    },
+    Parameter {
         id: "camera.fov_y",
         group: Group::Camera,
         label: "Field of view",
         unit: "deg",
         help: "Vertical angle of the lens. A wide view spreads the shadow map over more ground.",
-        kind: Kind::Number(Number { min: 5.0, max: 150.0, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
+        kind: Kind::Number(Number { min: 0.1, max: 179.5, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
         field: field!(camera.fov_y),
-        inert: always_active,
+        inert: |s| s.camera.height.map(|_| "The lens is orthographic; set Height of the view to Perspective."),
     },
     Parameter {
         id: "camera.near",
@@ -94,7 +175,7 @@ pub(super) const ROWS: &[Parameter] = &[
         label: "Near plane",
         unit: "m",
         help: "Nothing nearer than this is drawn. Far plane and shadow distance are kept at twice this or more.",
-        kind: Kind::Number(Number { min: 0.01, max: 100.0, step: 0.01, logarithmic: true, decimals: 3, unset: None }),
+        kind: Kind::Number(Number { min: 1e-6, max: 100.0, step: 0.01, logarithmic: true, decimals: 3, unset: None }),
         field: Field {
             set: |s, value| {
                 s.camera.near.assign(value);
@@ -114,7 +195,7 @@ pub(super) const ROWS: &[Parameter] = &[
         unit: "m",
         help: "Nothing farther than this is drawn; shadows end here at the latest. The near plane is kept at half \
            of this or less.",
-        kind: Kind::Number(Number { min: 1.0, max: 10_000.0, step: 1.0, logarithmic: true, decimals: 1, unset: None }),
+        kind: Kind::Number(Number { min: 1e-4, max: 1e6, step: 1.0, logarithmic: true, decimals: 1, unset: None }),
         field: Field {
             set: |s, value| {
                 s.camera.far.assign(value);
@@ -132,7 +213,7 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "How fast the camera flies. Raise it in large scenes.",
         kind: Kind::Number(Number {
             min: FLYING_SPEEDS.0 as f64,
-            max: FLYING_SPEEDS.1 as f64,
+            max: 10_000.0,
             step: 0.1,
             logarithmic: true,
             decimals: 1,
@@ -332,6 +413,31 @@ pub(super) const ROWS: &[Parameter] = &[
         },
     },
     Parameter {
+        id: "view.ray_offset",
+        group: Group::View,
+        label: "Start of shadow rays",
+        unit: "m",
+        help: "Distance above the surface at which the shadow rays of the judge and of exact edges start. Surfaces that lie \
+           closer together throw no shadow on each other in truth.",
+        kind: Kind::Number(Number {
+            min: 1e-7,
+            max: 10.0,
+            step: 0.001,
+            logarithmic: true,
+            decimals: 6,
+            unset: Some(Unset {
+                option: ChoiceOption {
+                    id: "automatic",
+                    label: "Automatic",
+                    help: "A millimetre; less in a model below 2 m, more where coordinates exceed 1 km.",
+                },
+                initial: 1e-3,
+            }),
+        }),
+        field: field!(view.ray_offset),
+        inert: always_active,
+    },
+    Parameter {
         id: "view.outside_beside",
         group: Group::View,
         label: "Outside view beside",
@@ -364,6 +470,9 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: always_active,
     },
 ];
+
+/// Greatest number of a light or camera of a file that can be chosen.
+const MOST_OF_A_FILE: f64 = 64.0;
 
 /// Why the angles have no effect, or `None` where they have one.
 fn by_angles(s: &Settings) -> Option<&'static str> {

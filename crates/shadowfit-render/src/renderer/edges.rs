@@ -148,6 +148,7 @@ impl Renderer {
         let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
         let view = ResolveView::new(&surfaces.depth, clip_from_eye, DepthConvention::Reversed, camera.eye)
             .with_normals(&surfaces.normals, NormalEncoding::Signed);
+        let view = ResolveView { ray_offset: frame.ray_offset, ..view };
         let query = self.timer.begin(Pass::Edges, encoder);
         let timestamps = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
         let resolved = self.edges.pass.record_timed(encoder, &self.sun, scene.rays(), &view, timestamps);

@@ -4,7 +4,7 @@
 //! that casters are culled by, and the layers themselves.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{FittedMap, PerspectiveCamera};
+use shadowfit::{Camera, FittedMap};
 use shadowfit_wgpu::{Culling, MAX_MAPS};
 
 use super::Renderer;
@@ -17,7 +17,7 @@ use crate::statistics::MapStatistics;
 pub(super) struct KnownMaps {
     maps: Vec<FittedMap>,
     direction: Vec3,
-    camera: PerspectiveCamera,
+    camera: Camera,
     chooser: (DVec3, Vec3),
     culling: Culling,
     pose: u64,
@@ -30,7 +30,7 @@ impl KnownMaps {
     fn is_of(&self, scene: &GpuScene, frame: &Frame<'_>) -> bool {
         let Self { maps, direction, camera, chooser, culling, pose, .. } = self;
         maps == frame.maps
-            && (*direction, *camera, *chooser) == (frame.direction, *frame.camera, frame.chooser())
+            && (*direction, *camera, *chooser) == (frame.direction, frame.camera, frame.chooser())
             && (*culling, *pose) == (frame.culling, scene.pose())
     }
 }
@@ -51,7 +51,7 @@ impl Renderer {
         self.known = (!is_kept).then(|| KnownMaps {
             maps: frame.maps.to_vec(),
             direction: frame.direction,
-            camera: *frame.camera,
+            camera: frame.camera,
             chooser: frame.chooser(),
             culling: frame.culling,
             pose: scene.pose(),

@@ -57,7 +57,7 @@ impl Renderer {
             opaque,
             blended,
             overlay: frame.overlay,
-            judged: shows_judged.then(|| self.judged.bind(gpu, frame.judged, frame.camera, size)),
+            judged: shows_judged.then(|| self.judged.bind(gpu, frame.judged, &frame.camera, size)),
             part,
             timed: self.timer.scene(frame.maps_stay),
         }

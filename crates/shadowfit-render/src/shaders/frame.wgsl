@@ -13,7 +13,8 @@ struct Frame {
     horizon: vec4<f32>,
     ground: vec4<f32>,
     viewport: vec2<f32>,
-    padding: vec2<f32>,
+    near: f32,
+    parallel: f32,
     map_tints: array<vec4<f32>, 8>,
 }
 
@@ -30,10 +31,17 @@ fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     return select(below, above, height > 0.0) + glow * saturate(1.0 + height * 4.0);
 }
 
+// From the eye to a visible point, or along the view to its depth where all lines of sight are parallel.
+fn line_of_sight(position: vec3<f32>) -> vec3<f32> {
+    let forward = frame.ray_forward.xyz;
+    return select(position, forward * dot(position, forward), frame.parallel > 0.0);
+}
+
 // Distant surfaces fade into the sky behind them.
 fn with_haze(radiance: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
-    let distance = length(position);
-    let direction = position / max(distance, 1e-6);
+    let sight = line_of_sight(position);
+    let distance = length(sight);
+    let direction = sight / max(distance, 1e-20);
     let level = normalize(vec3<f32>(direction.x, max(direction.y, 0.0) + 0.02, direction.z));
     let haze = 1.0 - exp(-distance * frame.haze_per_metre);
     return mix(radiance, sky_radiance(level), haze * haze);

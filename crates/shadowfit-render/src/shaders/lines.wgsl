@@ -14,17 +14,19 @@ struct LineOut {
 }
 
 const LINE_PIXELS: f32 = 2.5;
-// Lines are cut this far in front of the eye, in metres: what lies behind the eye cannot be projected.
-const LINE_NEAR: f32 = 0.02;
+// Lines are cut at this share of the near plane's distance: points behind the eye cannot be projected.
+const LINE_NEAR: f32 = 0.2;
 
 @vertex
 fn vs_line(in: LineIn) -> LineOut {
     var start = frame.clip_from_world * vec4<f32>(in.start, 1.0);
     var end = frame.clip_from_world * vec4<f32>(in.end, 1.0);
-    let from_start = (LINE_NEAR - start.w) / (end.w - start.w);
-    if start.w < LINE_NEAR { start = mix(start, end, saturate(from_start)); }
-    if end.w < LINE_NEAR { end = mix(start, end, saturate(from_start)); }
-    let hidden = start.w < LINE_NEAR * 0.5 || end.w < LINE_NEAR * 0.5;
+    // The w of an orthographic picture is 1 everywhere.
+    let line_near = select(LINE_NEAR * frame.near, 0.0, frame.parallel > 0.0);
+    let from_start = (line_near - start.w) / (end.w - start.w);
+    if start.w < line_near { start = mix(start, end, saturate(from_start)); }
+    if end.w < line_near { end = mix(start, end, saturate(from_start)); }
+    let hidden = start.w < line_near * 0.5 || end.w < line_near * 0.5;
 
     let along = (end.xy / end.w - start.xy / start.w) * frame.viewport;
     let direction = along * inverseSqrt(max(dot(along, along), 1e-12));

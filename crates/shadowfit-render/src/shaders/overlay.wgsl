@@ -48,10 +48,12 @@ struct Footprint {
     down: vec2<f32>,
 }
 
-// How far a visible point moves on its tangent plane when its ray moves by `across` at a view depth of 1.
+// How far a visible point moves on its tangent plane when its line of sight moves by `across`: at a view depth of 1 for a
+// perspective.
 fn slide(position: vec3<f32>, normal: vec3<f32>, across: vec3<f32>) -> vec3<f32> {
-    let moved = across * dot(position, frame.ray_forward.xyz);
-    return moved - position * (dot(moved, normal) / dot(position, normal));
+    let sight = line_of_sight(position);
+    let moved = across * select(dot(position, frame.ray_forward.xyz), 1.0, frame.parallel > 0.0);
+    return moved - sight * (dot(moved, normal) / dot(sight, normal));
 }
 
 fn footprint(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> Footprint {

@@ -55,7 +55,7 @@ fn vs_scene(in: SceneIn) -> SceneOut {
 // of the position, taken where control flow is uniform.
 fn geometric_normal(position: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> vec3<f32> {
     let normal = normalize(cross(dy, dx));
-    return select(normal, -normal, dot(normal, position) > 0.0);
+    return select(normal, -normal, dot(normal, line_of_sight(position)) > 0.0);
 }
 
 // Interpolated normal, bent by the normal map, on the side of the geometric one.
@@ -101,7 +101,7 @@ fn surface_of(in: SceneOut) -> Surface {
     let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
     let base = base_color(in.uv) * in.color;
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    return Surface(base, geometric, shading_normal(in, geometric, texel), -normalize(in.position));
+    return Surface(base, geometric, shading_normal(in, geometric, texel), -normalize(line_of_sight(in.position)));
 }
 
 // Share of the sun's light that reaches a visible point. What is blended is not among the surfaces that were resolved.

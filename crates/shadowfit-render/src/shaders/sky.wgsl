@@ -20,8 +20,8 @@ override GRAY: bool = false;
 
 @fragment
 fn fs_sky(in: SkyVertex) -> @location(0) vec4<f32> {
-    let ray = frame.ray_right.xyz * in.ndc.x + frame.ray_up.xyz * in.ndc.y + frame.ray_forward.xyz;
-    let direction = normalize(ray);
+    let aside = frame.ray_right.xyz * in.ndc.x + frame.ray_up.xyz * in.ndc.y;
+    let direction = normalize(aside * (1.0 - frame.parallel) + frame.ray_forward.xyz);
     let disc = smoothstep(SUN_COSINE - SUN_SOFTNESS, SUN_COSINE, dot(direction, frame.to_light));
     let radiance = sky_radiance(direction) + frame.sun * (4.0 * disc * saturate(direction.y * 50.0));
     let color = tone_map(radiance);

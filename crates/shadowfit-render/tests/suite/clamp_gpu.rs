@@ -42,7 +42,7 @@ fn picture(gpu: &Gpu, format: MapFormat) -> Vec<u8> {
     let mut gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0)).expect("memory");
     let target = renderer.target(gpu, SIZE);
     let atmosphere = Atmosphere::default();
-    renderer.draw(gpu, &mut gpu_scene, &Frame::new(&camera, direction, &maps, &atmosphere), &target).expect("a frame");
+    renderer.draw(gpu, &mut gpu_scene, &Frame::new(camera, direction, &maps, &atmosphere), &target).expect("a frame");
     target.read(gpu).expect("pixels")
 }
 

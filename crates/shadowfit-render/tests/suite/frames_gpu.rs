@@ -28,7 +28,7 @@ fn a_picture_of_maps_that_stay_is_that_of_maps_that_are_drawn() {
     let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(-2.0, 1.0, 1.0), ..seen.camera };
     let choice = Some((seen.camera.eye, seen.camera.forward));
     let culling = Culling::WholeMap;
-    let elsewhere = Frame { camera: &camera, choice, culling, ..seen.frame() };
+    let elsewhere = Frame { camera: camera.into(), choice, culling, ..seen.frame() };
     let drawn = pictures.picture(&elsewhere);
     pictures.draw(&Frame { culling, ..seen.frame() });
     let stayed = pictures.picture(&Frame { maps_stay: true, ..elsewhere });
@@ -51,7 +51,7 @@ fn maps_that_may_stay_are_drawn_once_and_pictures_and_statistics_are_the_same() 
     assert!(times.shadow_ms.is_some() && pictures.renderer.pass_times() == times);
     // Whatever decides what is drawn into the maps draws them again.
     let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(-2.0, 1.0, 1.0), ..seen.camera };
-    let moved = Frame { camera: &camera, ..may };
+    let moved = Frame { camera: camera.into(), ..may };
     let lit = Frame { direction: Vec3::new(-0.4, -0.6, 0.3).normalize(), ..may };
     let fewer = Frame { maps: &seen.maps[1..], ..may };
     let whole = Frame { culling: Culling::WholeMap, ..may };
@@ -126,7 +126,7 @@ fn a_part_of_a_picture_is_drawn_as_in_the_whole_and_the_rest_stays() {
         let view = classes_texture(&pictures.gpu, &drawn, SIZE);
         let insets = [Inset { rectangle: [50.0, 10.0, 40.0, 30.0], depth_range: [0.0, 1.0], map: 0, border: Vec3::X }];
         let quads = [Quad::rectangle([60.5, 30.0, 50.0, 30.0], Vec4::new(0.0, 1.0, 0.5, 0.5))];
-        let judged = Some(JudgedPicture { classes: &view, size: SIZE, camera: seen.camera, depth: None });
+        let judged = Some(JudgedPicture { classes: &view, size: SIZE, camera: seen.camera.into(), depth: None });
         let marks = Some(Marks { classes: [true, false, false, true], ..Marks::default() });
         let (insets, quads) = (insets.as_slice(), quads.as_slice());
         let whole = Frame { insets, quads, judged, marks, overlay, ..seen.frame() };
@@ -259,7 +259,7 @@ fn assert_overlays_are_drawn(technique: &Technique, overlays: &[Overlay]) {
     let drawn: Vec<u32> = random(WIDTH * SIZE[1] as usize, 16).collect();
     let view = classes_texture(&pictures.gpu, &drawn, SIZE);
     let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(0.1, 0.0, 0.1), ..seen.camera };
-    let judged = Some(JudgedPicture { classes: &view, size: SIZE, camera, depth: None });
+    let judged = Some(JudgedPicture { classes: &view, size: SIZE, camera: camera.into(), depth: None });
     let plain = pictures.picture(&seen.frame());
     for &overlay in overlays {
         let shown = pictures.picture(&Frame { overlay, judged, ..seen.frame() });
@@ -300,7 +300,7 @@ fn casters_that_no_map_holds_are_told_from_those_that_one_holds() {
     let shown = |pictures: &mut Pictures, x: f64| {
         let camera =
             PerspectiveCamera { eye: DVec3::new(x, 1.0, 0.0), forward: Vec3::NEG_Z, fov_y: 0.2, ..seen.camera };
-        let frame = Frame { camera: &camera, maps_stay: true, overlay: Overlay::Casters, ..seen.frame() };
+        let frame = Frame { camera: camera.into(), maps_stay: true, overlay: Overlay::Casters, ..seen.frame() };
         pictures.picture(&frame)[SIZE[1] as usize / 2 * WIDTH + WIDTH / 2]
     };
     let [held, left_out] = [0.0, 40.5].map(|x| shown(&mut pictures, x));

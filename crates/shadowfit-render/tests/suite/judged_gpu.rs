@@ -14,7 +14,7 @@ fn stage(samples: u32) -> Stage {
 }
 
 fn judged<'a>(classes: &'a wgpu::TextureView, camera: &PerspectiveCamera) -> JudgedPicture<'a> {
-    JudgedPicture { classes, size: SIZE, camera: *camera, depth: None }
+    JudgedPicture { classes, size: SIZE, camera: camera.into(), depth: None }
 }
 
 /// The class whose colour a pixel has; `None` for grey.
@@ -48,7 +48,7 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
     let Stage { mut pictures, seen } = stage(1);
     let before = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(0.4, 0.15, -0.3), ..seen.camera };
     let of_before = ProbeTargets::new(&pictures.gpu.device, SIZE);
-    let frame_before = Frame { camera: &before, ..seen.frame() };
+    let frame_before = Frame { camera: before.into(), ..seen.frame() };
     let shown =
         pictures.renderer.probe(&pictures.gpu, &mut pictures.scene, &frame_before, &of_before).expect("a probe");
     // Each triangle has a class of its own.
@@ -56,7 +56,8 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
     let bits: Vec<u32> = shown.pixels.iter().map(|pixel| pixel.map_or(0, |pixel| class(pixel.triangle))).collect();
     let view = classes_texture(&pictures.gpu, &bits, SIZE);
     let probe = pictures.probe(&seen.frame());
-    let judged = JudgedPicture { classes: &view, size: SIZE, camera: before, depth: Some(of_before.depth_view()) };
+    let judged =
+        JudgedPicture { classes: &view, size: SIZE, camera: before.into(), depth: Some(of_before.depth_view()) };
     let frame = Frame { overlay: Overlay::Error, judged: Some(judged), ..seen.frame() };
     let picture = pictures.picture(&frame);
     let clip = before.clip_from_world(DepthConvention::Reversed).as_dmat4();

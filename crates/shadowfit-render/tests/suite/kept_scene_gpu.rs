@@ -53,7 +53,7 @@ fn assert_same_pictures(technique: &Technique) {
         let boxes = Some(gpu_scene.casters().boxes);
         let input = FitInput { receivers: boxes, casters: boxes, ..FitInput::new(&views, direction) };
         let maps = *fitter.fit(&input).expect("maps");
-        let shown = Frame::new(&camera, direction, &maps, &atmosphere);
+        let shown = Frame::new(camera, direction, &maps, &atmosphere);
         let [a, b] = [&mut kept, &mut anew].map(|renderer| {
             renderer.draw(&gpu, &mut gpu_scene, &shown, &target).expect("a frame");
             target.read(&gpu).expect("pixels")

@@ -60,7 +60,8 @@ fn uniforms_of_frames_and_materials_have_the_size_and_offsets_of_their_wgsl_stru
             horizon,
             ground,
             viewport,
-            padding,
+            near,
+            parallel,
             map_tints,
         }
     );

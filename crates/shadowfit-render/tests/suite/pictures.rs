@@ -79,7 +79,7 @@ impl Seen {
     }
 
     pub(crate) fn frame(&self) -> Frame<'_> {
-        Frame::new(&self.camera, self.direction, &self.maps, &self.atmosphere)
+        Frame::new(self.camera, self.direction, &self.maps, &self.atmosphere)
     }
 }
 
@@ -130,10 +130,14 @@ impl Stage {
         let classes: Vec<u32> = (0..SIZE[0] * SIZE[1]).map(|pixel| pixel / 7 % 6 + 8 * (pixel / 50 % 2)).collect();
         let classes = classes_texture(&pictures.gpu, &classes, SIZE);
         let camera = PerspectiveCamera { eye: seen.camera.eye + step, ..seen.camera };
-        let judged =
-            JudgedPicture { classes: &classes, size: SIZE, camera: seen.camera, depth: Some(targets.depth_view()) };
+        let judged = JudgedPicture {
+            classes: &classes,
+            size: SIZE,
+            camera: seen.camera.into(),
+            depth: Some(targets.depth_view()),
+        };
         let marks = Some(Marks::default());
-        pictures.picture(&Frame { camera: &camera, overlay, judged: Some(judged), marks, ..seen.frame() })
+        pictures.picture(&Frame { camera: camera.into(), overlay, judged: Some(judged), marks, ..seen.frame() })
     }
 }
 

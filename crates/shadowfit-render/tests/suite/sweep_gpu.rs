@@ -271,7 +271,7 @@ fn compare(gpu: &Gpu, renderer: &mut Renderer, case: &Case, shown: &mut Shown, d
     let camera = camera(&shown.view);
     let maps = fitted(case, &camera, &shown.boxes, direction);
     let atmosphere = Atmosphere::default();
-    let frame = Frame::new(&camera, direction, &maps, &atmosphere);
+    let frame = Frame::new(camera, direction, &maps, &atmosphere);
     let [swept, whole] =
         [Culling::Swept, Culling::WholeMap].map(|culling| Drawn::new(gpu, renderer, &mut shown.scene, &frame, culling));
     let at = (case.name, case.technique.maps.selection(), shown.view.name, direction);
@@ -345,7 +345,7 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
     ] {
         let outer = PerspectiveCamera { eye, forward, ..inner };
         let frame =
-            Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, atmosphere) };
+            Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(outer, direction, &maps, atmosphere) };
         let [swept, all] = [Culling::Swept, Culling::WholeMap]
             .map(|culling| Drawn::new(gpu, &mut renderer, &mut scene, &frame, culling));
         let choice = case.technique.maps.selection();
@@ -382,7 +382,7 @@ fn real_scenes_get_the_same_factor_in_every_pixel() {
             for frame in scenarios.frames.iter().filter(|frame| frame.scene == index && frame.frame == 7) {
                 let (camera, direction) = (frame.camera(), DVec3::from_array(frame.light_dir).as_vec3());
                 let maps = fitted(case, &camera, &boxes, direction);
-                let shown = Frame::new(&camera, direction, &maps, &atmosphere);
+                let shown = Frame::new(camera, direction, &maps, &atmosphere);
                 let [swept, whole] = [Culling::Swept, Culling::WholeMap]
                     .map(|culling| Drawn::new(&gpu, renderer, &mut gpu_scene, &shown, culling));
                 assert_eq!(different(&swept.pixels, &whole.pixels), 0, "{}, {}", frame.id, case.name);

@@ -28,6 +28,8 @@ pub(crate) struct Source {
     pub(crate) binary: Option<Vec<u8>>,
     /// Extensions that the file uses, does not require, and that import ignores.
     pub(crate) ignored_extensions: Vec<String>,
+    /// Number of animation channels that move no node, which import ignores.
+    pub(crate) channels_without_node: usize,
 }
 
 /// Parses the content of the file `path`. Before that, `tell_json` is called with the length of the JSON, in bytes.
@@ -40,20 +42,38 @@ pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> R
     };
     let (json, binary) = split(bytes).map_err(malformed)?;
     tell_json(json.len() as u64);
-    let parsed = deserialize::from_slice::<Root>(json);
+    let mut parsed = deserialize::from_slice::<Root>(json);
+    let mut channels_without_node = 0;
     if parsed.is_err() {
         // The JSON may be sound and only of another version, or use an extension's own layout.
-        let loose = deserialize::from_slice(json).map_err(|e| malformed(("JSON", e.to_string())))?;
+        let mut loose = deserialize::from_slice(json).map_err(|e| malformed(("JSON", e.to_string())))?;
         check_version(version_of(&loose)).map_err(malformed)?;
         let required = loose["extensionsRequired"].as_array().into_iter().flatten();
         check_extensions(path, required.filter_map(Value::as_str))?;
+        channels_without_node = drop_channels_without_node(&mut loose);
+        if channels_without_node > 0 {
+            parsed = deserialize::from_value(loose);
+        }
     }
     let root = parsed.map_err(|error| malformed(("JSON", error.to_string())))?;
     check_version(&root.asset.version).map_err(malformed)?;
     check_extensions(path, root.extensions_required.iter().map(String::as_str))?;
     let used = root.extensions_used.iter();
     let ignored_extensions = used.filter(|e| !SUPPORTED.contains(&e.as_str())).cloned().collect();
-    Ok(Source { root, binary: binary.map(<[u8]>::to_vec), ignored_extensions })
+    Ok(Source { root, binary: binary.map(<[u8]>::to_vec), ignored_extensions, channels_without_node })
+}
+
+/// Removes the animation channels that move no node, such as channels of `KHR_animation_pointer`. Returns their number.
+/// glTF allows them, but the gltf crate refuses their file.
+fn drop_channels_without_node(json: &mut Value) -> usize {
+    let mut dropped = 0;
+    for animation in json.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
+        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else { continue };
+        let before = channels.len();
+        channels.retain(|channel| channel["target"].get("node").is_some());
+        dropped += before - channels.len();
+    }
+    dropped
 }
 
 type Split<'a> = (&'a [u8], Option<&'a [u8]>);

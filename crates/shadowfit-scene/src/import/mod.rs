@@ -182,6 +182,9 @@ fn import<'a>(
     if !source.ignored_extensions.is_empty() {
         notes.add(format!("extensions ignored: {}", source.ignored_extensions.join(", ")));
     }
+    if source.channels_without_node > 0 {
+        notes.add(format!("animation channels that move no node ignored: {}", source.channels_without_node));
+    }
     let mut nodes = std::mem::take(&mut tree.nodes);
     let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, images, &mut notes)?;
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
@@ -189,12 +192,14 @@ fn import<'a>(
     let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
     let animations = animations.load(&mut notes)?;
     let cameras = view::cameras(root, &tree, &mut notes)?;
+    let suns = view::suns(root, &tree, &mut notes)?;
     let (materials, images) = materials.finish();
     let nodes = std::mem::take(&mut tree.nodes);
-    let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, ..Scene::default() };
+    let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, suns, ..Scene::default() };
     let rest = scene.pose(None, 0.0);
     check_extent(&scene, &rest, &tree)?;
-    scene.sun = view::sun(root, &tree, &rest, &mut notes)?;
+    scene.sun = scene.sun_of(&rest);
+    view::note_views(&scene, &rest, &mut notes);
     scene.notes = notes.finish();
     Ok(scene)
 }

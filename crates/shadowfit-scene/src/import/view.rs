@@ -1,4 +1,4 @@
-//! Cameras and the sun of a file.
+//! Cameras and suns of a file.
 
 use std::f32::consts::PI;
 
@@ -10,74 +10,101 @@ use gltf::json::{Root, camera};
 use super::nodes::Tree;
 use super::notes::Notes;
 use crate::error::{Problem, entry};
-use crate::{Lens, Pose, SceneCamera, Sun};
+use crate::{Lens, Pose, Scene, SceneCamera, SceneSun};
 
-/// Cameras in node order.
+/// Loads the cameras in node order, except those whose lens makes no image.
 pub(crate) fn cameras(root: &Root, tree: &Tree, notes: &mut Notes) -> Result<Vec<SceneCamera>, Problem> {
     let mut cameras = Vec::new();
     for (node, &index) in tree.file_index.iter().enumerate() {
         let Some(camera) = root.nodes[index].camera else { continue };
         let json = entry(&root.cameras, camera.value(), "camera", &format!("nodes[{index}].camera"))?;
         match lens(json) {
-            Some(lens) => {
-                let name = json.name.clone().filter(|name| !name.is_empty());
-                let name = name.unwrap_or_else(|| tree.nodes[node].name.clone());
-                cameras.push(SceneCamera { name, node, lens });
-            }
-            None => notes.add(format!("cameras[{camera}]: skipped: its lens makes no image")),
+            Ok(lens) => cameras.push(SceneCamera { name: name(json.name.as_ref(), tree, node), node, lens }),
+            Err(reason) => notes.add(format!("cameras[{camera}]: skipped: {reason}")),
         }
     }
     Ok(cameras)
 }
 
-fn lens(json: &camera::Camera) -> Option<Lens> {
+/// Returns an element's own name, or the name of the node that carries it.
+fn name(own: Option<&String>, tree: &Tree, node: usize) -> String {
+    own.filter(|name| !name.is_empty()).unwrap_or(&tree.nodes[node].name).clone()
+}
+
+/// Reads the lens of a camera, or returns why it makes no image.
+fn lens(json: &camera::Camera) -> Result<Lens, String> {
     match json.type_ {
         Checked::Valid(camera::Type::Perspective) => {
-            let lens = json.perspective.as_ref()?;
+            let lens = json.perspective.as_ref().ok_or("it has no perspective")?;
             let (fov_y, near, far) = (lens.yfov, lens.znear, lens.zfar);
-            let sound = fov_y > 0.0 && fov_y < PI && near > 0.0 && far.is_none_or(|far| far > near);
-            (sound && near.is_finite()).then_some(Lens::Perspective { fov_y, near, far })
+            if !(fov_y > 0.0 && fov_y < PI) {
+                return Err(format!("its yfov is {fov_y}, not between 0 and pi"));
+            }
+            check_planes(near, far.unwrap_or(f32::INFINITY), near > 0.0)?;
+            Ok(Lens::Perspective { fov_y, near, far })
         }
         Checked::Valid(camera::Type::Orthographic) => {
-            let lens = json.orthographic.as_ref()?;
+            let lens = json.orthographic.as_ref().ok_or("it has no orthographic")?;
             let (half_height, near, far) = (lens.ymag.abs(), lens.znear, lens.zfar);
-            let sound = half_height > 0.0 && near >= 0.0 && far > near;
-            let finite = half_height.is_finite() && far.is_finite();
-            (sound && finite).then_some(Lens::Orthographic { half_height, near, far })
+            if !(half_height > 0.0 && half_height.is_finite()) {
+                return Err(format!("its ymag is {}", lens.ymag));
+            }
+            check_planes(near, far, near >= 0.0 && far.is_finite())?;
+            Ok(Lens::Orthographic { half_height, near, far })
         }
-        Checked::Invalid => None,
+        Checked::Invalid => Err("its type is neither perspective nor orthographic".to_owned()),
     }
 }
 
-/// The first directional light; others are only noted.
-pub(crate) fn sun(root: &Root, tree: &Tree, rest: &Pose, notes: &mut Notes) -> Result<Option<Sun>, Problem> {
+/// Refuses planes between which nothing lies.
+fn check_planes(near: f32, far: f32, in_range: bool) -> Result<(), String> {
+    let is_sound = in_range && near.is_finite() && far > near;
+    is_sound.then_some(()).ok_or_else(|| format!("its znear is {near} and its zfar {far}"))
+}
+
+/// Loads the directional lights in node order, and notes the lights that give no light here.
+pub(crate) fn suns(root: &Root, tree: &Tree, notes: &mut Notes) -> Result<Vec<SceneSun>, Problem> {
     let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     let lights = lights.map_or(&[][..], |extension| &extension.lights);
-    let (mut sun, mut skipped) = (None, 0);
+    let (mut suns, mut others) = (Vec::new(), 0);
     for (node, &index) in tree.file_index.iter().enumerate() {
         let extensions = root.nodes[index].extensions.as_ref();
         let Some(link) = extensions.and_then(|e| e.khr_lights_punctual.as_ref()) else { continue };
         let element = format!("nodes[{index}].extensions.KHR_lights_punctual");
         let light = entry(lights, link.light.value(), "light", &element)?;
-        let found = directional(light, rest.world_from(node).transform_vector3(Vec3::NEG_Z));
-        if sun.is_none() && found.is_some() {
-            sun = found;
+        if matches!(light.type_, Checked::Valid(LightType::Directional)) {
+            suns.push(sun(light, name(light.name.as_ref(), tree, node), node));
         } else {
-            skipped += 1;
+            others += 1;
         }
     }
-    if skipped > 0 {
-        notes.add(format!("{skipped} lights ignored: the sun is the first directional light"));
+    if others > 0 {
+        notes.add(format!("{others} point or spot lights ignored: only directional lights cast here"));
     }
-    Ok(sun)
+    Ok(suns)
 }
 
-fn directional(light: &Light, direction: Vec3) -> Option<Sun> {
-    if !matches!(light.type_, Checked::Valid(LightType::Directional)) {
-        return None;
+fn sun(light: &Light, name: String, node: usize) -> SceneSun {
+    let color = Vec3::from_array(light.color.map(|channel| channel.max(0.0)));
+    SceneSun { name, node, color, intensity: light.intensity.max(0.0) }
+}
+
+/// Notes the sun that is taken of several, and cameras and suns that cannot be.
+pub(crate) fn note_views(scene: &Scene, rest: &Pose, notes: &mut Notes) {
+    for (camera, number) in scene.cameras.iter().zip(1..) {
+        if camera.placement(rest).is_none() {
+            notes.add(format!("camera {number} ignored: its node has no size"));
+        }
     }
-    let direction = direction.try_normalize()?;
-    let color = Vec3::from_array(light.color.map(|c| c.max(0.0)));
-    let intensity = light.intensity.max(0.0);
-    (color.is_finite() && intensity.is_finite()).then_some(Sun { direction, color, intensity })
+    let count = scene.suns.len();
+    match scene.strongest_sun() {
+        None if count > 0 => notes.add(format!("{count} directional lights without intensity ignored")),
+        Some(taken) if scene.suns[taken].direction(rest).is_none() => {
+            notes.add(format!("directional light {} ignored: its node has no size", taken + 1));
+        }
+        Some(taken) if count > 1 => {
+            notes.add(format!("the sun is directional light {} of {count}, the strongest", taken + 1));
+        }
+        _ => {}
+    }
 }

@@ -11,3 +11,4 @@ mod small_broken;
 mod small_images;
 mod small_motion;
 mod small_surface;
+mod small_view;

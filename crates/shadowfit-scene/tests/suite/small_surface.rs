@@ -241,24 +241,3 @@ fn external_files_are_found_by_percent_encoded_and_non_ascii_names() {
         assert_eq!(load_gltf(&path).unwrap().name, "❤", "{uri}");
     }
 }
-
-#[test]
-fn the_first_directional_light_is_the_sun_and_cameras_keep_their_lens() {
-    let mut build = Build::default();
-    let positions = build.floats("VEC3", 3, &TRIANGLE);
-    build.members(&format!(
-        r#""nodes":[{{"mesh":0}},{{"extensions":{{"KHR_lights_punctual":{{"light":0}}}}}},
-        {{"rotation":[-0.7071068,0,0,0.7071068],"scale":[3,3,3],"extensions":{{"KHR_lights_punctual":{{"light":1}}}}}},
-        {{"name":"eye","camera":0}},{{"camera":1}}],
-        "extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"point"}},{{"type":"directional","intensity":3,"color":[1,0.5,0]}}]}}}},
-        "cameras":[{{"type":"perspective","perspective":{{"yfov":1,"znear":0.1}}}},{{"type":"perspective","perspective":{{"yfov":0,"znear":0.1}}}}],
-        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":{positions}}}}}]}}]"#
-    ));
-    let scene = build.load("view").unwrap();
-    let sun = scene.sun.unwrap();
-    assert!((sun.direction - Vec3::NEG_Y).length() < 1e-6, "{sun:?}");
-    assert_eq!((sun.color, sun.intensity), (Vec3::new(1.0, 0.5, 0.0), 3.0));
-    assert_eq!(scene.cameras.len(), 1);
-    assert_eq!((scene.cameras[0].name.as_str(), scene.cameras[0].node), ("eye", 3));
-    assert!(scene.notes.iter().any(|note| note.contains("cameras[1]")), "{:?}", scene.notes);
-}

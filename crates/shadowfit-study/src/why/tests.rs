@@ -115,7 +115,7 @@ impl Court {
         let found = why(&WhyInput {
             scene: Arc::new(scene),
             rays: Arc::new(rays),
-            view: View { camera, direction: self.direction, is_first: true },
+            view: View { camera: camera.into(), direction: self.direction, is_first: true },
             judging: self.judging,
             pixel: [50.5, 50.5],
             technique: self.technique,
@@ -509,7 +509,7 @@ fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
             near: 0.1,
             far: 150.0,
         };
-        let view = View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first: true };
+        let view = View { camera: camera.into(), direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first: true };
         let judging = Judging { size, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
         let maps = scene

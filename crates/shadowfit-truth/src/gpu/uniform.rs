@@ -76,8 +76,8 @@ pub struct JudgeUniform {
     pub to_light: [f32; 3],
     /// Width of the edge zone where no map is read, in pixels.
     pub edge_width: f32,
-    /// Tangents of half of the fields of view.
-    pub tan_half_fov: [f32; 2],
+    /// Half of the picture's width and height, in metres: at a view depth of 1 m, or at any of an orthographic lens.
+    pub half_size: [f32; 2],
     /// Pixels across and down.
     pub size: [u32; 2],
     /// Number of maps that points try.
@@ -92,10 +92,10 @@ pub struct JudgeUniform {
     pub reach: f32,
     /// Texels over which a map is blended into the next one, by coverage.
     pub blend: f32,
+    /// 1 where all lines of sight are parallel.
+    pub is_orthographic: u32,
     /// Unused.
-    pub padding_0: u32,
-    /// Unused.
-    pub padding_1: u32,
+    pub padding: u32,
     /// The maps, in the order in which points try them.
     pub maps: [MapUniform; MAX_MAPS],
     /// The maps of the frame before.

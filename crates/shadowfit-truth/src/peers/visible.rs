@@ -64,7 +64,7 @@ impl VisiblePoints {
         let step = stride as usize;
         for y in (0..RAYS[1]).step_by(step) {
             for x in (0..RAYS[0]).step_by(step) {
-                visible.add(tracer, &camera, camera.ray(x, y));
+                visible.add(tracer, &camera, camera.ray(x, y).direction);
             }
         }
         visible
@@ -94,7 +94,7 @@ impl VisiblePoints {
             return;
         }
         let position = camera.eye + direction * view_depth;
-        let pixel = 2.0 * camera.tan_half_fov.y / SCREEN_HEIGHT;
+        let pixel = 2.0 * camera.half_size.y / SCREEN_HEIGHT;
         let step = |across: DVec3| slide(across * pixel, direction, normal, view_depth);
         let occluders = self.add_occluders(tracer, position + normal * RAY_OFFSET);
         self.points.push(VisiblePoint {
@@ -134,7 +134,8 @@ fn ray_camera(frame: &Frame) -> PixelCamera {
         right: axis(0),
         up: axis(1),
         forward: -axis(2),
-        tan_half_fov: DVec2::new(tan * frame.aspect, tan),
+        half_size: DVec2::new(tan * frame.aspect, tan),
+        is_orthographic: false,
         size: RAYS,
         near: frame.near,
         far: frame.far,

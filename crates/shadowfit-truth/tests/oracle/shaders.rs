@@ -53,7 +53,7 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             max_distance,
             to_light,
             edge_width,
-            tan_half_fov,
+            half_size,
             size,
             map_count,
             depth_clamp,
@@ -61,8 +61,8 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             by_coverage,
             reach,
             blend,
-            padding_0,
-            padding_1,
+            is_orthographic,
+            padding,
             maps,
             before
         }

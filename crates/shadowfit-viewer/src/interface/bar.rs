@@ -4,6 +4,7 @@ use egui::{Align, Button, Layout, Ui, containers::menu::MenuButton};
 use shadowfit_classics::SAMPLES;
 use shadowfit_egui::{Command, Icon, Toggle, keys_of, named_icon_button, with_keys};
 use shadowfit_params::tool::{ErrorMarks, InsetMaps};
+use shadowfit_scene::SceneSun;
 use shadowfit_scene::builtin::BuiltinScene;
 
 use super::{InterfaceInput, InterfaceOutput};
@@ -14,7 +15,7 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
     egui::Panel::top("bar").show(ui, |ui| {
         ui.add_space(2.0);
         ui.horizontal_wrapped(|ui| {
-            scenes(ui, input, output);
+            scenes(ui, stage, input, output);
             ui.separator();
             if stage.draws_sample() {
                 // Views and comparison are those of techniques.
@@ -56,7 +57,7 @@ pub(super) fn show_narrow(
     egui::Panel::top("bar").show(ui, |ui| {
         ui.add_space(2.0);
         ui.horizontal(|ui| {
-            scenes(ui, input, output);
+            scenes(ui, stage, input, output);
             if !stage.draws_sample() {
                 let no_compute = stage.no_compute();
                 shadowfit_egui::view_menu(ui, &mut stage.settings.view, no_compute);
@@ -98,8 +99,8 @@ fn more(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
     });
 }
 
-/// The menu of scenes: built in, opened before, and from a file.
-fn scenes(ui: &mut Ui, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
+/// The menu of scenes: built in, opened before, and from a file, with the cameras and suns of the file on show.
+fn scenes(ui: &mut Ui, stage: &Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
     let open = |output: &mut InterfaceOutput, name: &str| output.commands.push(Command::Open(name.to_owned()));
     MenuButton::new("Scene").ui(ui, |ui| {
         for scene in BuiltinScene::ALL {
@@ -127,6 +128,48 @@ fn scenes(ui: &mut Ui, input: &InterfaceInput<'_>, output: &mut InterfaceOutput)
                 if ui.button(source.label()).on_hover_text(source.text()).clicked() {
                     output.commands.push(Command::OpenFile(path.clone()));
                 }
+            }
+        }
+        if !stage.draws_sample() {
+            of_the_file(ui, stage, output);
+        }
+    });
+}
+
+/// The menus of the file's cameras and suns, where it has any.
+fn of_the_file(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
+    let (scene, settings) = (stage.scene(), &stage.settings);
+    if scene.subject.is_some() || (scene.cameras.is_empty() && scene.suns.is_empty()) {
+        return;
+    }
+    ui.separator();
+    let cameras: Vec<String> = scene.cameras.iter().map(|camera| camera.name.clone()).collect();
+    let chosen = settings.camera.file;
+    choice(ui, ("Camera of the file", "camera.file"), &cameras, (chosen, "Free flight", "free"), output);
+    let lux = |sun: &SceneSun| format!("{} ({:.3} lx)", sun.name, sun.strength()).trim_start().to_owned();
+    let suns: Vec<String> = scene.suns.iter().map(lux).collect();
+    let chosen = settings.light.file;
+    choice(ui, ("Sun of the file", "light.file"), &suns, (chosen, "By hand", "by_hand"), output);
+}
+
+/// A menu that sets a parameter to the number of one of some names, or to none.
+fn choice(
+    ui: &mut Ui,
+    (title, id): (&str, &str),
+    names: &[String],
+    (chosen, none, none_id): (Option<u32>, &str, &str),
+    output: &mut InterfaceOutput,
+) {
+    if names.is_empty() {
+        return;
+    }
+    ui.menu_button(title, |ui| {
+        let numbered = names.iter().zip(1..).map(|(name, number)| (Some(number), format!("{number}  {name}")));
+        for (number, label) in numbered.chain([(None, none.to_owned())]) {
+            if ui.add(Button::selectable(number == chosen, label)).clicked() {
+                let value = number.map_or(none_id.to_owned(), |number: u32| number.to_string());
+                output.commands.push(Command::Set(id.to_owned(), value));
+                ui.close();
             }
         }
     });

@@ -146,7 +146,7 @@ impl Pictures {
         }
         loading(ui, input, rect);
         if let (Some(card), Some([x, y])) = (stage.why(), output.hover) {
-            shadowfit_egui::why_overlay(ui.ctx(), rect.lerp_inside(Vec2::new(x, y)), &card);
+            shadowfit_egui::why_overlay(ui.ctx(), rect, rect.lerp_inside(Vec2::new(x, y)), &card);
         }
     }
 

@@ -89,19 +89,20 @@ fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     }
     let mut hour = light.hour.unwrap_or(12.0);
     let is_set = light.hour.is_some();
+    let otherwise = if light.file.is_some() { "of the file" } else { "by angles" };
     let clock = |hour: f64, _: std::ops::RangeInclusive<usize>| {
         let minutes = (hour * 60.0).round() as u32;
-        if is_set { format!("{}:{:02}", minutes / 60, minutes % 60) } else { "by angles".to_owned() }
+        if is_set { format!("{}:{:02}", minutes / 60, minutes % 60) } else { otherwise.to_owned() }
     };
     let slider = Slider::new(&mut hour, DAY.0..=DAY.1).custom_formatter(clock).trailing_fill(true);
-    let help = "Time of day: sunrise at 6, noon at 12, sunset at 18. Azimuth and elevation in the panel are used until it \
-                is moved.";
+    let help = "Time of day: sunrise at 6, noon at 12, sunset at 18. The sun of the file, or azimuth and elevation in the panel, \
+                are used until it is moved.";
     let response = ui.add(slider).on_hover_text(help);
     rename(ui, &response, "Time of day".to_owned());
     if response.changed() {
         light.hour = Some(hour);
     }
-    let help = "Back to azimuth and elevation";
+    let help = "Back to the sun of the file, or to azimuth and elevation";
     if light.hour.is_some() && icon_button(ui, Icon::X, "Sun by angles", help).clicked() {
         light.hour = None;
     }
@@ -110,7 +111,11 @@ fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
 /// How fast the camera flies.
 fn speed(ui: &mut Ui, stage: &mut Stage) {
     let (least, most) = shadowfit_params::tool::FLYING_SPEEDS;
-    let speed = DragValue::new(&mut stage.settings.camera.speed).range(least..=most).speed(0.05).suffix(" m/s");
-    let response = ui.add(speed.max_decimals(1)).on_hover_text("Flying speed (wheel over the picture)");
+    let now = stage.settings.camera.speed;
+    // Three digits, and a drag of a point for a hundredth.
+    let decimals = (1.0 - now.max(least).log10().floor()).clamp(1.0, 6.0) as usize;
+    let speed = DragValue::new(&mut stage.settings.camera.speed).range(least..=most).speed(f64::from(now) * 0.01);
+    let response =
+        ui.add(speed.suffix(" m/s").max_decimals(decimals)).on_hover_text("Flying speed (wheel over the picture)");
     rename(ui, &response, "Flying speed".to_owned());
 }

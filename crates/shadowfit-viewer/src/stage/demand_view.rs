@@ -39,7 +39,7 @@ impl FromLight {
         let [right, up] = [rows.x_axis, rows.y_axis].map(Vec4::truncate);
         let reach = |axis: Vec3| {
             let along = |corner: &Vec3| (*corner - (middle - fit.origin).as_vec3()).dot(axis).abs();
-            corners.iter().map(along).fold(1e-3, f32::max)
+            corners.iter().map(along).fold(f32::MIN_POSITIVE, f32::max)
         };
         let aspect = size[0] as f32 / size[1] as f32;
         let half = reach(up).max(reach(right) / aspect) * ROOM;

@@ -1,7 +1,7 @@
 //! The live figures of the stage's frames.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera, diagnostics};
+use shadowfit::{Camera, DepthConvention, LightProjection, diagnostics};
 use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 
 use shadowfit_wgpu::resolve::EdgeResult;
@@ -67,9 +67,9 @@ impl Stage {
         if self.plays() {
             return None;
         }
-        let camera = self.perspective(size);
+        let camera = self.camera_of(size);
         let rays = self.scene.ready_rays()?;
-        let eye = self.scene.camera_for_rays(&camera).eye;
+        let eye = self.scene.camera_for_rays(camera).eye;
         let hit = rays.tracer.first_hit(eye.as_vec3(), camera.forward)?;
         let normal = rays.tracer.normal(hit.triangle);
         let point = camera.forward * hit.distance;
@@ -86,13 +86,7 @@ fn waste(fitted: &Fitted, map: usize) -> Option<f32> {
 }
 
 /// Pixels per texel along the worse axis at a point relative to the eye.
-fn pixels_per_texel(
-    fit: &LightProjection,
-    camera: &PerspectiveCamera,
-    size: [u32; 2],
-    point: Vec3,
-    normal: Vec3,
-) -> Option<f32> {
+fn pixels_per_texel(fit: &LightProjection, camera: &Camera, size: [u32; 2], point: Vec3, normal: Vec3) -> Option<f32> {
     let clip = camera.clip_from_world(DepthConvention::Reversed);
     let fit = fit.relative_to(camera.eye);
     let figures = diagnostics::pixels_per_texel(&fit, &clip, size.into(), point, normal).ok()??;

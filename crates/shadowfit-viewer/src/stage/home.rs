@@ -1,20 +1,23 @@
-//! The settings and the view that a scene is opened with.
+//! The settings and the view that a scene is opened with, and the cameras and suns of its file.
 
-use glam::{DVec3, Mat4, Vec3};
-use shadowfit::Aabb;
-use shadowfit_params::tool::{LightSettings, Settings};
+use glam::{DVec3, Vec3};
+use shadowfit::{Aabb, Camera, Lens};
+use shadowfit_params::tool::{CameraSettings, Settings};
 use shadowfit_render::FlyCamera;
-use shadowfit_scene::Lens;
-use shadowfit_study::PreparedScene;
+use shadowfit_scene::SceneCamera;
+use shadowfit_study::{PosedScene, file_camera};
+
+use super::Stage;
 
 /// Settings and view for a scene: its own camera and sun where it has them.
-pub(super) fn home(prepared: &PreparedScene) -> (Settings, FlyCamera) {
+pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
     let (scene, bounds) = (prepared.scene(), prepared.bounds());
     let mut settings = Settings::default();
-    if let Some(light) = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction)) {
-        settings.light = LightSettings { azimuth: light.azimuth, elevation: light.elevation, ..settings.light };
+    if let Some(sun) = scene.sun {
+        settings.light.point_along(sun.direction);
+        settings.light.file = scene.strongest_sun().map(number);
     }
-    let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);
+    let radius = radius(&bounds);
     if scene.subject.is_none() {
         // A scene of unknown units: all lengths follow from its size. Shadows reach as far as the camera sees, since
         // maps are placed by content and not by distance.
@@ -23,31 +26,86 @@ pub(super) fn home(prepared: &PreparedScene) -> (Settings, FlyCamera) {
         settings.camera.far = radius * 20.0;
         settings.camera.speed = radius * 0.4;
     }
-    let camera = own_camera(prepared, &mut settings).unwrap_or_else(|| overview(&bounds, radius, &settings));
-    (settings, camera)
+    let own = scene.cameras.iter().enumerate().find_map(|(index, camera)| Some((index, seen_by(camera, prepared)?)));
+    let Some((index, camera)) = own else {
+        let camera = overview(&bounds, radius, &settings);
+        return (settings, camera);
+    };
+    take_lens(&mut settings.camera, &camera);
+    // Built-in scenes have a start view and no file.
+    settings.camera.file = scene.subject.is_none().then(|| number(index));
+    (settings, placed(&camera))
 }
 
-/// The scene's first perspective camera.
-fn own_camera(prepared: &PreparedScene, settings: &mut Settings) -> Option<FlyCamera> {
-    prepared.scene().cameras.iter().find_map(|camera| {
-        let Lens::Perspective { fov_y, near, far } = camera.lens else { return None };
-        let world: &Mat4 = prepared.pose().world_from_node.get(camera.node)?;
-        let eye = world.w_axis.truncate();
-        let forward = -world.z_axis.truncate();
-        if !eye.is_finite() || !forward.is_finite() || forward == Vec3::ZERO {
-            return None;
+/// Half of the diagonal of a scene's bounds, in metres; of a scene without a size, a millimetre.
+fn radius(bounds: &Aabb) -> f32 {
+    let radius = (bounds.max - bounds.min).length() * 0.5;
+    if radius > 0.0 { radius } else { 1e-3 }
+}
+
+/// The number of a camera or sun of a file by its index.
+fn number(index: usize) -> u32 {
+    u32::try_from(index + 1).unwrap_or(u32::MAX)
+}
+
+/// The element of a list with a number that counts from 1.
+fn numbered<T>(list: &[T], number: Option<u32>) -> Option<&T> {
+    list.get((number? as usize).checked_sub(1)?)
+}
+
+/// Takes the lens of a camera of the file.
+fn take_lens(settings: &mut CameraSettings, camera: &Camera) {
+    let (fov_y, height) = match camera.lens {
+        Lens::Perspective { fov_y } => (fov_y, None),
+        Lens::Orthographic { half_height } => (settings.fov_y, Some(half_height * 2.0)),
+    };
+    *settings = CameraSettings { fov_y, height, near: camera.near, far: camera.far, ..*settings };
+}
+
+/// A camera of the file in the present pose. `None` where its node has no size.
+fn seen_by(camera: &SceneCamera, scene: &PosedScene) -> Option<Camera> {
+    // The settings have no aspect: the window has.
+    file_camera(camera, scene.pose(), &scene.bounds(), 1.0)
+}
+
+/// The place and direction of a camera of the file.
+fn placed(camera: &Camera) -> FlyCamera {
+    FlyCamera::placed(camera.eye, camera.forward, camera.up)
+}
+
+impl Stage {
+    /// Moves sun and camera to the file's sun and camera that the settings name, in the present pose. A number that the
+    /// file lacks counts as none. The lens is taken once, when a camera is chosen.
+    pub(super) fn follow_file(&mut self) {
+        let (scene, pose) = (self.scene.scene(), self.scene.pose());
+        let light = &mut self.settings.light;
+        match numbered(&scene.suns, light.file) {
+            Some(sun) => sun.direction(pose).into_iter().for_each(|direction| light.point_along(direction)),
+            None => light.file = None,
         }
-        settings.camera.fov_y = fov_y.clamp(0.1, 2.5);
-        if near > 0.0 && near < settings.camera.far {
-            settings.camera.near = near;
+        let file = self.settings.camera.file;
+        let seen = numbered(&scene.cameras, file).and_then(|camera| seen_by(camera, &self.scene));
+        let Some(camera) = seen else {
+            (self.settings.camera.file, self.followed) = (None, None);
+            return;
+        };
+        if self.followed != file {
+            self.set_camera(placed(&camera));
+            take_lens(&mut self.settings.camera, &camera);
+            (self.settings.camera.file, self.followed) = (file, file);
         }
-        if let Some(far) = far.filter(|far| *far > settings.camera.near * 2.0) {
-            settings.camera.far = far;
-        }
-        let mut fly = FlyCamera { position: eye.as_dvec3(), yaw: 0.0, pitch: 0.0 };
-        fly.look_along(forward);
-        Some(fly)
-    })
+        self.camera = placed(&camera);
+    }
+
+    /// Takes kept settings. Their lens belongs to the file's camera of this number, and may have been changed since.
+    pub(crate) fn restore_settings(&mut self, settings: &Settings, lens_of: Option<u32>) {
+        (self.settings, self.followed) = (*settings, lens_of);
+    }
+
+    /// Distance above the surface at which shadow rays start, in metres.
+    pub(crate) fn ray_offset(&self) -> f64 {
+        self.settings.view.ray_offset.map_or(self.scene.ray_offset(), f64::from)
+    }
 }
 
 /// A view of everything, from a little above and on the lit side.
@@ -58,6 +116,6 @@ fn overview(bounds: &Aabb, radius: f32, settings: &Settings) -> FlyCamera {
     let side = level.cross(Vec3::Y);
     let away = (level * 0.75 + side * 0.65 + Vec3::Y * 0.5).normalize();
     let distance = radius / (settings.camera.fov_y * 0.5).sin() * 0.75;
-    let eye: DVec3 = (center + away * distance).as_dvec3();
+    let eye: DVec3 = center.as_dvec3() + (away * distance).as_dvec3();
     FlyCamera::look_at(eye, center.as_dvec3())
 }

@@ -26,8 +26,9 @@ impl Stage {
         let maps = self.maps(size);
         // The picture of a single moment: crawl is not measured against earlier ones.
         let view = View { is_first: true, ..self.view(size) };
+        let ray_offset = self.ray_offset();
         let evaluator = &mut self.side.evaluator;
-        evaluator.judging = Judging { size, subject_only, crawl: false, ..evaluator.judging };
+        evaluator.judging = Judging { size, subject_only, crawl: false, ray_offset, ..evaluator.judging };
         let mut truth = SharedTruth::default();
         match evaluator.judge(&self.gpu, &mut self.scene, &view, &maps, &mut truth) {
             Ok(judged) => Some((truth, judged)),

@@ -3,7 +3,7 @@
 //! rarely as a thread would.
 
 use anyhow::{Result, anyhow};
-use shadowfit::{FittedMap, PerspectiveCamera, Technique};
+use shadowfit::{Camera, FittedMap, Technique};
 use shadowfit_params::figures::JudgedFigures;
 use shadowfit_params::tool::ErrorMarks;
 use shadowfit_render::{DeviceFault, Gpu, JudgedPicture, ProbeTargets, classes_texture};
@@ -28,12 +28,14 @@ const FRAMES: usize = 8;
 /// The content of a picture: where any field differs, the picture is another one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
-    pub(super) camera: PerspectiveCamera,
+    pub(super) camera: Camera,
     pub(super) technique: Technique,
     /// The light's direction of travel.
     pub(super) direction: glam::Vec3,
     /// Time of the scene's animation, in seconds.
     pub(super) seconds: f32,
+    /// Distance above the surface at which shadow rays start, in metres.
+    pub(super) ray_offset: f64,
     /// They differ in a view that stands still, too, once it is known what it showed.
     pub(super) maps: Vec<FittedMap>,
 }
@@ -188,6 +190,7 @@ impl Live {
             technique: shot.settings.technique,
             direction: view.direction,
             seconds: shot.seconds,
+            ray_offset: shot.ray_offset(),
             maps: maps.to_vec(),
         };
         let since = match &self.last {

@@ -1,6 +1,7 @@
 //! A classic sample on the stage: its values, its controls, and its drawer.
 
 use anyhow::{Context, Result};
+use shadowfit::PerspectiveCamera;
 use shadowfit_classics::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget, camera::TURN_SPEED};
@@ -141,8 +142,13 @@ impl Stage {
         self.sample = Some(show);
     }
 
+    /// The camera of a sample's picture of the given size: the sources have perspectives alone.
+    pub(crate) fn sample_camera(&self, size: [u32; 2]) -> PerspectiveCamera {
+        self.camera.perspective(&self.settings.camera, size[0] as f32 / size[1] as f32)
+    }
+
     fn draw_values(&mut self, show: &mut SampleShow, values: &SampleValues, target: &RenderTarget) {
-        let camera = self.perspective(target.size);
+        let camera = self.sample_camera(target.size);
         let drawn = show.drawer.draw(&self.gpu, &mut self.scene, (show.sample, values), &camera, target);
         match drawn {
             Ok(SampleOutcome::Drawn { message }) => show.message = message.or(show.message.take()),

@@ -1,6 +1,6 @@
 //! What a side is asked to draw: plain data of one picture.
 
-use shadowfit::PerspectiveCamera;
+use shadowfit::Camera;
 use shadowfit_params::tool::{ErrorMarks, Settings};
 use shadowfit_render::Gpu;
 use shadowfit_study::{PreparedScene, View};
@@ -11,7 +11,7 @@ pub(super) struct Shot<'a> {
     pub(super) scene: &'a mut PreparedScene,
     /// With the technique of the side.
     pub(super) settings: &'a Settings,
-    pub(super) camera: PerspectiveCamera,
+    pub(super) camera: Camera,
     /// Distance that the haze suits, in metres.
     pub(super) sight: f32,
     /// Whether an animation moves the scene from frame to frame.
@@ -30,6 +30,11 @@ impl Shot<'_> {
     /// The view as it is fitted and judged.
     pub(super) fn view(&self) -> View {
         View { camera: self.camera, direction: self.settings.light.direction(), is_first: false }
+    }
+
+    /// Distance above the surface at which shadow rays start, in metres.
+    pub(super) fn ray_offset(&self) -> f64 {
+        self.settings.view.ray_offset.map_or(self.scene.ray_offset(), f64::from)
     }
 
     /// Whether rays are asked for. Pictures that are made one by one are judged only where they show it.

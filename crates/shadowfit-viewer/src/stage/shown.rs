@@ -170,7 +170,7 @@ impl Stage {
 /// Takes over the settings that show an artefact.
 fn take_shown(settings: &mut Settings, from: &Settings) {
     settings.technique = from.technique;
-    settings.camera.far = from.camera.far;
+    (settings.camera.far, settings.camera.height) = (from.camera.far, from.camera.height);
     settings.light.animate = from.light.animate;
     let (view, from) = (&mut settings.view, &from.view);
     (view.mode, view.play, view.freeze_fit) = (from.mode, from.play, from.freeze_fit);

@@ -1,7 +1,7 @@
 //! A technique on the stage: its maps, its renderer, and the judge of its pictures.
 
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{DepthConvention, FittedMap, LightProjection, PerspectiveCamera, Seen, Technique};
+use shadowfit::{Camera, DepthConvention, FittedMap, LightProjection, PerspectiveCamera, Seen, Technique};
 use shadowfit_params::Inputs;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
@@ -28,7 +28,7 @@ pub(super) struct Side {
     /// Whether pictures follow each other in a window: nothing waits for rays then.
     follows: bool,
     /// Camera of the picture that was drawn last, until its depth buffer is read.
-    unread: Option<PerspectiveCamera>,
+    unread: Option<Camera>,
     /// What was drawn last, where it is known.
     pub(super) shown: Option<Shown>,
     /// Why the settings cannot be shown as they are.
@@ -41,7 +41,7 @@ pub(super) struct Side {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shown {
     settings: Settings,
-    camera: PerspectiveCamera,
+    camera: Camera,
     sight: f32,
     blink: f32,
     pose: u64,
@@ -165,7 +165,7 @@ impl Side {
     fn fit_now(&mut self, technique: &Technique, shot: &Shot<'_>) -> Result<Fitted, SunShadowsError> {
         let (view, inputs) = (shot.view(), shot.settings.inputs);
         let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
-            let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
+            let same_lens = Camera { eye: last.eye, forward: last.forward, up: last.up, ..view.camera } == last;
             same_lens && self.sun().technique() == technique && self.inputs == inputs
         });
         if !goes_on {
@@ -265,6 +265,7 @@ impl Side {
     /// Fits, judges and draws the view that the settings ask for.
     pub(super) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         self.problem = None;
+        self.evaluator.judging.ray_offset = shot.ray_offset();
         self.draw_anew(shot, target);
         let result = self.evaluator.renderer.edge_result();
         self.problem =
@@ -364,7 +365,7 @@ impl Side {
         let frame = if view.camera == shot.camera {
             frame
         } else {
-            Frame { culling: Culling::WholeMap, ..frame.seen_through(&shot.camera) }
+            Frame { culling: Culling::WholeMap, ..frame.seen_through(shot.camera) }
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
@@ -387,7 +388,7 @@ impl Side {
     ) {
         let seen = shot.camera;
         let aspect = target.size[0] as f32 / target.size[1] as f32;
-        let camera = PerspectiveCamera { aspect, ..outside::camera(&PerspectiveCamera { aspect, ..seen }, fitted) };
+        let camera = PerspectiveCamera { aspect, ..outside::camera(&Camera { aspect, ..seen }, fitted) };
         let descriptor = *self.evaluator.renderer.shadow_map().descriptor();
         let lines = outside::lines(fitted, maps, &descriptor);
         let view = View { camera: fitted.camera.unwrap_or(seen), ..shot.view() };
@@ -399,7 +400,7 @@ impl Side {
             lines: &lines,
             shadows: shot.settings.view.shadows,
             scissor: shot.scissor,
-            ..view.frame(maps, &atmosphere).seen_through(&camera)
+            ..view.frame(maps, &atmosphere).seen_through(camera)
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
@@ -423,7 +424,7 @@ impl Side {
             lines: &lines,
             shadows: shot.settings.view.shadows,
             scissor: shot.scissor,
-            ..view.frame(maps, &atmosphere).seen_through(&from_light.camera)
+            ..view.frame(maps, &atmosphere).seen_through(from_light.camera)
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);

@@ -7,7 +7,7 @@ use glam::DVec3;
 use shadowfit_egui::{PixelClass, WhyCard};
 use shadowfit_render::{PixelQuery, PixelRead, TexelBlock};
 use shadowfit_study::{Judging, StoredTexels, View, Why, WhyInput, in_background, why};
-use shadowfit_truth::Class;
+use shadowfit_truth::{Class, PixelCamera};
 
 use super::Stage;
 use super::live::Key;
@@ -88,7 +88,8 @@ impl Stage {
         let (side, technique) = self.side_at(in_other).filter(|_| self.settings.view.mode.shows_camera())?;
         let View { camera, direction, .. } = self.view(size);
         let maps = side.evaluator.drawn_fits().to_vec();
-        Some(Key { camera, technique, direction, seconds: self.seconds, maps })
+        let (seconds, ray_offset) = (self.seconds, self.ray_offset());
+        Some(Key { camera, technique, direction, seconds, ray_offset, maps })
     }
 
     fn question(&self, at: [f32; 2], size: [u32; 2]) -> Option<WhyInput> {
@@ -99,7 +100,7 @@ impl Stage {
             scene: self.scene.shared_scene(),
             rays: self.scene.ready_rays()?,
             view: self.view(size),
-            judging: Judging { size, ..Judging::default() },
+            judging: Judging { size, ray_offset: self.ray_offset(), ..Judging::default() },
             pixel: [at[0] * size[0] as f32, at[1] * size[1] as f32],
             technique,
             maps: side.evaluator.drawn_fits().to_vec(),
@@ -162,15 +163,11 @@ impl Stage {
     /// World position of the surface at a point of the picture, in metres.
     pub fn pick(&self, at: [f32; 2], size: [u32; 2]) -> Option<DVec3> {
         let rays = self.scene.ready_rays()?;
-        let camera = self.perspective(size);
-        let half = (camera.fov_y * 0.5).tan();
-        let forward = camera.forward.normalize();
-        let right = forward.cross(camera.up).normalize();
-        let up = right.cross(forward);
-        let [x, y] = [at[0] * 2.0 - 1.0, 1.0 - at[1] * 2.0];
-        let ray = (forward + right * (x * half * camera.aspect) + up * (y * half)).normalize();
-        let hit = rays.tracer.first_hit((camera.eye - rays.origin).as_vec3(), ray)?;
-        Some(camera.eye + (ray * hit.distance).as_dvec3())
+        let camera = self.scene.camera_for_rays(self.camera_of(size));
+        let pixel = [0, 1].map(|axis| (at[axis] * size[axis] as f32) as u32);
+        let ray = PixelCamera::new(camera, size).ray(pixel[0], pixel[1]);
+        let hit = rays.tracer.first_hit(ray.origin.as_vec3(), ray.direction.as_vec3())?;
+        Some(rays.origin + ray.at(f64::from(hit.distance)))
     }
 }
 

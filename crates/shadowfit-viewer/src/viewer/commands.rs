@@ -124,6 +124,7 @@ impl Viewer {
                 self.interface.edits_other = false;
             }
             Command::ResetCamera => self.stage.reset_camera(),
+            Command::LevelCamera => self.stage.level_camera(),
             Command::LookAt { eye, target } => self.stage.set_camera(FlyCamera::look_at(eye.into(), target.into())),
             Command::Focus(at) => self.focus(at),
             Command::SetBookmark(key) => self.set_bookmark(key),
@@ -275,6 +276,7 @@ impl Viewer {
             scene: self.stage.prepared_scene().shared_scene(),
             pose: (self.stage.animation, self.stage.seconds()),
             settings: self.stage.settings.with_technique(technique),
+            ray_offset: self.stage.ray_offset(),
             views: self.stage.views_to_tune(self.interface.pictures.size()),
             is_of_other: self.interface.edits_other && self.stage.is_comparing(),
         });

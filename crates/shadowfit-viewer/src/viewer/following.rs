@@ -20,7 +20,7 @@ impl Viewer {
         Link {
             scene: LinkedScene::of(&self.source),
             animation: stage.animation,
-            camera: Some(stage.camera),
+            camera: now.camera.file.is_none().then_some(stage.camera),
             seconds: stands.then(|| stage.seconds()),
             settings: differences(now, &self.own_settings),
             sample: sample.into_iter().flatten().map(|(option, value)| (option.to_owned(), value)).collect(),
@@ -79,7 +79,7 @@ impl Viewer {
         }
         self.searching = None;
         self.interface.edits_other = false;
-        self.stage.settings = settings;
+        self.stage.restore_settings(&settings, settings.camera.file);
         self.stage.animation = link.animation;
         self.stage.compare_with(link.other.as_ref().map(|(other, _)| with(other, &settings).technique));
         if let Some((_, split)) = &link.other {

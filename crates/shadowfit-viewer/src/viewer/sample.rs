@@ -23,7 +23,7 @@ impl Viewer {
     /// Begins to judge the sample and modern maps against rays.
     pub(super) fn measure_sample(&mut self) {
         let Some(show) = self.stage.sample() else { return };
-        let camera = self.stage.perspective(self.interface.pictures.size());
+        let camera = self.stage.sample_camera(self.interface.pictures.size());
         let task = (show.sample, show.values.clone(), camera, self.stage.seconds());
         self.measuring.start(self.start.arguments.adapter(), task);
     }

@@ -115,9 +115,10 @@ impl Viewer {
         self.stage.settings = home;
         self.stage.set_home();
         let mut settings = if source == self.source { with_own_near(kept, &home) } else { of_scene(&kept, &home) };
+        let lens_of = settings.camera.file;
         // Arguments win over saved settings.
         let technique = arguments.apply(&mut settings)?;
-        self.stage.settings = settings;
+        self.stage.restore_settings(&settings, lens_of);
         if let Some(camera) = camera.filter(|_| source == self.source) {
             self.stage.set_camera(camera);
         }
@@ -165,7 +166,7 @@ impl Viewer {
                 .map(|(option, value)| (option.id.to_owned(), SampleValues::text(option, value)))
                 .collect()
         });
-        self.saved.camera = Some(self.stage.camera);
+        self.saved.camera = self.stage.settings.camera.file.is_none().then_some(self.stage.camera);
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
         if let Some(message) = store.keep(&self.saved) {
             // Whoever started it in a terminal sees it there, too: at the end the panel is gone.

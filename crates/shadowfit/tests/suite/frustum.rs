@@ -1,7 +1,7 @@
 //! Frusta from cameras, and their slices.
 
 use proptest::prelude::*;
-use shadowfit::{FitError, PerspectiveCamera};
+use shadowfit::{Camera, DepthConvention, FitError, Lens, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{any_camera, camera, float};
 
@@ -20,7 +20,45 @@ fn a_slice_outside_the_frustum_is_refused_with_its_depths() {
     assert_eq!(frustum.slice(0.0, 0.1), Err(FitError::NearNotBelowFar { near: 0.25, far: 0.1 }));
 }
 
+#[test]
+fn an_orthographic_lens_without_a_height_is_refused_by_name() {
+    let half = |half_height: f32| Camera { lens: Lens::Orthographic { half_height }, ..camera().into() }.frustum();
+    assert!(half(2.0).is_ok());
+    for bad in [f32::NAN, f32::INFINITY, 0.0, -1.0] {
+        let error = half(bad).expect_err("no height").to_string();
+        assert!(error.contains("half height"), "{bad}: {error}");
+    }
+    let flat = Camera { lens: Lens::Orthographic { half_height: 2.0 }, far: 0.25, ..camera().into() };
+    assert_eq!(flat.frustum(), Err(FitError::NearNotBelowFar { near: 0.25, far: 0.25 }));
+}
+
 proptest! {
+    /// Corners, matrix and frustum of the matrix agree: each is rounded to f32 by 2⁻²⁴ of the distance from the eye.
+    #[test]
+    fn a_camera_of_either_lens_has_the_frustum_of_its_matrices(camera in any_camera(), height in float(0.01, 100.0)) {
+        let perspective = Camera::from(camera);
+        prop_assert_eq!(perspective.frustum(), camera.frustum());
+        for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne] {
+            prop_assert_eq!(perspective.clip_from_world(depth), camera.clip_from_world(depth));
+            let half_height = height * camera.near;
+            let flat = Camera { lens: Lens::Orthographic { half_height }, ..perspective };
+            let frustum = flat.frustum().unwrap();
+            let clip = flat.clip_from_world(depth);
+            for (i, corner) in frustum.corners.into_iter().enumerate() {
+                let found = clip.project_point3(corner);
+                let tolerance = 1e-6 + 1e-6 * corner.length() / (half_height * flat.aspect.min(1.0));
+                let off = (found.x.abs() - 1.0).abs().max((found.y.abs() - 1.0).abs());
+                prop_assert!(off < tolerance, "corner {i}: {found}");
+            }
+            let inverse = flat.clip_from_world(depth).as_dmat4().inverse();
+            let Ok(other) = ViewFrustum::from_eye_from_clip(&inverse.as_mat4(), flat.eye, depth, f32::MAX) else { continue };
+            for (found, expected) in frustum.corners.into_iter().zip(other.corners) {
+                let scale = expected.length().max(flat.far);
+                prop_assert!((found - expected).length() <= 1e-4 * scale, "{found} for {expected}");
+            }
+        }
+    }
+
     /// Corners are rounded to f32 once for the frustum and once for its slice, each by 2⁻²⁴ of
     /// their distance; for a slice near the eye the far corner's rounding shrinks with it.
     #[test]

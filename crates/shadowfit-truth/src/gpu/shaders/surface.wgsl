@@ -4,7 +4,7 @@ struct Surface {
     position: vec3<f32>,
     // Unit geometric normal on the side of the eye.
     normal: vec3<f32>,
-    // Through the pixel's centre; its component along the view is 1.
+    // Along the line of sight through the pixel's centre; its component along the view is 1.
     ray: vec3<f32>,
     facing: f32,
     view_depth: f32,
@@ -18,14 +18,26 @@ struct MapPosition {
     w: f32,
 }
 
-fn ray_of(pixel: vec2<u32>) -> vec3<f32> {
-    let share = (2.0 * (vec2<f32>(pixel) + 0.5) / vec2<f32>(judge.size) - 1.0) * judge.tan_half_fov;
-    return judge.right * share.x - judge.up * share.y + judge.forward;
+// The line of sight through a pixel's centre.
+struct Sight {
+    // Where its view depth is 0.
+    origin: vec3<f32>,
+    // Its component along the view is 1.
+    ray: vec3<f32>,
+}
+
+fn sight_of(pixel: vec2<u32>) -> Sight {
+    let share = (2.0 * (vec2<f32>(pixel) + 0.5) / vec2<f32>(judge.size) - 1.0) * judge.half_size;
+    let aside = judge.right * share.x - judge.up * share.y;
+    let is_parallel = judge.is_orthographic != 0u;
+    let nothing = vec3<f32>(0.0);
+    return Sight(select(nothing, aside, is_parallel), judge.forward + select(aside, nothing, is_parallel));
 }
 
 // Where the pixel's ray meets a triangle's plane, with the view depth clamped to that of the corners.
 fn surface_of(pixel: vec2<u32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Surface {
-    let ray = ray_of(pixel);
+    let sight = sight_of(pixel);
+    let ray = sight.ray;
     let area = cross(b - a, c - a);
     // Scaled first: the squares of small triangles' areas are below what f32 can hold.
     let largest = max(max(abs(area.x), abs(area.y)), abs(area.z));
@@ -44,9 +56,9 @@ fn surface_of(pixel: vec2<u32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Sur
     let along = dot(normal, ray);
     var view_depth = nearest;
     if along != 0.0 {
-        view_depth = min(max(dot(normal, corner) / along, nearest), farthest);
+        view_depth = min(max(dot(normal, corner - sight.origin) / along, nearest), farthest);
     }
-    let position = ray * view_depth;
+    let position = sight.origin + ray * view_depth;
     if along > 0.0 {
         normal = -normal;
     }
@@ -142,10 +154,11 @@ fn is_covered_before(position: vec3<f32>) -> bool {
     return false;
 }
 
-// How far a point moves on its tangent plane when its ray is moved by `across` at view depth 1.
+// How far a point moves on its tangent plane when its line of sight is moved by `across`: at a view depth of 1 for a
+// perspective.
 fn slide(surface: Surface, across: vec3<f32>) -> vec3<f32> {
     let along = dot(across, surface.normal) / dot(surface.ray, surface.normal);
-    return (across - surface.ray * along) * surface.view_depth;
+    return (across - surface.ray * along) * select(surface.view_depth, 1.0, judge.is_orthographic != 0u);
 }
 
 // Pixels per texel along the worse axis: one over the smaller singular value of texels a pixel.
@@ -153,7 +166,7 @@ fn pixels_per_texel(surface: Surface, map: Map) -> f32 {
     let at = project(map, surface.position);
     let u = (map.row_x.xyz - map.row_w.xyz * at.ndc.x) * (0.5 * map.size.x / at.w);
     let v = (map.row_y.xyz - map.row_w.xyz * at.ndc.y) * (-0.5 * map.size.y / at.w);
-    let pixel = 2.0 * judge.tan_half_fov / vec2<f32>(judge.size);
+    let pixel = 2.0 * judge.half_size / vec2<f32>(judge.size);
     let to_right = slide(surface, judge.right * pixel.x);
     let to_down = slide(surface, -judge.up * pixel.y);
     let right = vec2<f32>(dot(u, to_right), dot(v, to_right));

@@ -43,7 +43,8 @@ struct Judge {
     to_light: vec3<f32>,
     // Of the edge zone where no map is read, in pixels.
     edge_width: f32,
-    tan_half_fov: vec2<f32>,
+    // Of the picture: at a view depth of 1, or at any of an orthographic lens.
+    half_size: vec2<f32>,
     size: vec2<u32>,
     map_count: u32,
     depth_clamp: u32,
@@ -52,8 +53,8 @@ struct Judge {
     // In texels.
     reach: f32,
     blend: f32,
-    padding_0: u32,
-    padding_1: u32,
+    is_orthographic: u32,
+    padding: u32,
     // In the order in which points try them.
     maps: array<Map, 8>,
     before: Before,

@@ -189,3 +189,59 @@ fn gpu_a_page_copies_links_and_cannot_be_quit() {
     let expected = format!("https://example.org/view/{}", viewer.link().to_fragment());
     assert_eq!(output.commands, [egui::OutputCommand::CopyText(expected)]);
 }
+
+/// A scene of a triangle with two cameras, the second one rolled, and two suns, as a file.
+fn write_views(path: &Path) {
+    let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3,4]}],
+        "nodes":[{"mesh":0},{"camera":0,"translation":[0.5,0.3,3]},
+        {"camera":1,"translation":[0,2,3],"rotation":[-0.28,0.0,0.38,0.88]},
+        {"rotation":[-0.5,0,0,0.866],"extensions":{"KHR_lights_punctual":{"light":0}}},
+        {"rotation":[-0.6,0.1,0,0.79],"extensions":{"KHR_lights_punctual":{"light":1}}}],
+        "extensionsUsed":["KHR_lights_punctual"],
+        "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":0},{"type":"directional"}]}},
+        "cameras":[{"type":"perspective","perspective":{"yfov":2.9,"znear":0.01}},
+        {"type":"orthographic","orthographic":{"xmag":2,"ymag":1.5,"znear":0.1,"zfar":20}}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,0,1]}]}"#;
+    std::fs::write(path, gltf).expect("written");
+}
+
+#[test]
+fn gpu_cameras_and_suns_of_a_file_come_back_by_link_while_followed_and_after() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("views.gltf");
+    write_views(&path);
+    let file = path.to_str().expect("text");
+    let mut first = ready(&[file], None);
+    let settings = |viewer: &Viewer| viewer.stage.settings;
+    assert_eq!((settings(&first).camera.file, settings(&first).light.file), (Some(1), Some(2)));
+    assert!((settings(&first).camera.fov_y - 2.9).abs() < 1e-6);
+    assert!(!first.link().to_fragment().contains("camera="), "{}", first.link().to_fragment());
+    let follow = |first: &Viewer| {
+        let mut second = ready(&[file], None);
+        second.follow(Link::parse(&first.link().to_fragment()).expect("a link"));
+        until(&mut second, "a frame", |_| true);
+        second
+    };
+    for (id, value) in [("camera.file", "2"), ("light.file", "1")] {
+        set(&mut first, id, value);
+    }
+    until(&mut first, "a frame", |viewer| viewer.stage.settings.camera.height.is_some());
+    let second = follow(&first);
+    assert_eq!(settings(&second).camera.height, Some(3.0));
+    assert_eq!((settings(&first), first.stage.camera), (settings(&second), second.stage.camera));
+    // Flown and turned by hand, with the roll of the camera.
+    first.stage.update(&shadowfit_render::FlyInput { movement: glam::Vec3::X, ..Default::default() }, 0.1);
+    set(&mut first, "light.azimuth", "30");
+    let second = follow(&first);
+    assert!(first.stage.camera.roll != 0.0);
+    assert_eq!((settings(&first), first.stage.camera), (settings(&second), second.stage.camera));
+    assert_eq!((settings(&second).camera.file, settings(&second).light.file), (None, None));
+    run(&mut first, Command::LevelCamera);
+    assert_eq!(first.stage.camera.roll, 0.0);
+    run(&mut first, Command::Reset);
+    until(&mut first, "the first view", |viewer| viewer.stage.settings.camera.file == Some(1));
+    assert_eq!(settings(&first).light.file, Some(2));
+}

@@ -1,0 +1,62 @@
+//! Cameras and suns of a scene in a pose: an animation moves them with their nodes.
+
+use glam::{DVec3, Vec3};
+
+use crate::{Pose, Scene, SceneCamera, SceneSun, Sun};
+
+/// Share of each colour in the brightness of light (ITU-R BT.709).
+const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+
+/// Position and axes of a camera, in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Position of the eye, in metres.
+    pub eye: DVec3,
+    /// Unit direction of view.
+    pub forward: Vec3,
+    /// Unit direction that appears upward, perpendicular to `forward`.
+    pub up: Vec3,
+}
+
+impl SceneCamera {
+    /// Returns the camera's placement in a pose, without the scale and shear of its node. `None` if the node scales the
+    /// direction of view to nothing.
+    pub fn placement(&self, pose: &Pose) -> Option<Placement> {
+        let world = pose.world_from_node.get(self.node)?;
+        let eye = world.w_axis.truncate();
+        let forward = (-world.z_axis.truncate()).try_normalize()?;
+        // Where the node scales its y axis to nothing, or shears it into the direction of view, any roll serves.
+        let up = world.y_axis.truncate();
+        let up = up.normalize_or(Vec3::Y).reject_from_normalized(forward).try_normalize();
+        let up = up.unwrap_or_else(|| forward.any_orthonormal_vector());
+        eye.is_finite().then_some(Placement { eye: eye.as_dvec3(), forward, up })
+    }
+}
+
+impl SceneSun {
+    /// Returns the unit direction of travel of the light in a pose, in world space. `None` if the node scales it to
+    /// nothing.
+    pub fn direction(&self, pose: &Pose) -> Option<Vec3> {
+        pose.world_from_node.get(self.node)?.transform_vector3(Vec3::NEG_Z).try_normalize()
+    }
+
+    /// Returns the brightness of its light: the intensity times the luminance of the colour, in lux.
+    pub fn strength(&self) -> f32 {
+        self.intensity * self.color.dot(LUMINANCE)
+    }
+}
+
+impl Scene {
+    /// Returns the index of the strongest of [`Self::suns`], the first of equals. `None` if none of them shines.
+    pub fn strongest_sun(&self) -> Option<usize> {
+        let shining = self.suns.iter().enumerate().filter(|(_, sun)| sun.strength() > 0.0);
+        // `max_by` takes the last of equals.
+        shining.rev().max_by(|(_, a), (_, b)| a.strength().total_cmp(&b.strength())).map(|(index, _)| index)
+    }
+
+    /// Returns the strongest of [`Self::suns`] in a pose.
+    pub(crate) fn sun_of(&self, pose: &Pose) -> Option<Sun> {
+        let sun = &self.suns[self.strongest_sun()?];
+        Some(Sun { direction: sun.direction(pose)?, color: sun.color, intensity: sun.intensity })
+    }
+}
