@@ -169,6 +169,7 @@ mod technique;
 mod view {
     mod camera;
     mod frustum;
+    mod oblique;
     mod slice;
 
     pub use camera::PerspectiveCamera;

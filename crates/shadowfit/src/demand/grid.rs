@@ -87,7 +87,8 @@ impl DemandSpace {
     ///
     /// # Errors
     ///
-    /// As [`fit`](crate::fit) for the view, the directions and the distance.
+    /// As [`fit`](crate::fit) for the view, the directions and the distance; [`FitError::NearNotBelowFar`] where the view
+    /// begins beyond the distance: it is shown without shadows, so nothing in it asks for a texel.
     pub fn new(view: &ViewFrustum, direction: Vec3, up: Vec3, distance: f32) -> Result<Self, FitError> {
         view.check()?;
         let direction = checks::unit("the light's direction", direction)?;

@@ -24,6 +24,7 @@ mod maps;
 mod metamorphic;
 #[cfg(feature = "mint")]
 mod mint;
+mod oblique;
 mod optimality;
 mod other_matrices;
 mod proof;
