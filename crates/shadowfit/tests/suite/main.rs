@@ -38,6 +38,7 @@ mod self_shadowing;
 #[cfg(feature = "serde")]
 mod serde;
 mod settings;
+mod shadowless;
 mod softness;
 mod spot;
 mod spot_bad_input;
