@@ -80,8 +80,8 @@ pub enum FitError {
         /// the world's axes when a frustum does.
         size: Vec3,
     },
-    /// The near distance is not below the far distance; for a fit, the far distance is the nearer
-    /// of the frustum's far plane and the maximum shadow distance.
+    /// The near distance is not below the far distance. A view that begins beyond a positive shadow distance is no
+    /// error of a fit: it has no shadows.
     NearNotBelowFar {
         /// Near distance, in metres.
         near: f32,

@@ -46,7 +46,10 @@ const DEPTH_STEPS: f64 = 16.0;
 /// Share of a view depth that is left for rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Corners of the clip cube: those of the near face and of the far face, in the order of [`CORNERS_XY`].
+/// The whole picture: clip x, then clip y.
+const WHOLE: [(f64, f64); 2] = [(-1.0, 1.0); 2];
+
+/// Corners of the clip cube on its near face. Those of the far face follow. Both have the order of [`CORNERS_XY`].
 const NEAR_FACE: core::ops::Range<usize> = 0..4;
 
 impl Unprojection {
@@ -75,7 +78,7 @@ impl Unprojection {
         let Some(seen) = cube.within(limit) else {
             let near = cube.within(f64::MAX).map_or(limit, |all| all.depths.0);
             checks::may_begin_beyond(near as f32, max_distance)?;
-            return cube.frustum(self.eye, cube.picture(), (near, near));
+            return cube.frustum(self.eye, WHOLE, (near, near));
         };
         let is_endless = seen.least_w <= self.infinite_w * cube.greatest_w();
         if max_distance == f32::MAX && (is_endless || seen.is_cut) {
@@ -164,11 +167,6 @@ impl Cube {
 
     fn greatest_w(&self) -> f64 {
         self.corners.iter().map(|corner| corner.w).fold(f64::MIN, f64::max)
-    }
-
-    /// All of the picture.
-    fn picture(&self) -> [(f64, f64); 2] {
-        [(-1.0, 1.0); 2]
     }
 
     /// The part before a view depth; `None` where there is none.

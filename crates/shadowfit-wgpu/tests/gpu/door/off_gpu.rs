@@ -1,7 +1,7 @@
 //! A sun that the engine turns off: no pass and no light, and right maps in the first frame after.
 
-use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_wgpu::{MapView, SunShadows, SunShadowsError};
 
 use super::ground::{BOXES, EYE, MOON, Painter, Picture, Quiet, SUN, camera, frame_of};
