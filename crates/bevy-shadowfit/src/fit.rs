@@ -9,7 +9,7 @@ use bevy::pbr::MAX_CASCADES_PER_LIGHT;
 use bevy::prelude::*;
 use shadowfit::glam as fit_glam;
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{Boxes, FitError, FitInput, FittedMap, ShadowFitter, ViewFrustum};
+use shadowfit::{Boxes, FitInput, FittedMap, ShadowFitter, ViewFrustum};
 use shadowfit_wgpu::demand::DemandView;
 
 use crate::bias;
@@ -198,7 +198,7 @@ impl Sun {
         };
         let counted = views.iter().filter(|view| is_wanted && view.has_prepass);
         let demand = |view: &&View| {
-            let frustum = view.frustum(self.max_distance()).ok()?;
+            let frustum = view.frustum(self.max_distance()).ok().filter(|frustum| !frustum.is_empty())?;
             Some((view.camera, view.demand(&frustum, self.direction, self.max_distance())))
         };
         counted.filter_map(demand).collect()
@@ -227,11 +227,10 @@ impl Sun {
     fn frusta<'a>(&self, views: &[&'a View]) -> Result<Vec<(&'a View, ViewFrustum)>, Problem> {
         let mut frusta = Vec::with_capacity(views.len());
         for view in views {
-            match view.frustum(self.max_distance()) {
-                Ok(frustum) => frusta.push((*view, frustum)),
-                // All that it sees lies beyond the shadows.
-                Err(FitError::NearNotBelowFar { .. }) => {}
-                Err(error) => return Err(error.into()),
+            let frustum = view.frustum(self.max_distance())?;
+            // An empty one lies beyond the shadows.
+            if !frustum.is_empty() {
+                frusta.push((*view, frustum));
             }
         }
         Ok(frusta)

@@ -65,14 +65,15 @@ impl PosedScene {
         fitter.fit(&self.input(inputs, &[view.camera.frustum()?], view.direction)).copied()
     }
 
-    /// Gives the visible points of a view, found by rays, to a fitter, if the inputs say so, its technique uses them and
-    /// there are rays.
+    /// Gives the visible points of a view, found by rays, to a fitter, if the inputs say so, its technique uses them,
+    /// there are rays, and the view begins before shadows end.
     ///
     /// # Errors
     ///
     /// When the camera makes no sense.
     pub fn see(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View, rays: RayUse) -> Result<(), FitError> {
-        if !inputs.tell(fitter.technique()) {
+        let is_shadowed = view.camera.frustum()?.begins_before(fitter.technique().fit.max_distance);
+        if !inputs.tell(fitter.technique()) || !is_shadowed {
             return Ok(());
         }
         let latest = if rays == RayUse::Wait { None } else { self.latest_rays() };

@@ -12,7 +12,7 @@ mod other_set;
 mod steps;
 
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
-use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
+use shadowfit::proof::{CoverageProof, CoverageQuery, Margins, prove};
 use shadowfit::{
     Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, Scratch, Seen, ShadowFitter, Technique, ViewFrustum,
 };
@@ -209,7 +209,9 @@ impl SunShadows {
         self.steps.iter_mut().for_each(StepState::cut);
     }
 
-    /// Fits the maps to a frame, finds which parts must be drawn, and writes the uniforms. [`Self::passes`] then has
+    /// Fits the maps to a frame, finds which parts must be drawn, and writes the uniforms. Where all views begin beyond the
+    /// [shadow distance](shadowfit::settings::MapSettings::max_distance) there are no maps and no passes, and all factors
+    /// are 1. [`Self::passes`] then has
     /// the passes of this frame; they count as drawn from the next call on. It is [`Self::fit`] and [`Self::prepare`]
     /// in one, for the direction that is held where the sun has [light steps](Self::set_light_steps).
     ///
@@ -390,9 +392,12 @@ impl SunShadows {
     /// # Errors
     ///
     /// [`SunShadowsError::Fit`] as [`prove`]; [`SunShadowsError::NoFrame`] before the first frame, and while the sun
-    /// is [off](Self::turn_off).
+    /// is [off](Self::turn_off). A frame whose views all begin beyond the shadow distance needs no map.
     pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
         let mut proof = Err(SunShadowsError::NoFrame);
+        if self.map_view().is_some() && !self.is_shadowed(frame) {
+            return Ok(CoverageProof::Proven(Margins { planes: [f32::INFINITY; 6], casters: f32::INFINITY }));
+        }
         let faded = self.faded().map(|(other, _)| (&other.fitter, &other.maps));
         for (fitter, maps) in [(&self.fitter, &self.maps)].into_iter().chain(faded) {
             // Steps hold the direction.
@@ -407,13 +412,20 @@ impl SunShadows {
         proof
     }
 
+    /// Whether a part of a frame's views lies before the shadow distance.
+    fn is_shadowed(&self, frame: &SunFrame<'_>) -> bool {
+        let distance = self.technique().fit.max_distance;
+        frame.views.iter().any(|view| view.begins_before(distance))
+    }
+
     /// Counts the visible points of a picture, for the fits of the next frames. Call it after the pass that fills the
     /// depth buffer. `depth` is a view of the depth aspect of the whole texture, which fills the picture, is stored,
     /// and has the usage `TEXTURE_BINDING`; `clip_from_world` and `convention` are those that it was drawn with, for
     /// positions relative to the eye, [`ViewFrustum::origin`] of the first view.
     ///
     /// Returns whether it was recorded: never on devices that [cannot count](Self::can_record_demand), where maps are placed
-    /// by the boxes; nor for a frame that was refused, nor while many pictures are still on their way.
+    /// by the boxes; nor for a frame that was refused, or whose first view begins beyond the shadow distance; nor while
+    /// many pictures are still on their way.
     ///
     /// # Errors
     ///

@@ -58,7 +58,9 @@ impl FitState {
         *self = Self::default();
     }
 
-    /// Fits the maps of a frame.
+    /// Fits the maps of a frame. There are none where all views begin beyond the [shadow
+    /// distance](crate::settings::MapSettings::max_distance), or [are empty](ViewFrustum::is_empty): the frame has no
+    /// shadows. What is held of earlier frames serves the next one that has some.
     ///
     /// # Errors
     ///
@@ -94,6 +96,10 @@ impl FitState {
     ) -> Result<(), FitError> {
         // 1. The light, and the rule that the technique's maps are fitted by.
         let (rule, light) = check(input, technique)?;
+        if !fits::is_shadowed(input.views, technique.fit.max_distance) {
+            self.pass_over(input, maps);
+            return Ok(());
+        }
         let last = self.last.as_ref().filter(|last| last.technique == *technique);
         let light = light.held(last.filter(|_| technique.maps.are_kept()).map(|last| last.direction));
         // 2. The boxes, and what the views see of them.
@@ -112,6 +118,14 @@ impl FitState {
         let (direction, view) = (light.direction(), input.views[0]);
         self.last = Some(LastFrame { technique: *technique, direction, view, held });
         Ok(())
+    }
+
+    /// A frame without shadows: it has no maps, and what is held of earlier frames stays for later ones.
+    fn pass_over(&mut self, input: &FitInput, maps: &mut FittedMaps) {
+        *maps = FittedMaps::default();
+        if let Some(last) = &mut self.last {
+            last.view = input.views[0];
+        }
     }
 }
 
@@ -198,7 +212,7 @@ pub fn fewest_maps(
 ) -> Result<u32, FitError> {
     let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;
-    if technique.maps.count() == 1 {
+    if technique.maps.count() == 1 || !fits::is_shadowed(input.views, technique.fit.max_distance) {
         return Ok(1);
     }
     let (content, _) = Content::new(input.scene(), scratch.storage)?;
@@ -209,8 +223,9 @@ pub fn fewest_maps(
 
 /// Everything that is shadowed.
 fn whole_range(input: &FitInput, distance: f32) -> Range {
-    let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
-    let far = input.views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
+    let views = || input.views.iter().filter(|view| !view.is_empty());
+    let near = views().map(|view| view.near).fold(f32::MAX, f32::min);
+    let far = views().map(|view| view.far).fold(f32::MIN, f32::max);
     Range { near, far: far.min(distance) }
 }
 

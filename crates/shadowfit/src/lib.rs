@@ -170,6 +170,7 @@ mod view {
     mod camera;
     mod frustum;
     mod lens;
+    mod oblique;
     mod slice;
 
     pub use camera::PerspectiveCamera;

@@ -71,7 +71,8 @@ impl FittedMap {
     }
 }
 
-/// The maps of one frame, nearest first, windows finest first.
+/// The maps of one frame, nearest first, windows finest first. There are none in a frame without shadows, whose views
+/// begin beyond the shadow distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FittedMaps {

@@ -87,7 +87,7 @@ impl DemandPass {
     /// before it has stored (`StoreOp::Store`); `timestamps` may time the pass.
     ///
     /// Returns whether it was recorded: nothing is recorded while as many pictures are on their way as a GPU can be
-    /// behind, and fits go on with the counts that they have.
+    /// behind, and fits go on with the counts that they have; nor of a view that begins where shadows have ended.
     ///
     /// # Errors
     ///
@@ -101,6 +101,11 @@ impl DemandPass {
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) -> Result<bool, DemandPassError> {
         self.check_texture(depth.texture(), view.rectangle)?;
+        // One whose depths make no sense is refused below.
+        let is_view = view.frustum.near <= view.frustum.far;
+        if is_view && !view.frustum.begins_before(view.max_distance) {
+            return Ok(false);
+        }
         let space = view.space()?;
         let uniform = view.uniform(&space)?;
         let Some(frame) = self.frames.iter_mut().find(|frame| frame.read_back.is_free()) else { return Ok(false) };

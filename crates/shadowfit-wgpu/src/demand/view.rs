@@ -155,6 +155,17 @@ impl DemandView {
         forward.extend(self.frustum.near - forward.dot(middle)).to_array()
     }
 
+    /// Share of the picture's height that the frustum takes, in eighths: it leaves out what a tilted near plane hides.
+    fn shown(&self) -> f64 {
+        let clip_from_world = self.clip_from_world.as_dmat4();
+        let [top, bottom] = [4, 7].map(|corner: usize| {
+            let clip = clip_from_world * self.frustum.corners[corner].as_dvec3().extend(1.0);
+            clip.y / clip.w
+        });
+        let eighths = ((top - bottom).abs() * 4.0).round();
+        if eighths >= 1.0 { eighths / 8.0 } else { 1.0 }
+    }
+
     /// Width of a pixel that faces the eye, of a picture [`PIXELS`] high, in metres: at the eye, and its growth per
     /// metre of view depth.
     fn pixel_width(&self) -> [f32; 2] {
@@ -162,7 +173,8 @@ impl DemandView {
         let height = |top: usize, bottom: usize| {
             (self.frustum.corners[top].as_dvec3() - self.frustum.corners[bottom].as_dvec3()).length()
         };
-        let (at_near, at_far) = (height(0, 3), height(4, 7));
+        let shown = self.shown();
+        let (at_near, at_far) = (height(0, 3) / shown, height(4, 7) / shown);
         let growth = (at_far - at_near) / (f64::from(far) - f64::from(near));
         [at_near - growth * f64::from(near), growth].map(|width| (width / f64::from(PIXELS)) as f32)
     }

@@ -1,6 +1,6 @@
 //! What a picture is resolved from: the maps as the look-up reads them, and where they are not to be trusted.
 
-use shadowfit::glam::{DMat4, DVec3, Vec3};
+use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
 use shadowfit::{Aabb, DepthConvention, FittedMap};
 
 use super::error::ResolveError;
@@ -36,7 +36,7 @@ impl Source {
         let mut unknown = Unknown::default();
         unknown.add_stale(sun, view.eye);
         unknown.add_lacking(sun, view);
-        let forward = forward(&to_world, [width, height], view.convention);
+        let forward = MiddleRay::new(&to_world, [width, height], view.convention).forward();
         let resolve = ResolveUniform {
             world_from_pixel: to_world.as_mat4().to_cols_array_2d(),
             eye: (view.eye - rays_origin).as_vec3().to_array(),
@@ -74,24 +74,49 @@ fn checked_matrix(view: &ResolveView<'_>, [_, _, width, height]: [u32; 4]) -> Re
     let to_world = world_from_pixel(&view.clip_from_eye, [width, height], view.convention)
         .filter(|matrix| matrix.as_mat4().is_finite())
         .ok_or(ResolveError::SingularMatrix)?;
-    // A plain depth grows with the distance from the near plane, a reversed one falls.
-    let [less, more] = [0.25, 0.75].map(|depth| middle(&to_world, [width, height], depth, view.convention).length());
-    let is_other = if view.convention == DepthConvention::Reversed { less < more } else { less > more };
-    if is_other { Err(ResolveError::OtherDepth(view.convention)) } else { Ok(to_world) }
+    let ray = MiddleRay::new(&to_world, [width, height], view.convention);
+    let is_reversed = view.convention == DepthConvention::Reversed;
+    if ray.depth_grows() == is_reversed { Err(ResolveError::OtherDepth(view.convention)) } else { Ok(to_world) }
 }
 
-/// Where the middle of the picture lies at a depth.
-fn middle(to_world: &DMat4, size: [u32; 2], depth: f64, convention: DepthConvention) -> DVec3 {
-    let [x, y] = size.map(|side| f64::from(side) * 0.5 - 0.5);
-    to_world.project_point3(DVec3::new(x, y, depth - f64::from(convention.far())))
+/// The ray through the middle of the picture, homogeneous. The far plane, and with it a part of the ray, may lie behind
+/// the eye where the near plane is tilted.
+struct MiddleRay {
+    at_near: DVec4,
+    at_far: DVec4,
+    is_reversed: bool,
 }
 
-/// Unit direction of the view.
-fn forward(to_world: &DMat4, size: [u32; 2], convention: DepthConvention) -> Vec3 {
-    let [less, more] = [0.25, 0.75].map(|depth| middle(to_world, size, depth, convention));
-    let forward = if convention == DepthConvention::Reversed { less - more } else { more - less };
-    forward.normalize_or_zero().as_vec3()
+impl MiddleRay {
+    fn new(to_world: &DMat4, size: [u32; 2], convention: DepthConvention) -> Self {
+        let [x, y] = size.map(|side| f64::from(side) * 0.5 - 0.5);
+        let at = |depth: f32| *to_world * DVec4::new(x, y, f64::from(depth - convention.far()), 1.0);
+        let (at_near, at_far) = (at(convention.near()), at(convention.far()));
+        Self { at_near, at_far, is_reversed: convention == DepthConvention::Reversed }
+    }
+
+    /// Whether depth grows along the ray away from the eye, as a plain depth does.
+    fn depth_grows(&self) -> bool {
+        let (near, far) = (self.at_near, self.at_far);
+        let is_perspective = (near.w - far.w).abs() > PERSPECTIVE * near.w.abs().max(far.w.abs());
+        // In a perspective w is one over the view depth.
+        let is_farther = if is_perspective {
+            far.w < near.w
+        } else {
+            (far / far.w).truncate().length() > (near / near.w).truncate().length()
+        };
+        is_farther != self.is_reversed
+    }
+
+    /// Unit direction away from the eye.
+    fn forward(&self) -> Vec3 {
+        let (near, far) = (self.at_near, self.at_far);
+        (far.truncate() * near.w - near.truncate() * far.w).normalize_or_zero().as_vec3()
+    }
 }
+
+/// Least share of w by which it changes along a ray of a perspective; the change in an orthographic picture is rounding.
+const PERSPECTIVE: f64 = 1e-4;
 
 /// What a depth may be rounded by: a share of it, and a number. A float is rounded when it is stored, and by more when it
 /// is interpolated: rasterisers do that with as many bits for small depths as for large ones, so that a reversed depth far

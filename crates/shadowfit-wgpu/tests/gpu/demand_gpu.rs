@@ -2,7 +2,7 @@
 
 use shadowfit::demand::DemandSpace;
 use shadowfit::demand::{CLASSES, DEPTHS};
-use shadowfit::glam::{DVec3, Mat4, Vec3};
+use shadowfit::glam::{DVec3, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView};
@@ -107,6 +107,22 @@ fn orthographic(near: f32) -> DemandView {
     DemandView { frustum: frustum.expect("a good matrix"), clip_from_world, ..view(depth, SIZE) }
 }
 
+/// A view through a portal that leans to a side and hides the lower part of the picture: its near plane is the portal (E.
+/// Lengyel, "Oblique view frustum depth projection and clipping", 2005).
+fn portal(depth: DepthConvention) -> DemandView {
+    let view = view(depth, SIZE);
+    let matrix = view.clip_from_world.as_dmat4();
+    let plane = DVec3::new(0.3, 0.5, -1.0).normalize().extend(-2.0);
+    let sides = matrix.inverse().transpose() * plane;
+    let corner = DVec4::new(sides.x.signum(), sides.y.signum(), f64::from(depth.far()), 1.0);
+    let plane = plane / plane.dot(matrix.inverse() * corner);
+    let mut rows = matrix.transpose();
+    rows.z_axis = if depth == DepthConvention::Reversed { rows.w_axis - plane } else { plane };
+    let clip_from_world = rows.transpose();
+    let frustum = ViewFrustum::from_eye_from_clip(&clip_from_world.inverse().as_mat4(), DVec3::ZERO, depth, 150.0);
+    DemandView { frustum: frustum.expect("a good matrix"), clip_from_world: clip_from_world.as_mat4(), ..view }
+}
+
 #[test]
 fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
     let gpu = Engine::shared();
@@ -131,6 +147,8 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
         ("endless", endless),
         ("skewed", skewed),
         ("to 20 m", near),
+        ("plain portal", portal(DepthConvention::ZeroToOne)),
+        ("reversed portal", portal(DepthConvention::Reversed)),
         ("orthographic", orthographic(1.5)),
         ("orthographic from behind the eye", orthographic(-5.0)),
     ];

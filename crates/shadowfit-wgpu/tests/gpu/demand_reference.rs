@@ -4,7 +4,7 @@
 use shadowfit::demand::{CELLS, DemandSpace, PIXELS};
 use shadowfit::demand::{CLASSES, DEPTHS};
 use shadowfit::demand::{DepthHistogram, needed_texel};
-use shadowfit::glam::{DMat4, DVec3};
+use shadowfit::glam::{DMat4, DVec3, DVec4};
 use shadowfit_wgpu::demand::DemandView;
 
 /// Share of a pixel over which movements are measured.
@@ -57,7 +57,7 @@ impl Picture<'_> {
         let normal = if normal.dot(self.ray(x, y)) > 0.0 { -normal } else { normal };
         if normal.dot(space.direction.as_dvec3()) < 0.0 {
             let texel = needed_texel(right.as_vec3(), down.as_vec3(), space.direction);
-            let class = (self.pixel_width(depth) / f64::from(texel)).log2() as f32;
+            let class = (self.pixel_width((x, y), depth) / f64::from(texel)).log2() as f32;
             // Views that begin behind the eye have no histogram.
             if let Some(bin) = DepthHistogram::bin(frustum.near, far, DEPTHS, CLASSES, depth as f32, class) {
                 counts.bins[bin] += 1;
@@ -112,10 +112,18 @@ impl Picture<'_> {
     }
 
     /// Width of a pixel that faces the eye at a view depth, of a picture that is [`PIXELS`] high, in metres.
-    fn pixel_width(&self, depth: f64) -> f64 {
+    fn pixel_width(&self, (x, y): (i32, i32), depth: f64) -> f64 {
         let frustum = &self.view.frustum;
-        let height = |top: usize, bottom: usize| f64::from((frustum.corners[top] - frustum.corners[bottom]).length());
-        let share = (depth - f64::from(frustum.near)) / f64::from(frustum.far - frustum.near);
-        (height(0, 3) * (1.0 - share) + height(4, 7) * share) / f64::from(PIXELS)
+        let forward = frustum.forward.as_dvec3();
+        let offset = f64::from(frustum.near) - forward.dot(frustum.corners[0].as_dvec3());
+        let [_, _, width, height] = self.view.rectangle.map(f64::from);
+        let at = |row: f64| {
+            let (x, y) = ((f64::from(x) + 0.5) / width * 2.0 - 1.0, 1.0 - row / height * 2.0);
+            let [a, b] = [0.0, 1.0].map(|z| self.world_from_clip * DVec4::new(x, y, z, 1.0));
+            // Along the ray w · view depth is linear, as all of a homogeneous position.
+            let [of_a, of_b] = [a, b].map(|p| forward.dot(p.truncate()) + (offset - depth) * p.w);
+            (a.truncate() * of_b - b.truncate() * of_a) / (a.w * of_b - b.w * of_a)
+        };
+        at(f64::from(y)).distance(at(f64::from(y) + 1.0)) * height / f64::from(PIXELS)
     }
 }

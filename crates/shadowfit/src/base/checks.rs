@@ -44,6 +44,12 @@ fn refusal(input: &'static str, value: f64, min: f64, max: f64) -> FitError {
     }
 }
 
+/// Allows a view to begin where shadows have ended, unless they end at no distance at all.
+pub(crate) fn may_begin_beyond(near: f32, distance: f32) -> Result<(), FitError> {
+    let is_distance = f64::from(distance) >= MIN_LENGTH;
+    if is_distance { Ok(()) } else { Err(FitError::NearNotBelowFar { near, far: distance }) }
+}
+
 /// Refuses a point with a coordinate that is not finite or beyond [`MAX_LENGTH`].
 #[inline]
 pub(crate) fn point(input: &'static str, value: DVec3) -> Result<DVec3, FitError> {

@@ -48,12 +48,20 @@ pub enum FitError {
         up: Vec3,
     },
     /// A `world_from_clip` matrix cannot be divided by w at one of the clip corners, or folds two
-    /// of them together.
+    /// of them together. The plane is the near one up to corner 3, else the far one: at infinity where w is zero, and
+    /// behind the eye where w is negative.
     SingularMatrix {
         /// Index of the corner in [`ViewFrustum::corners`](crate::ViewFrustum::corners).
         corner: usize,
         /// The w that the matrix gives there.
         w: f64,
+    },
+    /// A plane of a camera's matrix leaves no view that can be shadowed.
+    UnusablePlane {
+        /// The plane, or planes.
+        plane: &'static str,
+        /// What is wrong with it, and what to do.
+        why: &'static str,
     },
     /// The far plane is infinite and the maximum shadow distance is `f32::MAX`: shadows would have no end.
     Endless,
@@ -72,8 +80,8 @@ pub enum FitError {
         /// the world's axes when a frustum does.
         size: Vec3,
     },
-    /// The near distance is not below the far distance; for a fit, the far distance is the nearer
-    /// of the frustum's far plane and the maximum shadow distance.
+    /// The near distance is not below the far distance. A view that begins beyond a positive shadow distance is no
+    /// error of a fit: it has no shadows.
     NearNotBelowFar {
         /// Near distance, in metres.
         near: f32,
@@ -138,12 +146,8 @@ impl fmt::Display for FitError {
                 Numbers(up),
                 Numbers(forward)
             ),
-            Self::SingularMatrix { corner, w } => write!(
-                f,
-                "world_from_clip gives w = {} at clip corner {corner}; pass the inverse of \
-                 clip_from_world, with the depth convention that it was made for",
-                Number(w)
-            ),
+            Self::SingularMatrix { corner, w } => write_singular(f, corner, w),
+            Self::UnusablePlane { plane, why } => write!(f, "the camera's matrix has no usable {plane}: {why}"),
             Self::Endless => f.write_str(ENDLESS),
             Self::OtherDepth { named, is_reversed } => write_depth(f, named, is_reversed),
             Self::EmptyFrustum { size } => write!(
@@ -186,6 +190,23 @@ impl fmt::Display for FitError {
 
 const CLAMPED: &str = "the filter Pcss, and any soft one whose edges are traced, needs the distance of each caster, which \
                        depth clamp loses; choose another caster policy, such as PerObject, or another filter";
+
+fn write_singular(f: &mut fmt::Formatter<'_>, corner: usize, w: f64) -> fmt::Result {
+    let plane = if corner < 4 { "near" } else { "far" };
+    let place = if w == 0.0 {
+        "lies at infinity"
+    } else if w < 0.0 {
+        "lies behind the eye"
+    } else {
+        "coincides with another plane"
+    };
+    write!(
+        f,
+        "the camera's {plane} plane {place}: world_from_clip gives w = {} at clip corner {corner}; pass the inverse of \
+         clip_from_world, with the depth convention that it was made for",
+        Number(w)
+    )
+}
 
 fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: bool) -> fmt::Result {
     let (near, far) = (named.near(), named.far());

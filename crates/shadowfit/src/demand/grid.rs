@@ -87,7 +87,8 @@ impl DemandSpace {
     ///
     /// # Errors
     ///
-    /// As [`fit`](crate::fit) for the view, the directions and the distance.
+    /// As [`fit`](crate::fit) for the view, the directions and the distance; [`FitError::NearNotBelowFar`] where the view
+    /// begins beyond the distance: it is shown without shadows, so nothing in it asks for a texel.
     pub fn new(view: &ViewFrustum, direction: Vec3, up: Vec3, distance: f32) -> Result<Self, FitError> {
         view.check()?;
         let direction = checks::unit("the light's direction", direction)?;
@@ -98,12 +99,16 @@ impl DemandSpace {
             return Err(FitError::NearNotBelowFar { near: view.near, far });
         }
         let plane = Plane::new(direction, up);
-        // Height of the picture at the far end, from the rectangle of the far plane.
+        // Height of the picture at the far end, from the rectangle of the far plane: the same everywhere where the view
+        // begins behind the eye, as only orthographic ones do.
         let [top, bottom] = [view.corners[4], view.corners[7]].map(Vec3::as_dvec3);
-        let height = checks::length(top - bottom) * f64::from(far) / f64::from(view.far);
+        let share = if view.near > 0.0 { f64::from(far) / f64::from(view.far) } else { 1.0 };
+        let height = checks::length(top - bottom) * share;
         let coarsest = (height / f64::from(PIXELS)) as f32;
         let texel = power_of_two(coarsest) * 2.0 / (1_u32 << LEVELS) as f32;
-        let distance = (f64::from(far) / height * f64::from(PIXELS)) as f32;
+        // Orthographic views may reach farther behind the eye than before it.
+        let reach = f64::from(far.max(-view.near));
+        let distance = (reach / height * f64::from(PIXELS)) as f32;
         let cell = texel * distance / CELLS_IN_DISTANCE;
         let (x, y) = (plane.axes.x, plane.axes.y * (1.0 / plane.shape as f32));
         let least = f32::MIN_POSITIVE;

@@ -87,6 +87,7 @@ struct Picture<'a> {
     width: usize,
     height: usize,
     world_from_clip: DMat4,
+    forward: DVec3,
     far: f32,
     /// Stored depths to those of the matrix: a factor and an offset.
     depth: (f64, f64),
@@ -109,7 +110,8 @@ impl<'a> Picture<'a> {
             DepthConvention::Reversed => (0.0, (1.0, 0.0)),
             DepthConvention::NegativeOneToOne => (1.0, (2.0, -1.0)),
         };
-        Ok(Self { depths: rows.depths, width, height, world_from_clip, far, depth })
+        let forward = rows.forward.as_dvec3();
+        Ok(Self { depths: rows.depths, width, height, world_from_clip, forward, far, depth })
     }
 
     /// The stored depth of a pixel; `None` where nothing was drawn.
@@ -125,6 +127,14 @@ impl<'a> Picture<'a> {
         let clip = DVec4::new(ndc(x, self.width), -ndc(y, self.height), stored * scale + offset, 1.0);
         let world = self.world_from_clip * clip;
         world.truncate() / world.w
+    }
+
+    /// The way from a point to the view ray through another, at the same view depth: where the near plane is tilted, the
+    /// same stored depth is another view depth.
+    fn across(&self, other: DVec3, point: DVec3) -> DVec3 {
+        let along = self.world_from_clip.z_axis;
+        let (way, ray) = (other - point, along.truncate() - other * along.w);
+        way - ray * (way.dot(self.forward) / ray.dot(self.forward))
     }
 
     /// Change of depth from a pixel to the next, from the neighbour that is nearer in depth: what lies behind a
@@ -144,7 +154,7 @@ impl<'a> Picture<'a> {
         let position = self.at(column, row, depth);
         let right = self.at(column + 1.0, row, depth + across) - position;
         let down = self.at(column, row + 1.0, depth + along) - position;
-        let pixel = checks::length(self.at(column, row + 1.0, depth) - position);
+        let pixel = checks::length(self.across(self.at(column, row + 1.0, depth), position));
         Some(Point { position, right, down, pixel })
     }
 }

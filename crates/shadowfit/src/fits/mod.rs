@@ -62,7 +62,7 @@ impl Form {
 /// # Errors
 ///
 /// Every input that is NaN or infinite, [`FitError::BadDirection`], [`FitError::ZeroResolution`],
-/// [`FitError::NearNotBelowFar`] when the maximum distance ends before the near plane, and
+/// [`FitError::NearNotBelowFar`] for a maximum distance that is not positive and ends before the near plane, and
 /// [`FitError::EmptyFrustum`].
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightProjection, FitError> {
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
@@ -81,7 +81,8 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 /// names. As [`fit`], with the boxes of receivers and casters.
 ///
 /// Where no receiver's box is in view the fit is that of the view alone, and
-/// [`LightProjection::is_empty`] says so.
+/// [`LightProjection::is_empty`] says so. So it does where all views begin beyond the maximum distance: the map is a box
+/// around the eye then, which nothing reads.
 ///
 /// # Errors
 ///
@@ -102,11 +103,25 @@ fn fit_whole(
     distance: f32,
     points: &mut [DVec2],
 ) -> Result<LightProjection, FitError> {
+    if !is_shadowed(content.views, distance) {
+        let volume = Volume::nowhere(light.axes(rule.form.roll));
+        return LightProjection::from_volume(content.origin, &volume, rule.resolution, rule.convention);
+    }
     let range = Range { near: f32::MIN, far: distance };
     let mut volume = fit_map(content, light, rule, range, Snapping::Tight, points)?;
     volume.stabilise_depth(content.origin, None, 1.0);
     volume.vertex_distance = content.farthest_seen(range, 0.0);
     LightProjection::from_volume(content.origin, &volume, rule.resolution, rule.convention)
+}
+
+/// View depth at which the first view begins, in metres.
+fn nearest(views: &[ViewFrustum]) -> f32 {
+    views.iter().map(|view| view.near).fold(f32::MAX, f32::min)
+}
+
+/// Whether a part of any view lies before the distance at which shadows end, in metres of view depth.
+pub(crate) fn is_shadowed(views: &[ViewFrustum], distance: f32) -> bool {
+    views.iter().any(|view| view.begins_before(distance))
 }
 
 /// Checks the inputs that all fits share; returns the rule of the settings, with the free texels at
@@ -122,9 +137,9 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
     let rule = FitRule::new(settings, border, input.knows_casters())?;
     let direction = checks::unit("the light's direction", input.direction)?;
     let up = checks::unit("the up direction", settings.map.up)?;
-    let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
-    if near >= settings.map.max_distance {
-        return Err(FitError::NearNotBelowFar { near, far: settings.map.max_distance });
+    let (near, distance) = (nearest(input.views), settings.map.max_distance);
+    if near >= distance {
+        checks::may_begin_beyond(near, distance)?;
     }
     Ok((rule, Light::new(direction, up, rule.form.roll)))
 }

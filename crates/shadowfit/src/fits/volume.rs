@@ -64,6 +64,13 @@ impl Volume {
         Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, set_by, is_empty, grid: None }
     }
 
+    /// A box around the origin, for a map that nothing reads.
+    pub(crate) fn nowhere(axes: LightAxes) -> Self {
+        let mut volume = Self::covering(axes, (DVec3::NEG_ONE, DVec3::ONE), [Constraint::View; 6], true);
+        volume.light_at_near_plane();
+        volume
+    }
+
     /// The box of a map on the world's grid, relative to an origin.
     pub(crate) fn on_grid(
         axes: LightAxes,

@@ -9,7 +9,8 @@ use crate::base::checks::MAX_LENGTH;
 use crate::base::{DepthConvention, FitError, checks};
 
 /// A convex view volume with four edges that run from a near rectangle to a parallel far one:
-/// perspective, orthographic, off-axis or mirrored.
+/// perspective, orthographic, off-axis or mirrored. Where a camera's near plane is tilted, as that of a mirror, it is the
+/// volume around all that the camera sees.
 ///
 /// ```text
 ///      0───────1        4─────────────5     each rectangle: left-top, right-top,
@@ -26,7 +27,8 @@ pub struct ViewFrustum {
     pub corners: [Vec3; 8],
     /// View depth of the near corners, in metres along [`Self::forward`] from the origin.
     pub near: f32,
-    /// View depth of the far corners, in metres along [`Self::forward`] from the origin.
+    /// View depth of the far corners, in metres along [`Self::forward`] from the origin. Equal to [`Self::near`] where
+    /// the view [is empty](Self::is_empty).
     pub far: f32,
     /// Unit direction of view in world axes, perpendicular to both rectangles.
     pub forward: Vec3,
@@ -51,7 +53,17 @@ impl ViewFrustum {
     /// camera's position and the matrix's depth range.
     ///
     /// A far plane beyond `max_distance` (view depth in metres), an infinite one included, is
-    /// brought to it. Give `f32::MAX` to keep any finite far plane.
+    /// brought to it. Give `f32::MAX` to keep any finite far plane. A view that begins beyond
+    /// `max_distance` [is empty](Self::is_empty): it has no shadows.
+    ///
+    /// # Tilted planes
+    ///
+    /// The near plane of a mirror, a water surface or a portal is the surface itself (E. Lengyel, "Oblique view frustum
+    /// depth projection and clipping", 2005), and tilts the far plane too. View depths then still run along the axis of
+    /// the picture: perpendicular to the plane of the picture, or along the view rays where these are parallel. The
+    /// frustum encloses the view: its sides keep to the part of the picture in which anything lies beyond the near plane,
+    /// in eighths of the picture, and its near and far planes are perpendicular to the axis, at depths of the form
+    /// 2^(k/8) m (in sixteenths of the depth for parallel rays), so that they mostly stay the same while a mirror moves.
     ///
     /// A perspective matrix shows whether its depth is reversed, and is refused where `depth` says
     /// otherwise. Neither the direction of an orthographic matrix's depth, nor whether a range is
@@ -107,8 +119,10 @@ impl ViewFrustum {
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the matrix, the eye and
     /// `max_distance`; [`FitError::OtherDepth`] for a perspective of another depth convention;
     /// [`FitError::SingularMatrix`] where w is zero, changes its sign between near
-    /// and far, or corners coincide; [`FitError::NearNotBelowFar`] when nothing lies between the
-    /// near plane and `max_distance`; [`FitError::EmptyFrustum`].
+    /// and far, or corners coincide; [`FitError::UnusablePlane`] for a tilted near plane that has the eye on its visible
+    /// side, and for parallel view rays whose w changes its sign within the picture; [`FitError::NearNotBelowFar`] for a
+    /// `max_distance` that is not positive and ends before the near plane; [`FitError::Endless`];
+    /// [`FitError::EmptyFrustum`].
     pub fn from_world_from_clip_f64(
         world_from_clip: &DMat4,
         eye: DVec3,
@@ -117,6 +131,18 @@ impl ViewFrustum {
     ) -> Result<Self, FitError> {
         let matrix = *world_from_clip;
         Unprojection { matrix, eye, offset: eye, depth, infinite_w: INFINITE_W_F64 }.frustum(max_distance)
+    }
+
+    /// Whether nothing of the view lies before the distance that it was made with. Such a view is shown without shadows:
+    /// no map is fitted to it.
+    pub const fn is_empty(&self) -> bool {
+        self.near >= self.far
+    }
+
+    /// Whether a part of the view lies before a view depth, in metres. A view of which no part lies before the shadow
+    /// distance is shown without shadows.
+    pub const fn begins_before(&self, distance: f32) -> bool {
+        self.near < self.far.min(distance)
     }
 
     /// The part between two view depths, in metres along [`Self::forward`] from the eye. Depths
@@ -164,7 +190,10 @@ impl ViewFrustum {
         let (near, far) = (self.near, self.far);
         checks::within("the frustum's near distance", f64::from(near), -MAX_LENGTH, MAX_LENGTH)?;
         checks::within("the frustum's far distance", f64::from(far), -MAX_LENGTH, MAX_LENGTH)?;
-        check_extent(&self.corners, near, far)
+        // Views that begin beyond their shadows.
+        #[expect(clippy::float_cmp, reason = "an empty view has one depth")]
+        let is_empty = near == far;
+        if is_empty { Ok(()) } else { check_extent(&self.corners, near, far) }
     }
 }
 
@@ -213,14 +242,14 @@ fn volume(corners: &[Vec3; 8]) -> f64 {
 }
 
 /// The transform of clip corners into world positions relative to the eye.
-struct Unprojection {
-    matrix: DMat4,
-    eye: DVec3,
+pub(super) struct Unprojection {
+    pub(super) matrix: DMat4,
+    pub(super) eye: DVec3,
     /// Subtracted from the matrix's output: the eye, or zero where the output is relative to it
     /// already.
     offset: DVec3,
-    depth: DepthConvention,
-    infinite_w: f64,
+    pub(super) depth: DepthConvention,
+    pub(super) infinite_w: f64,
 }
 
 impl Unprojection {
@@ -230,28 +259,33 @@ impl Unprojection {
         for element in self.matrix.to_cols_array() {
             checks::finite("an element of world_from_clip", element)?;
         }
+        if self.is_oblique() {
+            return self.enclosing(max_distance);
+        }
         self.check_depth()?;
         let forward = self.forward()?;
         let limit = f64::from(max_distance);
         let mut corners = [Vec3::ZERO; 8];
-        let (mut near_sum, mut far_sum) = (0.0, 0.0);
+        let (mut near_sum, mut far_sum, mut is_empty) = (0.0, 0.0, false);
         for i in 0..4 {
             let edge = self.edge(i)?;
             let near = edge.near.dot(forward);
-            if near >= limit {
-                return Err(FitError::NearNotBelowFar { near: near as f32, far: max_distance });
-            }
+            is_empty |= near >= limit;
             let far = match edge.far {
                 Some(far) if far.dot(forward) <= limit => far,
                 None if max_distance == f32::MAX => return Err(FitError::Endless),
-                _ => edge.near + edge.toward * ((limit - near) / edge.toward.dot(forward)),
+                _ => edge.near + edge.toward * ((limit - near).max(0.0) / edge.toward.dot(forward)),
             };
             corners[i] = edge.near.as_vec3();
             corners[i + 4] = far.as_vec3();
             near_sum += near;
             far_sum += far.dot(forward);
         }
-        let (near, far) = ((near_sum * 0.25) as f32, (far_sum * 0.25) as f32);
+        let near = (near_sum * 0.25) as f32;
+        if is_empty {
+            checks::may_begin_beyond(near, max_distance)?;
+        }
+        let far = if is_empty { near } else { (far_sum * 0.25) as f32 };
         ViewFrustum { origin: self.eye, corners, near, far, forward: forward.as_vec3() }.checked()
     }
 
@@ -275,7 +309,7 @@ impl Unprojection {
     }
 
     /// A homogeneous clip position in world axes relative to the eye, still homogeneous.
-    fn homogeneous(&self, x: f64, y: f64, z: f64, w: f64) -> (DVec3, f64) {
+    pub(super) fn homogeneous(&self, x: f64, y: f64, z: f64, w: f64) -> (DVec3, f64) {
         let p: DVec4 = self.matrix.mul_vec4(DVec4::new(x, y, z, w));
         (p.truncate() - self.offset * p.w, p.w)
     }

@@ -60,6 +60,9 @@ pub(crate) struct Plane {
     pub(crate) d: f64,
 }
 
+/// A plane that nothing is inside of.
+const NOWHERE: Plane = Plane { normal: DVec3::ZERO, d: -1.0 };
+
 impl Plane {
     pub(crate) fn distance(&self, p: DVec3) -> f64 {
         self.normal.dot(p) + self.d
@@ -94,7 +97,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// `frustum` has been checked.
+    /// `frustum` has been checked. Nothing is in an empty one.
     pub(crate) fn new(frustum: &ViewFrustum, origin: DVec3) -> Self {
         let offset = frustum.origin - origin;
         let corners = frustum.corners.map(|c| c.as_dvec3() + offset);
@@ -105,6 +108,9 @@ impl View {
         let middle = (corners[0] + corners[2]) * 0.5;
         let depth = Plane { normal: forward, d: near - forward.dot(middle) };
         let centre = corners.iter().copied().sum::<DVec3>() * 0.125;
+        if frustum.is_empty() {
+            return Self { corners, near, far, depth, sides: [NOWHERE; 4] };
+        }
         let mut sides = [depth; 4];
         for (i, side) in sides.iter_mut().enumerate() {
             let next = (i + 1) % 4;
@@ -126,7 +132,7 @@ impl View {
         Picture { axes: [[side(3, 5), side(1, 4)], [side(0, 7), side(2, 4)]] }
     }
 
-    /// Corners of the rectangle at a view depth.
+    /// Corners of the rectangle at a view depth; not a number for an empty view.
     pub(crate) fn rectangle(&self, depth: f64) -> [DVec3; 4] {
         let t = (depth - self.near) / (self.far - self.near);
         core::array::from_fn(|i| self.corners[i] * (1.0 - t) + self.corners[i + 4] * t)

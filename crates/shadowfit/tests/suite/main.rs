@@ -24,6 +24,7 @@ mod maps;
 mod metamorphic;
 #[cfg(feature = "mint")]
 mod mint;
+mod oblique;
 mod optimality;
 mod other_matrices;
 mod proof;
@@ -37,6 +38,7 @@ mod self_shadowing;
 #[cfg(feature = "serde")]
 mod serde;
 mod settings;
+mod shadowless;
 mod softness;
 mod spot;
 mod spot_bad_input;

@@ -85,10 +85,15 @@ impl SceneView {
         [right, right.cross(forward), forward]
     }
 
-    pub(crate) fn frustum(&self) -> ViewFrustum {
+    /// Clip space from world axes relative to the eye.
+    pub(crate) fn clip_from_eye(&self) -> DMat4 {
         let [right, up, forward] = self.axes();
         let world = DMat4::from_cols(right.extend(0.0), up.extend(0.0), (-forward).extend(0.0), DVec4::W);
-        let matrix = DMat4::from_translation(self.eye) * world * self.lens.clip_from_view().inverse();
+        self.lens.clip_from_view() * world.transpose()
+    }
+
+    pub(crate) fn frustum(&self) -> ViewFrustum {
+        let matrix = DMat4::from_translation(self.eye) * self.clip_from_eye().inverse();
         let far = if self.lens.is_infinite { self.lens.far as f32 } else { f32::MAX };
         ViewFrustum::from_world_from_clip_f64(&matrix, self.eye, self.lens.depth, far).unwrap()
     }

@@ -1,7 +1,7 @@
 //! A sun that the engine turns off: no pass and no light, and right maps in the first frame after.
 
-use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_wgpu::{MapView, SunShadows, SunShadowsError};
 
 use super::ground::{BOXES, EYE, MOON, Painter, Picture, Quiet, SUN, camera, frame_of};
@@ -49,6 +49,60 @@ fn gpu_a_sun_that_is_off_has_no_pass_and_gives_no_light_from_anywhere() {
         assert!(refused.is_err() && sun.is_off(), "a frame that is refused turns nothing on");
     }
     quiet.assert("a sun that is off");
+}
+
+/// Views of the same eye that begin beyond the shadow distance: by the distance that they are made with, and by that of
+/// the technique.
+fn views_beyond() -> [ViewFrustum; 2] {
+    let camera = PerspectiveCamera { near: 50.0, far: 90.0, ..camera(EYE) };
+    let eye_from_clip = camera.clip_from_world(DepthConvention::Reversed).inverse();
+    let empty = ViewFrustum::from_eye_from_clip(&eye_from_clip, EYE, DepthConvention::Reversed, 40.0);
+    [empty.expect("a good matrix"), camera.frustum().expect("a camera")]
+}
+
+#[test]
+fn gpu_views_beyond_the_shadow_distance_have_no_pass_and_are_lit_until_they_come_near() {
+    let device = Engine::shared();
+    let quiet = Quiet::new(&device);
+    let mut sun = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
+    let near = [camera(EYE).frustum().expect("a camera")];
+    let mut moved = BOXES;
+    moved[1].min.z += 4.0;
+    moved[1].max.z += 4.0;
+    let frame = frame_of(&near, SUN, &BOXES);
+    for view in views_beyond() {
+        let views = [view];
+        for _ in 0..3 {
+            sun.update(&device.queue, &frame).expect("a good frame");
+            assert_eq!(factors(&painter.draw(&device, &[(&sun, &BOXES)]))[..2], [0, 255]);
+        }
+        // Something moves meanwhile.
+        for boxes in [&BOXES, &moved] {
+            let beyond = frame_of(&views, SUN, boxes);
+            sun.update(&device.queue, &beyond).expect("a frame without shadows");
+            assert_eq!((sun.passes().len(), sun.maps().len(), sun.is_off()), (0, 0, false));
+            assert!(sun.prove(&beyond).expect("a frame").is_proven());
+            assert_eq!(factors(&painter.draw(&device, &[(&sun, boxes)])), [255; 5]);
+            let mut encoder = device.encoder();
+            let clip_from_world = camera(EYE).clip_from_world(DepthConvention::Reversed);
+            let depth = device.depth_texture();
+            let recorded = sun.record_demand(&mut encoder, &depth, clip_from_world, DepthConvention::Reversed);
+            assert_eq!(recorded, Ok(false));
+        }
+        let again = frame_of(&near, SUN, &moved);
+        sun.update(&device.queue, &again).expect("a good frame");
+        assert!(sun.prove(&again).expect("a frame").is_proven());
+        let kept = painter.draw(&device, &[(&sun, &moved)]);
+        let mut fresh = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+        fresh.update(&device.queue, &again).expect("a good frame");
+        let fresh = painter.draw(&device, &[(&fresh, &moved)]);
+        assert_eq!(factors(&kept), factors(&fresh), "a stale map");
+        sun.update(&device.queue, &again).expect("a good frame");
+        assert_eq!(sun.passes().len(), 0, "what stands still is kept");
+        painter.draw(&device, &[(&sun, &moved)]);
+    }
+    quiet.assert("views beyond the shadow distance");
 }
 
 #[test]

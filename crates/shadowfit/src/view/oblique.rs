@@ -1,0 +1,314 @@
+//! Views whose near and far planes are not parallel to each other, or not perpendicular to the picture's axis.
+//!
+//! A mirror, a water surface or a portal moves the near plane into itself (E. Lengyel, "Oblique view frustum depth
+//! projection and clipping", 2005). The far plane tilts with it, and may lie behind the eye for a part of the picture. So
+//! corners of such a view have no meaning. What has a meaning is the clip cube, cut where shadows end:
+//!
+//! ```text
+//!      far ╲  ╎ shadows end            The homogeneous position of a clip position c is linear in c. So are its w
+//!           ╲ ╎      ╱                 and its h = w · view depth, and w · distance - h ≥ 0 is a half-space of clip
+//!   ─────────╲╎────╱                   space. The vertices of the cube in this half-space bound the view depth, and
+//!     ▓▓▓▓▓▓▓▓╎▓▓╱ near                the part of the picture that shows anything.
+//!   eye ●     ╎╱
+//! ```
+//!
+//! The frustum around that part has rectangles perpendicular to the picture's axis, so that everything else takes it
+//! like any other. Its planes move in steps: a mirror moves with the camera, and kept maps should not notice.
+
+use glam::{DVec3, DVec4, Vec3};
+
+use super::frustum::{CORNERS_XY, Unprojection, ViewFrustum};
+use super::slice::EDGES;
+use crate::base::{DepthConvention, FitError, checks};
+
+/// Share of w, at the plane where it is least, by which w may differ over a picture whose planes count as parallel.
+const PARALLEL: f64 = 1e-3;
+
+/// The same as a share of the w at the nearer plane: what is left of a zero where a matrix was inverted in f32.
+const INVERTED: f64 = 1.0 / 524_288.0;
+
+/// Sine of the angle between the axis of an orthographic picture and the normal of its planes up to which they count as
+/// perpendicular to it.
+const PERPENDICULAR: f64 = 1e-3;
+
+/// Least change of w with depth, as a share of its other terms: with less, view rays count as parallel.
+const PERSPECTIVE: f64 = 1e-4;
+
+/// Steps across and down the picture to which the visible part is rounded outward.
+const PICTURE_STEPS: f64 = 8.0;
+
+/// Steps in an octave to which view depths are rounded outward.
+const OCTAVE_STEPS: f64 = 8.0;
+
+/// Steps in the depth of an orthographic view to which its planes are rounded outward.
+const DEPTH_STEPS: f64 = 16.0;
+
+/// Share of a view depth that is left for rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The whole picture: clip x, then clip y.
+const WHOLE: [(f64, f64); 2] = [(-1.0, 1.0); 2];
+
+/// Corners of the clip cube on its near face. Those of the far face follow. Both have the order of [`CORNERS_XY`].
+const NEAR_FACE: core::ops::Range<usize> = 0..4;
+
+impl Unprojection {
+    /// Whether the near and far planes are tilted against each other, or against the picture's axis.
+    pub(super) fn is_oblique(&self) -> bool {
+        let row = self.matrix.row(3);
+        let at = |z: f32| (row.z * f64::from(z) + row.w).abs();
+        let (near, far) = (at(self.depth.near()), at(self.depth.far()));
+        let tilt = row.x.abs() + row.y.abs();
+        if tilt > INVERTED * near.max(far) && tilt > PARALLEL * near.min(far) {
+            return true;
+        }
+        if row.z.abs() > PERSPECTIVE * near.max(far) {
+            return false;
+        }
+        // The planes of an orthographic view are parallel. Its picture has an axis of its own.
+        let [x, y, z] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis].map(DVec4::truncate);
+        let normal = x.cross(y);
+        checks::length(normal.cross(z)) > PERPENDICULAR * checks::length(normal) * checks::length(z)
+    }
+
+    /// The frustum around the part of such a view that lies before a view depth, in metres.
+    pub(super) fn enclosing(&self, max_distance: f32) -> Result<ViewFrustum, FitError> {
+        let cube = self.cube()?;
+        let limit = f64::from(max_distance);
+        let Some(seen) = cube.within(limit) else {
+            let near = cube.within(f64::MAX).map_or(limit, |all| all.depths.0);
+            checks::may_begin_beyond(near as f32, max_distance)?;
+            return cube.frustum(self.eye, WHOLE, (near, near));
+        };
+        let is_endless = seen.least_w <= self.infinite_w * cube.greatest_w();
+        if max_distance == f32::MAX && (is_endless || seen.is_cut) {
+            return Err(FitError::Endless);
+        }
+        let (near, far) = cube.stepped(seen.depths);
+        cube.frustum(self.eye, seen.picture, (near, far.min(limit)))
+    }
+
+    /// The clip cube in the world, with the direction of view.
+    fn cube(&self) -> Result<Cube, FitError> {
+        let cube = Cube::new(self, 1.0)?;
+        // A negated matrix is the same projection.
+        if cube.greatest_w() > 0.0 { Ok(cube) } else { Cube::new(self, -1.0) }
+    }
+}
+
+/// A clip position in the world relative to the eye, homogeneous, and its view depth times its w.
+#[derive(Clone, Copy)]
+struct Vertex {
+    position: DVec3,
+    w: f64,
+    h: f64,
+}
+
+/// The clip cube in the world.
+struct Cube {
+    corners: [Vertex; 8],
+    /// Unit direction of view: the axis of the picture.
+    forward: DVec3,
+    /// Whether view rays meet in the eye.
+    is_perspective: bool,
+}
+
+/// The part of a clip cube that lies before a view depth.
+struct Seen {
+    /// Least and greatest view depth, in metres.
+    depths: (f64, f64),
+    /// The picture's part that shows it: least and greatest clip x, then clip y.
+    picture: [(f64, f64); 2],
+    least_w: f64,
+    /// Whether a part of the cube lies beyond.
+    is_cut: bool,
+}
+
+impl Cube {
+    fn new(unprojection: &Unprojection, sign: f64) -> Result<Self, FitError> {
+        let (near, far) = (f64::from(unprojection.depth.near()), f64::from(unprojection.depth.far()));
+        let at = |x: f64, y: f64, z: f64, w: f64| {
+            let (position, its_w) = unprojection.homogeneous(x * sign, y * sign, z * sign, w * sign);
+            Vertex { position, w: its_w, h: 0.0 }
+        };
+        let mut corners = [at(0.0, 0.0, 0.0, 1.0); 8];
+        for (i, corner) in corners.iter_mut().enumerate() {
+            let (x, y) = CORNERS_XY[i % 4];
+            *corner = at(x, y, if NEAR_FACE.contains(&i) { near } else { far }, 1.0);
+        }
+        let (right, up, along) = (at(1.0, 0.0, 0.0, 0.0), at(0.0, 1.0, 0.0, 0.0), at(0.0, 0.0, far - near, 0.0));
+        let greatest = corners.iter().map(|corner| corner.w.abs()).fold(0.0, f64::max);
+        let is_perspective = along.w.abs() > PERSPECTIVE * greatest;
+        let axis = if is_perspective {
+            // Directions in which w is constant, to the right and up: they span the plane of the picture.
+            let across = |side: Vertex| side.position * along.w - along.position * side.w;
+            across(right).cross(across(up))
+        } else {
+            check_rays(&corners, (right.w, up.w))?;
+            along.position
+        };
+        let length = checks::length(axis);
+        // The sign of the change of h / w along a ray.
+        let centre = at(0.0, 0.0, near, 1.0);
+        let change = axis.dot(along.position) * centre.w - axis.dot(centre.position) * along.w;
+        if !(length > 0.0 && length.is_finite()) || change == 0.0 || greatest == 0.0 {
+            return Err(coinciding([right.position, up.position, along.position].map(checks::length)));
+        }
+        let forward = axis / if change < 0.0 { -length } else { length };
+        // A ray begins at the eye, where w is infinite, and w falls from there on.
+        if is_perspective && along.w > 0.0 && corners.iter().any(|corner| corner.w > 0.0) {
+            return Err(facing(unprojection.depth));
+        }
+        for corner in &mut corners {
+            corner.h = corner.position.dot(forward);
+        }
+        Ok(Self { corners, forward, is_perspective })
+    }
+
+    fn greatest_w(&self) -> f64 {
+        self.corners.iter().map(|corner| corner.w).fold(f64::MIN, f64::max)
+    }
+
+    /// The part before a view depth; `None` where there is none.
+    fn within(&self, limit: f64) -> Option<Seen> {
+        let room = |vertex: &Vertex| if limit == f64::MAX { vertex.w } else { limit * vertex.w - vertex.h };
+        let mut seen =
+            Seen { depths: (f64::MAX, f64::MIN), picture: [(f64::MAX, f64::MIN); 2], least_w: f64::MAX, is_cut: false };
+        let corners = || self.corners.iter().zip(CORNERS_XY.iter().cycle());
+        for (corner, (x, y)) in corners() {
+            if room(corner) >= 0.0 {
+                seen.add(corner.h, corner.w, [*x, *y]);
+            } else {
+                seen.is_cut = true;
+            }
+        }
+        for (i, j) in EDGES {
+            let (a, b) = (&self.corners[i], &self.corners[j]);
+            let (inside, outside) = (room(a), room(b));
+            if (inside < 0.0) == (outside < 0.0) {
+                continue;
+            }
+            let t = inside / (inside - outside);
+            let mix = |a: f64, b: f64| a + (b - a) * t;
+            let ((ax, ay), (bx, by)) = (CORNERS_XY[i % 4], CORNERS_XY[j % 4]);
+            seen.add(mix(a.h, b.h), mix(a.w, b.w), [mix(ax, bx), mix(ay, by)]);
+        }
+        (seen.depths.0 < seen.depths.1).then_some(seen)
+    }
+
+    /// View depths rounded outward to steps, so that they mostly stay the same while the planes move a little.
+    fn stepped(&self, (near, far): (f64, f64)) -> (f64, f64) {
+        if self.is_perspective && near > 0.0 {
+            let step =
+                |depth: f64, round: fn(f64) -> f64| libm::exp2(round(libm::log2(depth) * OCTAVE_STEPS) / OCTAVE_STEPS);
+            return (step(near * (1.0 - ROUNDING), libm::floor), step(far * (1.0 + ROUNDING), libm::ceil));
+        }
+        let rounding = (far - near) * ROUNDING;
+        let step = libm::exp2(libm::ceil(libm::log2((far - near) / DEPTH_STEPS)));
+        (libm::floor((near - rounding) / step) * step, libm::ceil((far + rounding) / step) * step)
+    }
+
+    /// The frustum between two view depths, of a part of the picture.
+    fn frustum(
+        &self,
+        origin: DVec3,
+        picture: [(f64, f64); 2],
+        (near, far): (f64, f64),
+    ) -> Result<ViewFrustum, FitError> {
+        let mut corners = [Vec3::ZERO; 8];
+        let [(left, right), (bottom, top)] = picture.map(stepped_side);
+        for (i, (x, y)) in CORNERS_XY.into_iter().enumerate() {
+            let (x, y) = (if x < 0.0 { left } else { right }, if y < 0.0 { bottom } else { top });
+            corners[i] = self.point(x, y, near).as_vec3();
+            corners[i + 4] = self.point(x, y, far).as_vec3();
+        }
+        let (near, far) = (near as f32, far as f32);
+        ViewFrustum { origin, corners, near, far, forward: self.forward.as_vec3() }.checked()
+    }
+
+    /// The point at a clip x and y that has a view depth.
+    fn point(&self, x: f64, y: f64, depth: f64) -> DVec3 {
+        let [a, b] = [0, 4].map(|face| self.on_face(face, x, y));
+        // It is a + (b - a) t, homogeneous, with h = w · depth.
+        let (of_a, of_b) = (a.h - a.w * depth, b.h - b.w * depth);
+        (a.position * of_b - b.position * of_a) / (a.w * of_b - b.w * of_a)
+    }
+
+    /// The position of a clip x and y on the near face, which begins with corner 0, or on the far one.
+    fn on_face(&self, face: usize, x: f64, y: f64) -> Vertex {
+        // Linear in x and y: three corners tell.
+        let [left_top, right_top, _, left_bottom] = [0, 1, 2, 3].map(|i| self.corners[face + i]);
+        let (across, down) = ((x + 1.0) * 0.5, (1.0 - y) * 0.5);
+        let at = |of: fn(&Vertex) -> DVec3| {
+            of(&left_top) + (of(&right_top) - of(&left_top)) * across + (of(&left_bottom) - of(&left_top)) * down
+        };
+        let numbers = at(|vertex| DVec3::new(vertex.w, vertex.h, 0.0));
+        Vertex { position: at(|vertex| vertex.position), w: numbers.x, h: numbers.y }
+    }
+}
+
+impl Seen {
+    /// Adds a vertex, unless it lies behind the eye.
+    fn add(&mut self, h: f64, w: f64, at: [f64; 2]) {
+        if w <= 0.0 {
+            self.is_cut = true;
+            return;
+        }
+        let depth = h / w;
+        self.least_w = self.least_w.min(w);
+        self.depths = (self.depths.0.min(depth), self.depths.1.max(depth));
+        for (range, at) in self.picture.iter_mut().zip(at) {
+            *range = (range.0.min(at), range.1.max(at));
+        }
+    }
+}
+
+/// A range of clip x or y, rounded outward to steps.
+fn stepped_side((least, greatest): (f64, f64)) -> (f64, f64) {
+    let steps = PICTURE_STEPS * 0.5;
+    let low = libm::floor((least - ROUNDING) * steps) / steps;
+    let high = libm::ceil((greatest + ROUNDING) * steps) / steps;
+    (low.max(-1.0), high.min(1.0))
+}
+
+/// Refuses a picture with parallel view rays whose w is zero or changes its sign within the picture.
+fn check_rays(corners: &[Vertex; 8], (right, up): (f64, f64)) -> Result<(), FitError> {
+    let (least, greatest) =
+        corners.iter().fold((f64::MAX, f64::MIN), |(min, max), corner| (min.min(corner.w), max.max(corner.w)));
+    if least > 0.0 || greatest < 0.0 {
+        return Ok(());
+    }
+    let plane = match (right.abs() > up.abs(), right > 0.0, up > 0.0) {
+        (true, true, _) => "left plane",
+        (true, false, _) => "right plane",
+        (false, _, true) => "bottom plane",
+        (false, _, false) => "top plane",
+    };
+    Err(FitError::UnusablePlane {
+        plane,
+        why: "w is zero or changes its sign before it; use a matrix whose w is positive in all of the picture",
+    })
+}
+
+/// The error for a clip cube without a volume, by the lengths of its sides.
+fn coinciding([right, up, along]: [f64; 3]) -> FitError {
+    let plane = if right.min(up) > along {
+        "near and far planes"
+    } else if right < up {
+        "left and right planes"
+    } else {
+        "top and bottom planes"
+    };
+    FitError::UnusablePlane { plane, why: "they coincide; pass the inverse of clip_from_world" }
+}
+
+/// The error for a near plane beyond which the eye lies.
+fn facing(depth: DepthConvention) -> FitError {
+    let why = if depth == DepthConvention::Reversed {
+        "the eye lies on its visible side; turn the plane around, or name a depth convention that is not reversed if the \
+         matrix has one"
+    } else {
+        "the eye lies on its visible side; turn the plane around, or name DepthConvention::Reversed if the matrix has it"
+    };
+    FitError::UnusablePlane { plane: "near plane", why }
+}
