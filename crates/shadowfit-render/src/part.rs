@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use bytemuck::cast_slice;
 use glam::{Vec2, Vec4};
 use shadowfit::Aabb;
-use shadowfit_scene::{AlphaMode, Primitive, Scene};
+use shadowfit_scene::{AlphaMode, Casting, Geometry, Primitive, Scene};
 
 use crate::casters::{Cluster, clustered};
 use crate::gpu::is_opengl;
@@ -29,6 +29,7 @@ pub(crate) struct Part {
     pub(crate) clusters: Vec<Cluster>,
     pub(crate) material: usize,
     pub(crate) alpha: AlphaMode,
+    pub(crate) casting: Casting,
     pub(crate) double_sided: bool,
     pub(crate) mirrored: bool,
     /// Whether its vertices move.
@@ -59,7 +60,8 @@ impl Part {
         (mirrored, deforms): (bool, bool),
     ) -> Self {
         let material = &scene.materials[primitive.material];
-        let Primitive { positions, normals, indices, .. } = primitive;
+        let casting = scene.casting(primitive);
+        let Geometry { positions, normals, indices, .. } = &*primitive.geometry;
         let device = &upload.gpu.device;
         let has = streams(device, primitive);
         let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
@@ -76,7 +78,7 @@ impl Part {
             has.surface.then_some(vertices[3]),
         ];
         // What casts nothing is not cut, and neither is what deforms.
-        let is_whole = deforms || material.alpha == AlphaMode::Blend;
+        let is_whole = deforms || casting == Casting::Nothing;
         let (caster_indices, clusters) = clustered(positions, indices, is_whole);
         let index = |indices: &[u32]| upload.buffer(wgpu::BufferUsages::INDEX, cast_slice(indices));
         Self {
@@ -89,6 +91,7 @@ impl Part {
             clusters,
             material: primitive.material,
             alpha: material.alpha,
+            casting,
             double_sided: material.double_sided,
             mirrored,
             deforms,
@@ -97,9 +100,14 @@ impl Part {
         }
     }
 
-    /// Whether the caster rule lets the part cast: blended surfaces cast nothing.
+    /// Whether some of the part casts.
     pub(crate) fn casts(&self) -> bool {
-        self.alpha != AlphaMode::Blend
+        self.casting != Casting::Nothing
+    }
+
+    /// Whether it is blended over the surfaces behind it.
+    pub(crate) fn is_blended(&self) -> bool {
+        self.alpha == AlphaMode::Blend
     }
 }
 
@@ -107,7 +115,7 @@ impl PartKey {
     pub(crate) fn of(part: &Part) -> Self {
         Self {
             masked: matches!(part.alpha, AlphaMode::Mask { .. }),
-            blended: part.alpha == AlphaMode::Blend,
+            blended: part.is_blended(),
             double_sided: part.double_sided,
             mirrored: part.mirrored,
             streams: part.has,

@@ -7,7 +7,7 @@ use shadowfit::Aabb;
 use shadowfit_rays::{
     AlphaImage, CutMaterial, CutOut, ImageId, MeshId, RayError, RayInstance, RayMesh, RayScene, VertexBuffer, Wrap,
 };
-use shadowfit_scene::{AlphaMode, Image, Primitive, Scene};
+use shadowfit_scene::{Casting, Image, Primitive, Scene};
 
 use crate::Gpu;
 
@@ -42,8 +42,7 @@ impl SceneRays {
         let mut images: Vec<Option<ImageId>> = vec![None; scene.images.len()];
         let mut meshes = Vec::new();
         for part in parts {
-            let material = &scene.materials[part.primitive.material];
-            if material.alpha == AlphaMode::Blend {
+            if scene.casting(part.primitive) == Casting::Nothing {
                 meshes.push(None);
                 continue;
             }
@@ -106,14 +105,14 @@ fn add_image(rays: &mut RayScene, image: &Image) -> Result<ImageId, RayError> {
     }
 }
 
-/// The triangles with holes of a masked primitive.
+/// The triangles with holes of a primitive.
 fn cut_outs(
     scene: &Scene,
     primitive: &Primitive,
     mut image: impl FnMut(usize) -> Result<ImageId, RayError>,
 ) -> Result<Vec<(u32, CutOut)>, RayError> {
     let material = &scene.materials[primitive.material];
-    let AlphaMode::Mask { cutoff } = material.alpha else { return Ok(Vec::new()) };
+    let Casting::CutOut(cutoff) = scene.casting(primitive) else { return Ok(Vec::new()) };
     let texture = material.base_color_texture;
     let shared = CutMaterial {
         image: texture.map(|texture| image(texture.image)).transpose()?,

@@ -1,11 +1,10 @@
 //! A scene's casters for rays: the same triangles and cut-outs that the renderer draws into the shadow map.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit_scene::{AlphaMode, Deformed, Image, Instance, Pose, Primitive, Scene};
+use shadowfit_scene::{Casting, Deformed, Image, Instance, Pose, Primitive, Scene};
 use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
-/// The casters of a scene in one pose. Blended surfaces cast nothing and are left out, as in the
-/// shadow pass.
+/// The casters of a scene in one pose, the same as in the shadow pass. Surfaces that cast nothing are left out.
 #[derive(Clone, Debug)]
 pub struct SceneRays {
     /// Answers rays against the casters' triangles, relative to the origin, in metres; they have the renderer's numbers.
@@ -65,7 +64,7 @@ impl<'a> Casters<'a> {
         let mut triangles = 0;
         for instance in &instances {
             let primitive = primitive(scene, instance);
-            if scene.materials[primitive.material].alpha != AlphaMode::Blend {
+            if scene.casting(primitive) != Casting::Nothing {
                 triangles += primitive.indices.len() as u32 / 3;
             }
             firsts.push(triangles);
@@ -96,8 +95,8 @@ impl<'a> Casters<'a> {
             .flat_map(|(index, instance)| {
                 let primitive = primitive(self.scene, instance);
                 let corners = primitive.indices.as_chunks::<3>().0;
-                let is_masked = matches!(self.scene.materials[primitive.material].alpha, AlphaMode::Mask { .. });
-                let corners = if is_masked { corners } else { &[] };
+                let has_holes = matches!(self.scene.casting(primitive), Casting::CutOut(_));
+                let corners = if has_holes { corners } else { &[] };
                 // As the triangles of mirrored instances have them.
                 let is_mirrored = self.mirrored[index];
                 let in_order = move |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -144,7 +143,7 @@ fn alpha_image(image: &Image) -> AlphaImage {
 
 fn cut_out(scene: &Scene, primitive: &Primitive, corners: [u32; 3]) -> Option<CutOut> {
     let material = &scene.materials[primitive.material];
-    let AlphaMode::Mask { cutoff } = material.alpha else { return None };
+    let Casting::CutOut(cutoff) = scene.casting(primitive) else { return None };
     let texture = material.base_color_texture;
     let vertices = corners.map(|corner| corner as usize);
     let uv = |vertex: usize| {
@@ -172,15 +171,15 @@ fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
 
 #[cfg(test)]
 mod tests {
-    use glam::Mat4;
-    use shadowfit_scene::Texture;
+    use glam::DMat4;
+    use shadowfit_scene::{AlphaMode, BlendedCasters, Texture};
     use shadowfit_scene::builtin::default_scene;
 
     use super::*;
 
     #[test]
     fn each_triangle_is_that_of_the_scene_and_knows_its_instance() {
-        let mut scene = default_scene();
+        let mut scene = Scene { blended_casters: BlendedCasters::Never, ..default_scene() };
         // The surfaces of every second material cast nothing.
         for material in scene.materials.iter_mut().skip(1).step_by(2) {
             material.alpha = AlphaMode::Blend;
@@ -189,7 +188,7 @@ mod tests {
         let rays = SceneRays::from_origin(&scene, &pose, origin);
         let casts = |triangle: &shadowfit_scene::Triangle| {
             let instance = &instances[triangle.instance as usize];
-            scene.materials[primitive(&scene, instance).material].alpha != AlphaMode::Blend
+            scene.casting(primitive(&scene, instance)) != Casting::Nothing
         };
         let all = pose.triangles_from(&scene, origin);
         let casting: Vec<_> = all.iter().filter(|triangle| casts(triangle)).collect();
@@ -208,7 +207,7 @@ mod tests {
         let scene = shadowfit_scene::builtin::BuiltinScene::Forest.build();
         let mut mirrored = scene.clone();
         for node in mirrored.nodes.iter_mut().filter(|node| node.parent.is_none()) {
-            let turned = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * node.rest.matrix();
+            let turned = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * node.rest.matrix();
             node.rest.matrix = Some(turned);
         }
         // Where each masked triangle has which texture coordinates, its corners in any order.

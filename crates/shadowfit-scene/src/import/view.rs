@@ -56,7 +56,8 @@ pub(crate) fn sun(root: &Root, tree: &Tree, rest: &Pose, notes: &mut Notes) -> R
     let (mut sun, mut skipped) = (None, 0);
     for (node, &index) in tree.file_index.iter().enumerate() {
         let extensions = root.nodes[index].extensions.as_ref();
-        let Some(link) = extensions.and_then(|e| e.khr_lights_punctual.as_ref()) else { continue };
+        let link = extensions.and_then(|e| e.khr_lights_punctual.as_ref()).filter(|_| !tree.hidden[node]);
+        let Some(link) = link else { continue };
         let element = format!("nodes[{index}].extensions.KHR_lights_punctual");
         let light = entry(lights, link.light.value(), "light", &element)?;
         let found = directional(light, rest.world_from(node).transform_vector3(Vec3::NEG_Z));
