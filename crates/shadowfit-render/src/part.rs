@@ -1,6 +1,7 @@
 //! A part of a scene on the GPU: the buffers of one primitive, and what selects its pipelines.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use bytemuck::cast_slice;
 use glam::{Vec2, Vec4};
@@ -14,7 +15,7 @@ use crate::unrolled::{Numbering, Unrolled};
 use crate::upload::Upload;
 
 /// One primitive with all its instances (a deformed one has a part of its own per instance).
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Part {
     /// Positions, normals, tangents, and texture coordinates with colours.
     pub(crate) streams: [wgpu::Buffer; 4],
@@ -36,6 +37,24 @@ pub(crate) struct Part {
     pub(crate) deforms: bool,
     pub(crate) local_bounds: Option<Aabb>,
     pub(crate) members: Vec<usize>,
+}
+
+/// What decides the buffers of rigid parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct TwinKey {
+    geometry: *const Geometry,
+    is_blended: bool,
+    casts: bool,
+}
+
+impl TwinKey {
+    pub(crate) fn of(scene: &Scene, primitive: &Primitive) -> Self {
+        Self {
+            geometry: Arc::as_ptr(&primitive.geometry),
+            is_blended: scene.materials[primitive.material].alpha == AlphaMode::Blend,
+            casts: scene.casting(primitive) != Casting::Nothing,
+        }
+    }
 }
 
 /// What selects a part's pipeline, in every pass.
@@ -97,6 +116,20 @@ impl Part {
             deforms,
             local_bounds: Aabb::from_points(primitive.positions.iter().copied()),
             members: Vec::new(),
+        }
+    }
+
+    /// The part of a rigid primitive with the same geometry and [`TwinKey`], with which it shares its buffers.
+    pub(crate) fn twin(&self, scene: &Scene, primitive: &Primitive, mirrored: bool) -> Self {
+        let material = &scene.materials[primitive.material];
+        Self {
+            material: primitive.material,
+            alpha: material.alpha,
+            casting: scene.casting(primitive),
+            double_sided: material.double_sided,
+            mirrored,
+            members: Vec::new(),
+            ..self.clone()
         }
     }
 

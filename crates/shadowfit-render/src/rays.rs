@@ -1,6 +1,8 @@
 //! The casters of a scene for rays on the GPU: the same triangles and cut-outs that are drawn into the shadow maps.
 
 use core::ops::Range;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{Affine3A, DVec3, Mat4, Vec2, Vec3, Vec4};
 use shadowfit::Aabb;
@@ -40,10 +42,16 @@ impl SceneRays {
     ) -> Result<Self, RayError> {
         let mut rays = RayScene::new(&gpu.device, &gpu.queue)?;
         let mut images: Vec<Option<ImageId>> = vec![None; scene.images.len()];
-        let mut meshes = Vec::new();
+        let (mut meshes, mut plain) = (Vec::new(), HashMap::new());
         for part in parts {
-            if scene.casting(part.primitive) == Casting::Nothing {
+            let casting = scene.casting(part.primitive);
+            if casting == Casting::Nothing {
                 meshes.push(None);
+                continue;
+            }
+            let shared = (casting == Casting::Whole && !part.deforms).then(|| Arc::as_ptr(&part.primitive.geometry));
+            if let Some(known) = shared.and_then(|geometry| plain.get(&geometry)) {
+                meshes.push(Some(*known));
                 continue;
             }
             let mesh = RayMesh::new(&part.primitive.positions, &part.primitive.indices)?;
@@ -58,6 +66,7 @@ impl SceneRays {
             let rest = mesh.bounds().unwrap_or_default();
             let id = if part.deforms { rays.add_deforming_mesh(&mesh, rest)? } else { rays.add_mesh(&mesh)? };
             meshes.push(Some(id));
+            plain.extend(shared.map(|geometry| (geometry, id)));
         }
         Ok(Self { scene: rays, meshes, instances: Vec::new(), origin })
     }

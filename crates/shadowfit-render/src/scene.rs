@@ -2,6 +2,7 @@
 //! primitives (skins, morph targets) are deformed on the CPU, so that ray tracers see exactly the same triangles.
 
 use core::sync::atomic::{AtomicU64, Ordering};
+use std::collections::HashMap;
 
 use bytemuck::cast_slice;
 use glam::{DVec3, Mat4, Vec3};
@@ -13,7 +14,7 @@ use shadowfit_wgpu::Casters;
 use crate::casters::{CasterDraw, SceneCasters, transformed};
 use crate::maker::INSTANCES;
 use crate::material::upload_materials;
-use crate::part::{Part, PartKey};
+use crate::part::{Part, PartKey, TwinKey};
 use crate::rays::{RayPart, SceneRays};
 use crate::uniform::InstanceData;
 use crate::upload::Upload;
@@ -116,14 +117,20 @@ impl GpuScene {
         let upload = Upload::new(gpu);
         let instances: Vec<Instance> = scene.instances();
         let mut parts: Vec<Part> = Vec::new();
-        let mut shared = std::collections::HashMap::new();
+        let (mut shared, mut twins) = (HashMap::new(), HashMap::new());
         for (index, instance) in instances.iter().enumerate() {
             let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
             let mirrored = pose.is_mirrored(scene, instance);
             let deforms = is_deformed(scene, instance);
             let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
             let part = *shared.entry(key).or_insert_with(|| {
-                parts.push(Part::new(&upload, scene, primitive, (mirrored, deforms)));
+                let twin = TwinKey::of(scene, primitive);
+                let known = twins.get(&twin).filter(|_| !deforms).map(|&known: &usize| &parts[known]);
+                let part = known.map(|known| known.twin(scene, primitive, mirrored));
+                parts.push(part.unwrap_or_else(|| Part::new(&upload, scene, primitive, (mirrored, deforms))));
+                if !deforms {
+                    twins.entry(twin).or_insert(parts.len() - 1);
+                }
                 parts.len() - 1
             });
             parts[part].members.push(index);

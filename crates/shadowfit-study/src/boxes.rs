@@ -131,9 +131,9 @@ fn clusters(scene: &Scene, pose: &Pose, instances: &[Instance], moves: &[bool]) 
 
 #[cfg(test)]
 mod tests {
-    use shadowfit_scene::{AlphaMode, BlendedCasters};
     use super::*;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_scene::{AlphaMode, BlendedCasters};
 
     fn boxes(scene: &Scene, pose: &Pose) -> SceneBoxes {
         let mut boxes = SceneBoxes::new(scene, pose);

@@ -172,8 +172,8 @@ fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
 #[cfg(test)]
 mod tests {
     use glam::DMat4;
-    use shadowfit_scene::{AlphaMode, BlendedCasters, Texture};
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_scene::{AlphaMode, BlendedCasters, Texture};
 
     use super::*;
 

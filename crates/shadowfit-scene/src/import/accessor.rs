@@ -275,7 +275,8 @@ impl<'a> Reader<'a> {
         };
         let bytes = self.view(view, name)?;
         let declared = self.root.buffer_views[view.value()].byte_stride;
-        let stride = declared.map_or(size, |stride| stride.0);
+        // Some exporters write 0 for elements without gaps.
+        let stride = declared.map(|stride| stride.0).filter(|&stride| stride > 0).unwrap_or(size);
         if stride < size {
             return Err(wrong(format!("its stride of {stride} bytes is smaller than its elements of {size}")));
         }

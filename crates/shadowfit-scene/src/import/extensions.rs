@@ -64,7 +64,8 @@ pub(super) const COMPRESSED: [&str; 3] =
     ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_meshopt_compression"];
 
 /// How to convert a file whose meshes are compressed.
-pub(super) const DECOMPRESS: &str = "Decompress its meshes with glTF-Transform: gltf-transform cp compressed.glb plain.glb";
+pub(super) const DECOMPRESS: &str =
+    "Decompress its meshes with glTF-Transform: gltf-transform cp compressed.glb plain.glb";
 
 /// How to convert a file whose textures are compressed for GPUs.
 const DECODE_TEXTURES: &str =

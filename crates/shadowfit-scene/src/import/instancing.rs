@@ -49,6 +49,8 @@ pub(super) fn expand(
             continue;
         }
         let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;
+        // Instances without transforms of their own coincide.
+        let Some(transforms) = transforms else { continue };
         let first = nodes.len();
         let mesh = nodes[node].mesh.take();
         let instance = |rest: Transform| Node {
@@ -98,14 +100,13 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Reads its transforms, at most `left`, and subtracts their number from it.
-    fn read(&self, left: &mut usize) -> Result<Vec<Transform>, Problem> {
+    /// Reads its transforms, at most `left`, and subtracts their number from it. `None` if it has no attribute of
+    /// transforms.
+    fn read(&self, left: &mut usize) -> Result<Option<Vec<Transform>>, Problem> {
         let [translation, rotations, scale] = ["TRANSLATION", "ROTATION", "SCALE"].map(|name| self.find(name));
         let [translation, rotations, scale] = [translation?, rotations?, scale?];
         let given = [translation, rotations, scale].into_iter().flatten();
-        let Some(count) = self.count(given)? else {
-            return Err(Problem::new(self.element, "it has neither TRANSLATION nor ROTATION nor SCALE"));
-        };
+        let Some(count) = self.count(given)? else { return Ok(None) };
         *left = left.checked_sub(count).ok_or_else(|| {
             let reason = format!("with its {count} instances the scene has more than {MAX_INSTANCES} in tables");
             Problem::new(self.element, reason).hint("Split or simplify the scene")
@@ -119,14 +120,15 @@ impl Table<'_> {
             let scale = scales.as_ref().map_or(Vec3::ONE, |all| Vec3::from_array(all[index]));
             Transform { rotation: rotation(turn.as_dquat()), ..Transform::new(translation, Quat::IDENTITY, scale) }
         };
-        Ok((0..count).map(at).collect())
+        Ok(Some((0..count).map(at).collect()))
     }
 
     /// The accessor of an attribute, with the attribute's name.
     fn find(&self, name: &'static str) -> Result<Option<Attribute>, Problem> {
         let Some(value) = self.json.get(name) else { return Ok(None) };
         let index = value.as_u64().and_then(|index| u32::try_from(index).ok());
-        let wrong = || Problem::new(format!("{}.{name}", self.element), format!("{value} is not the index of an accessor"));
+        let wrong =
+            || Problem::new(format!("{}.{name}", self.element), format!("{value} is not the index of an accessor"));
         Ok(Some(Attribute { name, index: Index::new(index.ok_or_else(wrong)?) }))
     }
 

@@ -76,11 +76,7 @@ fn is_visible(json: &scene::Node) -> bool {
     extension.and_then(|own| own.get("visible")).and_then(Value::as_bool).unwrap_or(true)
 }
 
-fn node(
-    index: usize,
-    json: &scene::Node,
-    (parent, rest): (Option<usize>, Transform),
-) -> Result<Node, Problem> {
+fn node(index: usize, json: &scene::Node, (parent, rest): (Option<usize>, Transform)) -> Result<Node, Problem> {
     if !rest.matrix().as_mat4().is_finite() {
         return Err(Problem::new(format!("nodes[{index}]"), "its transform is not finite"));
     }
