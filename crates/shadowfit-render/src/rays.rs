@@ -49,7 +49,7 @@ impl SceneRays {
                 meshes.push(None);
                 continue;
             }
-            let shared = (casting == Casting::Whole && !part.deforms).then(|| Arc::as_ptr(&part.primitive.geometry));
+            let shared = (casting == Casting::Whole && !part.deforms).then_some(Arc::as_ptr(&part.primitive.geometry));
             if let Some(known) = shared.and_then(|geometry| plain.get(&geometry)) {
                 meshes.push(Some(*known));
                 continue;

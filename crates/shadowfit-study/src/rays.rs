@@ -252,6 +252,33 @@ mod tests {
     }
 
     #[test]
+    fn alpha_that_equals_the_cutoff_blocks_rays_and_blended_surfaces_do_as_masked_ones() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Z];
+        let mut scene = Scene::from_objects("sheet", &[vec![corners]]);
+        scene.meshes[0].primitives[0].uvs = vec![Vec2::ZERO, Vec2::new(3.7, 0.4), Vec2::new(-0.3, 5.1)];
+        let blocks = |scene: &Scene| -> Vec<bool> {
+            let rays = SceneRays::from_origin(scene, &scene.pose(None, 0.0), DVec3::ZERO);
+            let inside = (1..20).flat_map(|u| (1..20 - u).map(move |v| [u, v].map(|weight| weight as f32 / 20.0)));
+            inside.map(|weights| !rays.tracer.is_empty() && rays.tracer.cut_outs().is_opaque(0, weights)).collect()
+        };
+        for (texel, is_opaque) in [(128, true), (127, false)] {
+            let rgba = [255, 255, 255, texel].repeat(9);
+            scene.images = vec![Image { name: String::new(), width: 3, height: 3, rgba }];
+            let uv_from_texcoord = [Vec3::X, Vec3::Y];
+            let wrap = [shadowfit_scene::Wrap::Mirror; 2];
+            scene.materials[0].base_color_texture = Some(Texture { image: 0, wrap, nearest: false, uv_from_texcoord });
+            for alpha in [AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Mask { cutoff: 128.0 / 255.0 }, AlphaMode::Blend]
+            {
+                scene.materials[0].alpha = alpha;
+                let found = blocks(&scene);
+                assert!(found.iter().all(|blocks| *blocks == is_opaque), "{texel} {alpha:?}: {found:?}");
+            }
+        }
+        scene.materials[0].base_color.w = 0.49;
+        assert_eq!(SceneRays::from_origin(&scene, &scene.pose(None, 0.0), DVec3::ZERO).tracer.len(), 0);
+    }
+
+    #[test]
     fn images_keep_their_alpha_and_nothing_else() {
         let rgba = [0u8, 255, 7].iter().flat_map(|alpha| [1, 2, 3, *alpha]).collect();
         let image = alpha_image(&Image { name: String::new(), width: 3, height: 1, rgba });

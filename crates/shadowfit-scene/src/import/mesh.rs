@@ -84,13 +84,12 @@ impl<'a> Geometries<'a> {
             return Ok(None);
         };
         let key = Key::new(json, mode, look);
-        let geometry = match self.known.get(&key) {
-            Some(known) => Arc::clone(known),
-            None => {
-                let made = Arc::new(self.decode((json, element), (mode, positions), look, notes)?);
-                self.known.insert(key, Arc::clone(&made));
-                made
-            }
+        let geometry = if let Some(known) = self.known.get(&key) {
+            Arc::clone(known)
+        } else {
+            let made = Arc::new(self.decode((json, element), (mode, positions), look, notes)?);
+            self.known.insert(key, Arc::clone(&made));
+            made
         };
         Ok(Some(Primitive { material: look.material, geometry }))
     }

@@ -58,7 +58,9 @@ impl UsedVertices {
         }
         let some = used.len() < count;
         if some {
-            indices.iter_mut().for_each(|vertex| *vertex = self.places[*vertex as usize]);
+            for vertex in indices.iter_mut() {
+                *vertex = self.places[*vertex as usize];
+            }
         }
         for &vertex in &used {
             self.places[vertex as usize] = UNUSED;
