@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_params::tool::LightSettings;
 use shadowfit_render::{Cluster, clustered};
-use shadowfit_scene::{AlphaMode, Scene, builtin, load_gltf};
+use shadowfit_scene::{Casting, Scene, builtin, load_gltf};
 use shadowfit_truth::Tracer;
 
 use crate::cuboid::triangles;
@@ -66,7 +66,7 @@ impl BenchScene {
         nodes.dedup();
         for instance in scene.instances() {
             let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-            if scene.materials[primitive.material].alpha == AlphaMode::Blend {
+            if scene.casting(primitive) == Casting::Nothing {
                 continue;
             }
             let matrix = pose.world_from_instance(scene, &instance);

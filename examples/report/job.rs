@@ -7,7 +7,7 @@ use glam::Vec3;
 use shadowfit::Aabb;
 use shadowfit_params::tool::LightSettings;
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_scene::{Scene, load_gltf};
+use shadowfit_scene::{BlendedCasters, Scene, load_gltf};
 use shadowfit_study::{Comparison, Judging, View};
 use shadowfit_truth::Tracer;
 
@@ -49,6 +49,9 @@ pub(crate) struct Job {
     /// Play the scene's first animation, so many frames of the path a second
     #[arg(long, value_name = "FPS")]
     play: Option<f32>,
+    /// Let blended surfaces cast nothing, instead of casting where their alpha is at least 0.5
+    #[arg(long)]
+    no_blended_casters: bool,
     /// Refuse scenes that need more memory than this, in GiB
     #[arg(long, default_value_t = 16.0, value_name = "GIB", value_parser = positive)]
     max_memory: f64,
@@ -117,7 +120,11 @@ impl Job {
         let judging = comparison.judging;
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
         let path = if let Some(file) = &self.path {
-            CameraPath::read(file, aspect)?
+            let mut path = CameraPath::read(file, aspect)?;
+            // A path has the coordinates of its scene's file.
+            let origin = comparison.scene().scene().origin;
+            path.frames.iter_mut().for_each(|frame| frame.camera.eye -= origin);
+            path
         } else if let Some(camera) = self.camera {
             follow(comparison.scene().scene(), camera, self.play, aspect)?
         } else {
@@ -167,7 +174,11 @@ impl Job {
         if self.scene.as_os_str() == BUILT_IN && !self.scene.exists() {
             return Ok(default_scene());
         }
-        Ok(load_gltf(&self.scene)?)
+        let mut scene = load_gltf(&self.scene)?;
+        if self.no_blended_casters {
+            scene.blended_casters = BlendedCasters::Never;
+        }
+        Ok(scene)
     }
 
     /// Says what a large scene will take before it takes it, and refuses one that would take too much.

@@ -89,7 +89,7 @@ impl Arrangement {
     pub(super) fn judged_away(&self, technique: &Technique, away: Vec3) -> PictureTally {
         let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
         let mut scene = Scene::from_objects("shapes", &self.objects);
-        scene.nodes.iter_mut().for_each(|node| node.rest.translation = away);
+        scene.nodes.iter_mut().for_each(|node| node.rest.translation = away.as_dvec3());
         let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
         comparison.add(*technique).expect("a technique");
         let camera = PerspectiveCamera { eye: self.camera.eye + away.as_dvec3(), ..self.camera };

@@ -5,7 +5,7 @@ use shadowfit::glam::{Quat, Vec3};
 use shadowfit::settings::{Edges, FilterKind, SoftRadius, Softness};
 use shadowfit::{Camera, PerspectiveCamera, Technique};
 use shadowfit_scene::builtin::{BuiltinScene, default_scene};
-use shadowfit_scene::{AlphaMode, Scene};
+use shadowfit_scene::{AlphaMode, Scene, Transform};
 use shadowfit_study::{Comparison, Judging, SharedTruth, View};
 use shadowfit_truth::PictureTally;
 
@@ -139,8 +139,7 @@ fn mirrored_and_stretched_instances_cast_their_own_shadows() {
         (Vec3::new(2.0, -0.7, -3.0), Vec3::new(-2.0, 1.2, -2.0)),
     ];
     for (node, (scale, translation)) in scene.nodes[1..].iter_mut().zip(transforms) {
-        (node.rest.scale, node.rest.translation) = (scale, translation);
-        node.rest.rotation = Quat::from_rotation_y(scale.x);
+        node.rest = Transform::new(translation, Quat::from_rotation_y(scale.x), scale);
     }
     assert_exact("transforms", &judged(&mut comparison_of(scene, coarse()), &seen_from(Vec3::new(4.0, 5.0, 6.0))));
 }
@@ -150,7 +149,7 @@ fn a_hundred_kilometres_from_the_origin_pictures_are_as_exact() {
     let away = Vec3::new(100_000.0, 300.0, -100_000.0);
     let mut scene = boxes();
     for (node, at) in scene.nodes.iter_mut().zip([Vec3::ZERO, Vec3::ZERO, Vec3::X * 2.0, Vec3::Z * -2.0]) {
-        node.rest.translation = away + at;
+        node.rest.translation = (away + at).as_dvec3();
     }
     let mut view = seen_from(Vec3::new(4.0, 5.0, 6.0));
     view.camera.eye += away.as_dvec3();
@@ -177,8 +176,8 @@ fn area_errors(technique: Technique, sun_radius: f32, height: f32, samples: u32)
     let mut scene = boxes();
     for (number, node) in (0..).zip(&mut scene.nodes[1..]) {
         let aside = Vec3::new(1.3, 0.0, -0.7) * (number as f32 - 1.0);
-        node.rest.translation = Vec3::new(0.6, 1.0, 0.35) * height + aside;
-        node.rest.rotation = Quat::from_rotation_y(number as f32);
+        let at = Vec3::new(0.6, 1.0, 0.35) * height + aside;
+        node.rest = Transform::new(at, Quat::from_rotation_y(number as f32), Vec3::ONE);
     }
     let judging =
         Judging { area: 8, sun_radius: f64::from(sun_radius), size: SIZE, crawl: false, ..Judging::default() };

@@ -203,6 +203,8 @@ pub struct ViewSettings {
     pub marks: ErrorMarks,
     /// Whether shadows are drawn at all. Default: yes.
     pub shadows: bool,
+    /// Whether blended surfaces cast shadows where their alpha is at least 0.5. Default: yes.
+    pub blended_cast: bool,
     /// Which of the shadow maps are shown in a corner. Default: one.
     pub inset: InsetMaps,
     /// Number of the map that the inset shows, 1..=8 from the nearest; the last one where there are
@@ -229,6 +231,7 @@ impl Default for ViewSettings {
             judge: true,
             marks: ErrorMarks::Off,
             shadows: true,
+            blended_cast: true,
             inset: InsetMaps::One,
             inset_map: 1,
             inset_depths: None,

@@ -1,11 +1,12 @@
 //! A part of a scene on the GPU: the buffers of one primitive, and what selects its pipelines.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use bytemuck::cast_slice;
 use glam::{Vec2, Vec4};
 use shadowfit::Aabb;
-use shadowfit_scene::{AlphaMode, Primitive, Scene};
+use shadowfit_scene::{AlphaMode, Casting, Geometry, Primitive, Scene};
 
 use crate::casters::{Cluster, clustered};
 use crate::gpu::is_opengl;
@@ -14,7 +15,7 @@ use crate::unrolled::{Numbering, Unrolled};
 use crate::upload::Upload;
 
 /// One primitive with all its instances (a deformed one has a part of its own per instance).
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Part {
     /// Positions, normals, tangents, and texture coordinates with colours.
     pub(crate) streams: [wgpu::Buffer; 4],
@@ -29,12 +30,31 @@ pub(crate) struct Part {
     pub(crate) clusters: Vec<Cluster>,
     pub(crate) material: usize,
     pub(crate) alpha: AlphaMode,
+    pub(crate) casting: Casting,
     pub(crate) double_sided: bool,
     pub(crate) mirrored: bool,
     /// Whether its vertices move.
     pub(crate) deforms: bool,
     pub(crate) local_bounds: Option<Aabb>,
     pub(crate) members: Vec<usize>,
+}
+
+/// What decides the buffers of rigid parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct TwinKey {
+    geometry: *const Geometry,
+    is_blended: bool,
+    casts: bool,
+}
+
+impl TwinKey {
+    pub(crate) fn of(scene: &Scene, primitive: &Primitive) -> Self {
+        Self {
+            geometry: Arc::as_ptr(&primitive.geometry),
+            is_blended: scene.materials[primitive.material].alpha == AlphaMode::Blend,
+            casts: scene.casting(primitive) != Casting::Nothing,
+        }
+    }
 }
 
 /// What selects a part's pipeline, in every pass.
@@ -59,7 +79,8 @@ impl Part {
         (mirrored, deforms): (bool, bool),
     ) -> Self {
         let material = &scene.materials[primitive.material];
-        let Primitive { positions, normals, indices, .. } = primitive;
+        let casting = scene.casting(primitive);
+        let Geometry { positions, normals, indices, .. } = &*primitive.geometry;
         let device = &upload.gpu.device;
         let has = streams(device, primitive);
         let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
@@ -76,7 +97,7 @@ impl Part {
             has.surface.then_some(vertices[3]),
         ];
         // What casts nothing is not cut, and neither is what deforms.
-        let is_whole = deforms || material.alpha == AlphaMode::Blend;
+        let is_whole = deforms || casting == Casting::Nothing;
         let (caster_indices, clusters) = clustered(positions, indices, is_whole);
         let index = |indices: &[u32]| upload.buffer(wgpu::BufferUsages::INDEX, cast_slice(indices));
         Self {
@@ -89,6 +110,7 @@ impl Part {
             clusters,
             material: primitive.material,
             alpha: material.alpha,
+            casting,
             double_sided: material.double_sided,
             mirrored,
             deforms,
@@ -97,9 +119,28 @@ impl Part {
         }
     }
 
-    /// Whether the caster rule lets the part cast: blended surfaces cast nothing.
+    /// The part of a rigid primitive with the same geometry and [`TwinKey`], with which it shares its buffers.
+    pub(crate) fn twin(&self, scene: &Scene, primitive: &Primitive, mirrored: bool) -> Self {
+        let material = &scene.materials[primitive.material];
+        Self {
+            material: primitive.material,
+            alpha: material.alpha,
+            casting: scene.casting(primitive),
+            double_sided: material.double_sided,
+            mirrored,
+            members: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// Whether some of the part casts.
     pub(crate) fn casts(&self) -> bool {
-        self.alpha != AlphaMode::Blend
+        self.casting != Casting::Nothing
+    }
+
+    /// Whether it is blended over the surfaces behind it.
+    pub(crate) fn is_blended(&self) -> bool {
+        self.alpha == AlphaMode::Blend
     }
 }
 
@@ -107,7 +148,7 @@ impl PartKey {
     pub(crate) fn of(part: &Part) -> Self {
         Self {
             masked: matches!(part.alpha, AlphaMode::Mask { .. }),
-            blended: part.alpha == AlphaMode::Blend,
+            blended: part.is_blended(),
             double_sided: part.double_sided,
             mirrored: part.mirrored,
             streams: part.has,

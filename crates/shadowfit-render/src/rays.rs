@@ -1,13 +1,15 @@
 //! The casters of a scene for rays on the GPU: the same triangles and cut-outs that are drawn into the shadow maps.
 
 use core::ops::Range;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{Affine3A, DVec3, Mat4, Vec2, Vec3, Vec4};
 use shadowfit::Aabb;
 use shadowfit_rays::{
     AlphaImage, CutMaterial, CutOut, ImageId, MeshId, RayError, RayInstance, RayMesh, RayScene, VertexBuffer, Wrap,
 };
-use shadowfit_scene::{AlphaMode, Image, Primitive, Scene};
+use shadowfit_scene::{Casting, Image, Primitive, Scene};
 
 use crate::Gpu;
 
@@ -40,11 +42,16 @@ impl SceneRays {
     ) -> Result<Self, RayError> {
         let mut rays = RayScene::new(&gpu.device, &gpu.queue)?;
         let mut images: Vec<Option<ImageId>> = vec![None; scene.images.len()];
-        let mut meshes = Vec::new();
+        let (mut meshes, mut plain) = (Vec::new(), HashMap::new());
         for part in parts {
-            let material = &scene.materials[part.primitive.material];
-            if material.alpha == AlphaMode::Blend {
+            let casting = scene.casting(part.primitive);
+            if casting == Casting::Nothing {
                 meshes.push(None);
+                continue;
+            }
+            let shared = (casting == Casting::Whole && !part.deforms).then_some(Arc::as_ptr(&part.primitive.geometry));
+            if let Some(known) = shared.and_then(|geometry| plain.get(&geometry)) {
+                meshes.push(Some(*known));
                 continue;
             }
             let mesh = RayMesh::new(&part.primitive.positions, &part.primitive.indices)?;
@@ -59,6 +66,7 @@ impl SceneRays {
             let rest = mesh.bounds().unwrap_or_default();
             let id = if part.deforms { rays.add_deforming_mesh(&mesh, rest)? } else { rays.add_mesh(&mesh)? };
             meshes.push(Some(id));
+            plain.extend(shared.map(|geometry| (geometry, id)));
         }
         Ok(Self { scene: rays, meshes, instances: Vec::new(), origin })
     }
@@ -106,14 +114,14 @@ fn add_image(rays: &mut RayScene, image: &Image) -> Result<ImageId, RayError> {
     }
 }
 
-/// The triangles with holes of a masked primitive.
+/// The triangles with holes of a primitive.
 fn cut_outs(
     scene: &Scene,
     primitive: &Primitive,
     mut image: impl FnMut(usize) -> Result<ImageId, RayError>,
 ) -> Result<Vec<(u32, CutOut)>, RayError> {
     let material = &scene.materials[primitive.material];
-    let AlphaMode::Mask { cutoff } = material.alpha else { return Ok(Vec::new()) };
+    let Casting::CutOut(cutoff) = scene.casting(primitive) else { return Ok(Vec::new()) };
     let texture = material.base_color_texture;
     let shared = CutMaterial {
         image: texture.map(|texture| image(texture.image)).transpose()?,

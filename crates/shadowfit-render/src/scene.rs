@@ -2,18 +2,19 @@
 //! primitives (skins, morph targets) are deformed on the CPU, so that ray tracers see exactly the same triangles.
 
 use core::sync::atomic::{AtomicU64, Ordering};
+use std::collections::HashMap;
 
 use bytemuck::cast_slice;
 use glam::{DVec3, Mat4, Vec3};
 use shadowfit::Aabb;
 use shadowfit_rays::{RayError, RayScene};
-use shadowfit_scene::{AlphaMode, Deformed, Instance, Pose, Scene};
+use shadowfit_scene::{Casting, Deformed, Instance, Pose, Scene};
 use shadowfit_wgpu::Casters;
 
 use crate::casters::{CasterDraw, SceneCasters, transformed};
 use crate::maker::INSTANCES;
 use crate::material::upload_materials;
-use crate::part::{Part, PartKey};
+use crate::part::{Part, PartKey, TwinKey};
 use crate::rays::{RayPart, SceneRays};
 use crate::uniform::InstanceData;
 use crate::upload::Upload;
@@ -49,7 +50,7 @@ static POSES: AtomicU64 = AtomicU64::new(0);
 #[derive(Clone, Copy, Debug)]
 struct SceneInstance {
     instance: Instance,
-    /// Number of its first triangle, those of blended surfaces left out.
+    /// Number of its first triangle, where only surfaces that cast are counted.
     first_triangle: u32,
     world_from_mesh: Mat4,
     bounds: Aabb,
@@ -116,14 +117,20 @@ impl GpuScene {
         let upload = Upload::new(gpu);
         let instances: Vec<Instance> = scene.instances();
         let mut parts: Vec<Part> = Vec::new();
-        let mut shared = std::collections::HashMap::new();
+        let (mut shared, mut twins) = (HashMap::new(), HashMap::new());
         for (index, instance) in instances.iter().enumerate() {
             let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
             let mirrored = pose.is_mirrored(scene, instance);
             let deforms = is_deformed(scene, instance);
             let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
             let part = *shared.entry(key).or_insert_with(|| {
-                parts.push(Part::new(&upload, scene, primitive, (mirrored, deforms)));
+                let twin = TwinKey::of(scene, primitive);
+                let known = twins.get(&twin).filter(|_| !deforms).map(|&known: &usize| &parts[known]);
+                let part = known.map(|known| known.twin(scene, primitive, mirrored));
+                parts.push(part.unwrap_or_else(|| Part::new(&upload, scene, primitive, (mirrored, deforms))));
+                if !deforms {
+                    twins.entry(twin).or_insert(parts.len() - 1);
+                }
                 parts.len() - 1
             });
             parts[part].members.push(index);
@@ -284,9 +291,9 @@ impl GpuScene {
     /// to the frame's eye.
     pub fn seen(&mut self, clip_from_world: Mat4) -> [Vec<Draw>; 2] {
         let keep = in_frustum(clip_from_world);
-        let mut opaque = self.visible(&keep, Part::casts);
+        let mut opaque = self.visible(&keep, |part| !part.is_blended());
         opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let mut blended = self.visible(&keep, |part| !part.casts());
+        let mut blended = self.visible(&keep, Part::is_blended);
         blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         [opaque, blended]
     }
@@ -315,10 +322,10 @@ impl GpuScene {
         draws
     }
 
-    /// Adds all instances on nodes that are wanted, and returns their draws; blended surfaces are left out.
+    /// Adds all instances on nodes that are wanted, and returns their draws. Blended surfaces are left out.
     pub fn drawn_of(&mut self, wants: impl Fn(usize) -> bool) -> Vec<Draw> {
         let mut draws = Vec::new();
-        for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| part.casts()) {
+        for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| !part.is_blended()) {
             let start = self.data.len() as u32;
             let members = part.members.iter().map(|member| &self.instances[*member]);
             let wanted = members.filter(|member| wants(member.instance.node));
@@ -402,7 +409,7 @@ fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
     let number = |instance: Instance| {
         let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
         let first_triangle = triangles;
-        if scene.materials[primitive.material].alpha != AlphaMode::Blend {
+        if scene.casting(primitive) != Casting::Nothing {
             triangles += primitive.indices.len() as u32 / 3;
         }
         SceneInstance { instance, first_triangle, world_from_mesh: Mat4::IDENTITY, bounds: Aabb::EMPTY }
@@ -410,7 +417,7 @@ fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
     instances.into_iter().map(number).collect()
 }
 
-/// The casters of a scene: blended surfaces cast nothing.
+/// The casters of a scene.
 fn casters(scene: &Scene, instances: &[Instance], parts: &[Part]) -> SceneCasters {
     let moves = animated(scene);
     let mut casters = SceneCasters::default();

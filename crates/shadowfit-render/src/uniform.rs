@@ -110,7 +110,8 @@ pub struct MaterialUniform {
     pub normal_uv: [[f32; 4]; 2],
     /// Linear emitted radiance.
     pub emissive: [f32; 3],
-    /// Fragments with less alpha are absent; 0 for unmasked materials.
+    /// Fragments with less alpha are absent from pictures of masked materials, and from maps of cut-outs; 0 for opaque
+    /// materials.
     pub alpha_cutoff: f32,
     /// Metalness, 0..=1.
     pub metallic: f32,
@@ -136,7 +137,7 @@ impl MaterialUniform {
             base_uv: rows(material.base_color_texture),
             normal_uv: rows(material.normal_texture),
             emissive: material.emissive.to_array(),
-            alpha_cutoff: if let AlphaMode::Mask { cutoff } = material.alpha { cutoff } else { 0.0 },
+            alpha_cutoff: material.alpha.least_opaque().unwrap_or(0.0),
             metallic: material.metallic,
             roughness: material.roughness,
             normal_scale: if material.normal_texture.is_some() { material.normal_scale } else { 0.0 },

@@ -38,7 +38,7 @@ impl Numbering {
 }
 
 /// Vertices of a part in the order of its indices.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Unrolled {
     /// Those that have an element for each vertex.
     streams: [Option<wgpu::Buffer>; 4],

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{Material, Mesh, Node, Primitive, Scene, Transform};
+use crate::{Geometry, Material, Mesh, Node, Scene, Transform};
 
 impl Scene {
     /// A scene of plain triangles (corners in world space, metres): one node and one mesh for each of `objects`. All
@@ -27,13 +27,13 @@ fn node(index: usize) -> Node {
 fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let normal = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).normalize_or(Vec3::Y);
     let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
-    let primitive = Primitive {
+    let geometry = Geometry {
         normals: triangles.iter().flat_map(|triangle| [normal(triangle); 3]).collect(),
         indices: (0..positions.len() as u32).collect(),
         positions,
-        ..Primitive::default()
+        ..Geometry::default()
     };
-    Mesh { primitives: vec![primitive], ..Mesh::default() }
+    Mesh { primitives: vec![geometry.into()], ..Mesh::default() }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A scene at a time: world transforms, morph weights, and the triangles that follow.
 
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DMat4, DVec3, Mat4, Vec3};
 
 use crate::import::MAX_COORDINATE;
 use crate::sample::{Sample, sample};
@@ -24,7 +24,7 @@ pub struct Instance {
 /// Where everything in a scene is at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// World from node, for each node.
+    /// World from node, for each node. World positions are relative to [`Scene::origin`].
     pub world_from_node: Vec<Mat4>,
     /// For each node, the weight of each morph target of its mesh; empty where it has none.
     pub morph_weights: Vec<Vec<f32>>,
@@ -39,14 +39,6 @@ pub struct Triangle {
     pub instance: u32,
     /// Index of the triangle within its primitive; its vertex indices there begin at `3 * index`.
     pub index: u32,
-}
-
-impl Transform {
-    /// Parent space from this node's space.
-    pub fn matrix(&self) -> Mat4 {
-        self.matrix
-            .unwrap_or_else(|| Mat4::from_scale_rotation_translation(self.scale, self.rotation, self.translation))
-    }
 }
 
 impl Scene {
@@ -74,9 +66,9 @@ impl Scene {
             for channel in &animation.channels {
                 let Some(local) = locals.get_mut(channel.node) else { continue };
                 match sample(channel, time) {
-                    Some(Sample::Translation(translation)) => local.translation = translation,
-                    Some(Sample::Rotation(rotation)) => local.rotation = rotation,
-                    Some(Sample::Scale(scale)) => local.scale = scale,
+                    Some(Sample::Translation(translation)) => local.translation = translation.as_dvec3(),
+                    Some(Sample::Rotation(rotation)) => local.rotation = rotation.as_dquat(),
+                    Some(Sample::Scale(scale)) => local.scale = scale.as_dvec3(),
                     Some(Sample::MorphWeights(weights)) => {
                         overwrite(&mut morph_weights[channel.node], &weights);
                     }
@@ -118,14 +110,15 @@ impl Scene {
         weights
     }
 
+    /// World from each node. Products are f64, and rounded once they are relative to the scene's origin.
     fn compose(&self, locals: &[Transform]) -> Vec<Mat4> {
-        let mut world_from_node: Vec<Mat4> = Vec::with_capacity(locals.len());
+        let world_from_file = DMat4::from_translation(-self.origin);
+        let mut world_from_node: Vec<DMat4> = Vec::with_capacity(locals.len());
         for (node, local) in self.nodes.iter().zip(locals) {
             let parent = node.parent.and_then(|index| world_from_node.get(index));
-            let world_from_parent = parent.copied().unwrap_or(Mat4::IDENTITY);
-            world_from_node.push(world_from_parent * local.matrix());
+            world_from_node.push(parent.copied().unwrap_or(world_from_file) * local.matrix());
         }
-        world_from_node
+        world_from_node.iter().map(DMat4::as_mat4).collect()
     }
 }
 

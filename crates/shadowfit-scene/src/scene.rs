@@ -1,9 +1,11 @@
 //! The data of a scene: what import and the built-in scene produce, and what renderers and ray tracers read.
 //! Right-handed, y up, metres, radians, column vectors.
 
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
+use std::sync::Arc;
 
-use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
+use glam::{DMat4, DQuat, DVec3, Mat4, Quat, Vec2, Vec3, Vec4};
 
 /// A whole scene: flat arrays that refer to each other by index.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +28,11 @@ pub struct Scene {
     pub cameras: Vec<SceneCamera>,
     /// Directional lights of the file, in the order of their nodes; empty for built-in scenes.
     pub suns: Vec<SceneSun>,
+    /// Position in the file's coordinates that the scene's world coordinates are relative to, in metres. It is zero,
+    /// unless the file's geometry lies far from its origin, where `f32` positions are coarse.
+    pub origin: DVec3,
+    /// Whether blended surfaces cast shadows.
+    pub blended_casters: BlendedCasters,
     /// The strongest of [`Scene::suns`] at rest, or the built-in scene's own sun; `None` if no directional light shines.
     pub sun: Option<Sun>,
     /// Index of the node that, with its descendants, cameras should look at, if the scene has one.
@@ -61,22 +68,37 @@ pub struct Node {
     pub morph_weights: Vec<f32>,
 }
 
-/// A transform from a node's space to its parent's: translation, rotation and scale, or a matrix.
+/// A transform from a node's space to its parent's: translation, rotation and scale, or a matrix. It is `f64`, so that
+/// nested transforms of georeferenced files, millions of metres long, are exact to less than a millimetre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// Translation, in metres.
-    pub translation: Vec3,
+    pub translation: DVec3,
     /// Rotation.
-    pub rotation: Quat,
+    pub rotation: DQuat,
     /// Scale; negative values mirror.
-    pub scale: Vec3,
+    pub scale: DVec3,
     /// Used instead of the other three where the file gives a matrix.
-    pub matrix: Option<Mat4>,
+    pub matrix: Option<DMat4>,
 }
 
 impl Default for Transform {
     fn default() -> Self {
-        Self { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE, matrix: None }
+        Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE, matrix: None }
+    }
+}
+
+impl Transform {
+    /// A transform without a matrix from `f32` values.
+    pub fn new(translation: Vec3, rotation: Quat, scale: Vec3) -> Self {
+        let (translation, rotation, scale) = (translation.as_dvec3(), rotation.as_dquat(), scale.as_dvec3());
+        Self { translation, rotation, scale, matrix: None }
+    }
+
+    /// Parent space from this node's space.
+    pub fn matrix(&self) -> DMat4 {
+        self.matrix
+            .unwrap_or_else(|| DMat4::from_scale_rotation_translation(self.scale, self.rotation, self.translation))
     }
 }
 
@@ -91,12 +113,39 @@ pub struct Mesh {
     pub morph_weights: Vec<f32>,
 }
 
-/// Indexed triangles with one material. Each vertex array has the length of `positions`, or is empty where its field
-/// says so.
+/// Triangles with one material. It reads and writes like its [`Geometry`].
 #[derive(Clone, Debug, Default)]
 pub struct Primitive {
     /// Index into [`Scene::materials`].
     pub material: usize,
+    /// Vertices and indices. Primitives that differ in their materials alone share them; a write copies them first.
+    pub geometry: Arc<Geometry>,
+}
+
+impl Deref for Primitive {
+    type Target = Geometry;
+
+    fn deref(&self) -> &Geometry {
+        &self.geometry
+    }
+}
+
+impl DerefMut for Primitive {
+    fn deref_mut(&mut self) -> &mut Geometry {
+        Arc::make_mut(&mut self.geometry)
+    }
+}
+
+impl From<Geometry> for Primitive {
+    /// A primitive with the default material.
+    fn from(geometry: Geometry) -> Self {
+        Self { material: 0, geometry: Arc::new(geometry) }
+    }
+}
+
+/// Indexed triangles. Each vertex array has the length of `positions`, or is empty where its field says so.
+#[derive(Clone, Debug, Default)]
+pub struct Geometry {
     /// Positions, in metres in the mesh's space.
     pub positions: Vec<Vec3>,
     /// Unit normals; computed flat where the file has none.
@@ -132,13 +181,72 @@ pub enum AlphaMode {
     /// Alpha is ignored.
     #[default]
     Opaque,
-    /// Where alpha is below the cutoff, the surface has a hole.
+    /// The surface has a hole where alpha is below the cutoff. Alpha that equals the cutoff is opaque.
     Mask {
         /// Cutoff, 0..=1.
         cutoff: f32,
     },
-    /// Blended over what lies behind; casts no shadow.
+    /// Blended over the surfaces behind it. Casts as [`Scene::blended_casters`] says.
     Blend,
+}
+
+/// Whether blended surfaces cast shadows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BlendedCasters {
+    /// They cast where their alpha, of material, texture and vertex colour, is at least 0.5, as cut-outs do.
+    #[default]
+    WhereOpaque,
+    /// They cast nothing.
+    Never,
+}
+
+/// How a primitive casts shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Casting {
+    /// It casts nothing.
+    Nothing,
+    /// All of it casts.
+    Whole,
+    /// It casts where its alpha, of material, texture and vertex colour, is at least this.
+    CutOut(f32),
+}
+
+/// Alpha of blended surfaces from which on they cast.
+const BLENDED_CUTOFF: f32 = 0.5;
+
+/// Shortfall of alpha that still counts as equal to a cutoff: half of the distance between a cutoff of 0.5 and the
+/// nearest 8-bit alpha below it. Rounding in texture filters, interpolation and products is smaller on every device, so
+/// that a surface of uniform alpha gets no stripes, and pictures, shadow maps and rays agree.
+const ALPHA_TOLERANCE: f32 = 0.25 / 255.0;
+
+impl AlphaMode {
+    /// Least alpha that is opaque where a surface is cut out, in pictures and shadows of masked materials and in shadows
+    /// of blended ones. It is the cutoff less a tolerance for rounding. `None` for opaque materials.
+    pub fn least_opaque(self) -> Option<f32> {
+        match self {
+            Self::Opaque => None,
+            Self::Mask { cutoff } => Some(cutoff - ALPHA_TOLERANCE),
+            Self::Blend => Some(BLENDED_CUTOFF - ALPHA_TOLERANCE),
+        }
+    }
+}
+
+impl Scene {
+    /// How a primitive of this scene casts shadows: the same in shadow maps, rays and boxes.
+    pub fn casting(&self, primitive: &Primitive) -> Casting {
+        let material = &self.materials[primitive.material];
+        let Some(least) = material.alpha.least_opaque() else { return Casting::Whole };
+        if material.alpha == AlphaMode::Blend {
+            // Texture and vertex colours only lower the material's alpha.
+            if self.blended_casters == BlendedCasters::Never || material.base_color.w < least {
+                return Casting::Nothing;
+            }
+            if material.base_color_texture.is_none() && primitive.colors.is_empty() {
+                return Casting::Whole;
+            }
+        }
+        Casting::CutOut(least)
+    }
 }
 
 /// A metallic-roughness material.

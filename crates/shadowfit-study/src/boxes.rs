@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::Clusters;
 use shadowfit::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
-use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
+use shadowfit_scene::{Casting, Instance, Pose, Scene};
 
 /// From this number of triangles on no clusters are made: at a fifth of a microsecond each that would delay the opening
 /// of a scene by more than a second.
@@ -85,10 +85,10 @@ impl SceneBoxes {
     }
 }
 
-/// Whether an instance casts shadows: blended surfaces cast none.
+/// Whether some of an instance casts shadows.
 fn casts(scene: &Scene, instance: &Instance) -> bool {
     let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-    scene.materials[primitive.material].alpha != AlphaMode::Blend
+    scene.casting(primitive) != Casting::Nothing
 }
 
 /// Whether some animation moves or deforms each instance.
@@ -133,6 +133,7 @@ fn clusters(scene: &Scene, pose: &Pose, instances: &[Instance], moves: &[bool]) 
 mod tests {
     use super::*;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_scene::{AlphaMode, BlendedCasters};
 
     fn boxes(scene: &Scene, pose: &Pose) -> SceneBoxes {
         let mut boxes = SceneBoxes::new(scene, pose);
@@ -167,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn blended_surfaces_receive_and_do_not_cast() {
+    fn blended_surfaces_receive_and_cast_where_they_may() {
         let mut scene = default_scene();
         let pose = scene.pose(None, 0.0);
         let all = boxes(&scene, &pose);
@@ -175,6 +176,8 @@ mod tests {
         for material in &mut scene.materials {
             material.alpha = AlphaMode::Blend;
         }
+        assert_eq!(boxes(&scene, &pose).casters, all.casters, "they are opaque enough");
+        scene.blended_casters = BlendedCasters::Never;
         let blended = boxes(&scene, &pose);
         assert_eq!(blended.receivers, all.receivers);
         assert!(blended.casters.is_empty());

@@ -1,11 +1,10 @@
 //! A scene's casters for rays: the same triangles and cut-outs that the renderer draws into the shadow map.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit_scene::{AlphaMode, Deformed, Image, Instance, Pose, Primitive, Scene};
+use shadowfit_scene::{Casting, Deformed, Image, Instance, Pose, Primitive, Scene};
 use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
-/// The casters of a scene in one pose. Blended surfaces cast nothing and are left out, as in the
-/// shadow pass.
+/// The casters of a scene in one pose, the same as in the shadow pass. Surfaces that cast nothing are left out.
 #[derive(Clone, Debug)]
 pub struct SceneRays {
     /// Answers rays against the casters' triangles, relative to the origin, in metres; they have the renderer's numbers.
@@ -65,7 +64,7 @@ impl<'a> Casters<'a> {
         let mut triangles = 0;
         for instance in &instances {
             let primitive = primitive(scene, instance);
-            if scene.materials[primitive.material].alpha != AlphaMode::Blend {
+            if scene.casting(primitive) != Casting::Nothing {
                 triangles += primitive.indices.len() as u32 / 3;
             }
             firsts.push(triangles);
@@ -96,8 +95,8 @@ impl<'a> Casters<'a> {
             .flat_map(|(index, instance)| {
                 let primitive = primitive(self.scene, instance);
                 let corners = primitive.indices.as_chunks::<3>().0;
-                let is_masked = matches!(self.scene.materials[primitive.material].alpha, AlphaMode::Mask { .. });
-                let corners = if is_masked { corners } else { &[] };
+                let has_holes = matches!(self.scene.casting(primitive), Casting::CutOut(_));
+                let corners = if has_holes { corners } else { &[] };
                 // As the triangles of mirrored instances have them.
                 let is_mirrored = self.mirrored[index];
                 let in_order = move |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -144,7 +143,7 @@ fn alpha_image(image: &Image) -> AlphaImage {
 
 fn cut_out(scene: &Scene, primitive: &Primitive, corners: [u32; 3]) -> Option<CutOut> {
     let material = &scene.materials[primitive.material];
-    let AlphaMode::Mask { cutoff } = material.alpha else { return None };
+    let Casting::CutOut(cutoff) = scene.casting(primitive) else { return None };
     let texture = material.base_color_texture;
     let vertices = corners.map(|corner| corner as usize);
     let uv = |vertex: usize| {
@@ -172,15 +171,15 @@ fn wrap(wrap: shadowfit_scene::Wrap) -> Wrap {
 
 #[cfg(test)]
 mod tests {
-    use glam::Mat4;
-    use shadowfit_scene::Texture;
+    use glam::DMat4;
     use shadowfit_scene::builtin::default_scene;
+    use shadowfit_scene::{AlphaMode, BlendedCasters, Texture};
 
     use super::*;
 
     #[test]
     fn each_triangle_is_that_of_the_scene_and_knows_its_instance() {
-        let mut scene = default_scene();
+        let mut scene = Scene { blended_casters: BlendedCasters::Never, ..default_scene() };
         // The surfaces of every second material cast nothing.
         for material in scene.materials.iter_mut().skip(1).step_by(2) {
             material.alpha = AlphaMode::Blend;
@@ -189,7 +188,7 @@ mod tests {
         let rays = SceneRays::from_origin(&scene, &pose, origin);
         let casts = |triangle: &shadowfit_scene::Triangle| {
             let instance = &instances[triangle.instance as usize];
-            scene.materials[primitive(&scene, instance).material].alpha != AlphaMode::Blend
+            scene.casting(primitive(&scene, instance)) != Casting::Nothing
         };
         let all = pose.triangles_from(&scene, origin);
         let casting: Vec<_> = all.iter().filter(|triangle| casts(triangle)).collect();
@@ -208,7 +207,7 @@ mod tests {
         let scene = shadowfit_scene::builtin::BuiltinScene::Forest.build();
         let mut mirrored = scene.clone();
         for node in mirrored.nodes.iter_mut().filter(|node| node.parent.is_none()) {
-            let turned = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * node.rest.matrix();
+            let turned = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * node.rest.matrix();
             node.rest.matrix = Some(turned);
         }
         // Where each masked triangle has which texture coordinates, its corners in any order.
@@ -250,6 +249,33 @@ mod tests {
             uv_from_texcoord: [Vec3::new(0.0, 2.0, 0.25), Vec3::new(-1.0, 0.0, 1.0)],
         };
         assert_eq!(texture.in_image(Vec2::new(0.5, 0.125)), Vec2::new(0.5, 0.5));
+    }
+
+    #[test]
+    fn alpha_that_equals_the_cutoff_blocks_rays_and_blended_surfaces_do_as_masked_ones() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Z];
+        let mut scene = Scene::from_objects("sheet", &[vec![corners]]);
+        scene.meshes[0].primitives[0].uvs = vec![Vec2::ZERO, Vec2::new(3.7, 0.4), Vec2::new(-0.3, 5.1)];
+        let blocks = |scene: &Scene| -> Vec<bool> {
+            let rays = SceneRays::from_origin(scene, &scene.pose(None, 0.0), DVec3::ZERO);
+            let inside = (1..20).flat_map(|u| (1..20 - u).map(move |v| [u, v].map(|weight| weight as f32 / 20.0)));
+            inside.map(|weights| !rays.tracer.is_empty() && rays.tracer.cut_outs().is_opaque(0, weights)).collect()
+        };
+        for (texel, is_opaque) in [(128, true), (127, false)] {
+            let rgba = [255, 255, 255, texel].repeat(9);
+            scene.images = vec![Image { name: String::new(), width: 3, height: 3, rgba }];
+            let uv_from_texcoord = [Vec3::X, Vec3::Y];
+            let wrap = [shadowfit_scene::Wrap::Mirror; 2];
+            scene.materials[0].base_color_texture = Some(Texture { image: 0, wrap, nearest: false, uv_from_texcoord });
+            for alpha in [AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Mask { cutoff: 128.0 / 255.0 }, AlphaMode::Blend]
+            {
+                scene.materials[0].alpha = alpha;
+                let found = blocks(&scene);
+                assert!(found.iter().all(|blocks| *blocks == is_opaque), "{texel} {alpha:?}: {found:?}");
+            }
+        }
+        scene.materials[0].base_color.w = 0.49;
+        assert_eq!(SceneRays::from_origin(&scene, &scene.pose(None, 0.0), DVec3::ZERO).tracer.len(), 0);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Camera};
 use shadowfit_params::BoxSource;
 use shadowfit_render::{DeviceFault, Gpu, GpuScene, RayError};
-use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
+use shadowfit_scene::{BlendedCasters, Casting, Instance, Pose, Primitive, Scene};
 
 use crate::SceneRays;
 use crate::boxes::SceneBoxes;
@@ -172,6 +172,34 @@ impl PreparedScene {
         posed.rays.change_pose();
     }
 
+    /// Decides whether blended surfaces cast. Uploads the scene anew if that changes, in its present pose.
+    ///
+    /// # Errors
+    ///
+    /// [`PrepareError`], as for a new one; the scene stays as it was.
+    pub fn set_blended_casters(
+        &mut self,
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        blended: BlendedCasters,
+    ) -> Result<(), PrepareError> {
+        if self.scene().blended_casters == blended {
+            return Ok(());
+        }
+        let mut scene = Arc::clone(&self.posed.scene);
+        Arc::make_mut(&mut scene).blended_casters = blended;
+        let (gpu_scene, _) = GpuScene::within_memory(gpu, layout, &scene, &self.posed.pose)
+            .map_err(|fault| PrepareError::Device(scene.name.clone(), fault))?;
+        let (rest, posed) = (scene.pose(None, 0.0), &mut self.posed);
+        (posed.clusters, posed.objects) = (SceneBoxes::new(&scene, &rest), SceneBoxes::of_instances(&scene));
+        for boxes in [&mut posed.clusters, &mut posed.objects] {
+            boxes.set_pose(|index| gpu_scene.instance_bounds(index));
+        }
+        (posed.scene, posed.rays) = (scene, PosedRays::default());
+        (self.gpu_scene, self.no_gpu_rays) = (gpu_scene, None);
+        Ok(())
+    }
+
     /// Makes the scene ready for edges that are traced, unless it is.
     ///
     /// # Errors
@@ -304,16 +332,15 @@ impl PosedScene {
         self.count(|_| true)
     }
 
-    /// Number of triangles that cast: all but those of blended surfaces.
+    /// Number of triangles that cast, those with holes included.
     pub fn casting_triangles(&self) -> u64 {
-        self.count(|alpha| alpha != AlphaMode::Blend)
+        self.count(|primitive| self.scene.casting(primitive) != Casting::Nothing)
     }
 
-    fn count(&self, wanted: impl Fn(AlphaMode) -> bool) -> u64 {
+    fn count(&self, wanted: impl Fn(&Primitive) -> bool) -> u64 {
         let triangles = |instance: &Instance| {
             let primitive = &self.scene.meshes[instance.mesh].primitives[instance.primitive];
-            let is_wanted = wanted(self.scene.materials[primitive.material].alpha);
-            if is_wanted { primitive.indices.len() as u64 / 3 } else { 0 }
+            if wanted(primitive) { primitive.indices.len() as u64 / 3 } else { 0 }
         };
         self.scene.instances().iter().map(triangles).sum()
     }
@@ -337,6 +364,7 @@ impl PosedScene {
 mod tests {
     use super::*;
     use shadowfit_render::Renderer;
+    use shadowfit_scene::AlphaMode;
     use shadowfit_scene::builtin::default_scene;
     use shadowfit_testing::renderer_gpu;
     use shadowfit_wgpu::ShadowMapDescriptor;
@@ -394,13 +422,21 @@ mod tests {
     }
 
     #[test]
-    fn gpu_triangles_of_blended_surfaces_do_not_cast() {
+    fn gpu_blended_surfaces_cast_where_they_are_opaque_unless_they_never_do() {
         let mut scene = default_scene();
-        let triangles = prepared(scene.clone()).1.expect("the default scene").triangles();
         for material in &mut scene.materials {
             material.alpha = AlphaMode::Blend;
         }
-        let blended = prepared(scene).1.expect("the default scene");
-        assert_eq!((blended.triangles(), blended.casting_triangles()), (triangles, 0));
+        let (gpu, prepared) = prepared(scene);
+        let mut prepared = prepared.expect("the default scene");
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
+        let triangles = prepared.triangles();
+        for (blended, casting) in [(BlendedCasters::Never, 0), (BlendedCasters::WhereOpaque, triangles)] {
+            prepared.set_blended_casters(&gpu, renderer.material_layout(), blended).expect("memory");
+            assert_eq!((prepared.triangles(), prepared.casting_triangles()), (triangles, casting));
+            assert_eq!(prepared.rays().tracer.len() as u64, casting);
+            let casters = prepared.gpu_scene.casters().moves.len();
+            assert_eq!(casters == 0, casting == 0, "{casters} casters");
+        }
     }
 }

@@ -31,7 +31,7 @@ use core::fmt;
 use shadowfit::{Aabb, Camera, FittedMap};
 use shadowfit_params::tool::Settings;
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
-use shadowfit_scene::Scene;
+use shadowfit_scene::{BlendedCasters, Scene};
 use shadowfit_study::{PrepareError, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapError;
 
@@ -364,6 +364,7 @@ impl Stage {
     /// The maps of the present view and settings; none where there is nothing to fit, with the
     /// reason as [`Self::problem`].
     pub fn maps(&mut self, size: [u32; 2]) -> Vec<FittedMap> {
+        self.follow_casters();
         let (side, mut shot) = self.shot(size);
         side.fit(&mut shot).maps.to_vec()
     }
@@ -371,6 +372,7 @@ impl Stage {
     /// Draws the present view into a target: the first technique up to the bar and the second one from there, where two
     /// are compared; a sample as its source does.
     pub fn draw(&mut self, target: &RenderTarget) {
+        self.follow_casters();
         if self.sample.is_some() {
             self.side.shown = None;
             self.draw_sample(target);
@@ -394,6 +396,26 @@ impl Stage {
         self.side.read_picture(&self.gpu, target);
         if let Some(other) = &mut self.other {
             other.read_picture(&self.gpu, target);
+        }
+    }
+
+    /// Lets blended surfaces cast as the settings say. What the frames before found out is forgotten if that changes.
+    fn follow_casters(&mut self) {
+        let casts = self.settings.view.blended_cast;
+        let blended = if casts { BlendedCasters::WhereOpaque } else { BlendedCasters::Never };
+        if self.scene().blended_casters == blended {
+            return;
+        }
+        let layout = self.side.evaluator.renderer.material_layout();
+        if let Err(error) = self.scene.set_blended_casters(&self.gpu, layout, blended) {
+            self.settings.view.blended_cast = !casts;
+            self.side.problem = Some(error.to_string());
+            return;
+        }
+        self.side.scene_changed();
+        self.why = why::PixelQuestion::default();
+        if let Some(other) = self.other.take() {
+            self.compare_with(Some(other.technique));
         }
     }
 

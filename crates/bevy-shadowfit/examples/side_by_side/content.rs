@@ -4,7 +4,7 @@ use std::path::Path;
 
 use shadowfit::glam::{Vec3, Vec4};
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_scene::{AlphaMode, Instance, Lens, Pose, Primitive, Scene, SceneError, load_gltf};
+use shadowfit_scene::{BlendedCasters, Casting, Instance, Lens, Pose, Primitive, Scene, SceneError, load_gltf};
 
 /// Vertical field of view where the scene has no camera, in radians.
 const FOV_Y: f32 = 0.785;
@@ -46,6 +46,7 @@ impl Content {
             }
             None => default_scene(),
         };
+        let scene = Scene { blended_casters: BlendedCasters::Never, ..scene };
         let pose = scene.pose(None, 0.0);
         let bounds = scene.bounds(&pose).map_or([Vec3::ZERO; 2], |bounds| [bounds.min, bounds.max]);
         Ok(Self { scene, pose, bounds })
@@ -83,9 +84,9 @@ impl Content {
         &self.scene.meshes[instance.mesh].primitives[instance.primitive]
     }
 
-    /// Whether an instance casts shadows: blended surfaces do not.
+    /// Whether an instance casts shadows.
     pub(crate) fn casts(&self, instance: &Instance) -> bool {
-        self.scene.materials[self.primitive(instance).material].alpha != AlphaMode::Blend
+        self.scene.casting(self.primitive(instance)) != Casting::Nothing
     }
 
     /// Colour of a vertex, linear; white where the scene has none.

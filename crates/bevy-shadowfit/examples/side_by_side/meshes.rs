@@ -86,7 +86,7 @@ fn material(made_of: &Material, base_color_texture: Option<Handle<Image>>) -> St
         perceptual_roughness: made_of.roughness,
         alpha_mode: match made_of.alpha {
             SceneAlpha::Opaque => AlphaMode::Opaque,
-            SceneAlpha::Mask { cutoff } => AlphaMode::Mask(cutoff),
+            SceneAlpha::Mask { cutoff } => AlphaMode::Mask(made_of.alpha.least_opaque().unwrap_or(cutoff)),
             SceneAlpha::Blend => AlphaMode::Blend,
         },
         // Truth knows no sides: what has a front and no back would let light through in the maps alone.

@@ -1,7 +1,7 @@
 //! The scene's triangles and their holes, ready for rays: those that Bevy draws into its maps.
 
 use shadowfit::glam::{DVec3, Vec2, Vec3};
-use shadowfit_scene::{AlphaMode, Image, Instance, Primitive};
+use shadowfit_scene::{Casting, Image, Instance, Primitive};
 use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
 use crate::content::Content;
@@ -31,7 +31,7 @@ fn alpha(image: &Image) -> AlphaImage {
 /// The cut-outs of all triangles of an instance whose material has holes.
 fn holes(content: &Content, instance: &Instance) -> Vec<CutOut> {
     let primitive = content.primitive(instance);
-    let AlphaMode::Mask { cutoff } = content.scene.materials[primitive.material].alpha else { return Vec::new() };
+    let Casting::CutOut(cutoff) = content.scene.casting(primitive) else { return Vec::new() };
     let is_mirrored = content.pose.is_mirrored(&content.scene, instance);
     // Triangles of mirrored instances have their corners in this order.
     let in_order = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };

@@ -30,7 +30,7 @@ pub(super) fn build() -> Scene {
     let mut builder = Builder::new("shadow-mapping", vec![floor::material()], vec![floor::image()]);
     floor::build(&mut builder);
     let root = figure_at_ease(&mut builder);
-    builder.scene.nodes[root].rest.scale = Vec3::splat(UNITS_PER_METRE);
+    builder.scene.nodes[root].rest.scale = Vec3::splat(UNITS_PER_METRE).as_dvec3();
     builder.view((EYE, EYE + FORWARD), LENS);
     let mut scene = builder.scene;
     let turn = rotations(root, TURN, TURN_KEYS, Quat::from_rotation_y);

@@ -322,6 +322,17 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: always_active,
     },
     Parameter {
+        id: "view.blended_cast",
+        group: Group::View,
+        label: "Blended surfaces cast",
+        unit: "",
+        help: "Lets surfaces that are blended cast shadows where their alpha is at least 0.5: many files blend everything. \
+           Turn it off for glass and smoke of higher alpha.",
+        kind: Kind::Toggle,
+        field: field!(view.blended_cast),
+        inert: always_active,
+    },
+    Parameter {
         id: "view.inset",
         group: Group::View,
         label: "Shadow map inset",

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use shadowfit_scene::Casting;
 use shadowfit_wgpu::ShadowMap;
 
 use super::Layouts;
@@ -102,8 +103,10 @@ impl MapPipelines {
 
     /// Pipeline of the shadow pass. Casters are double-sided.
     pub(crate) fn caster(&self, part: &Part) -> &wgpu::RenderPipeline {
-        let key = PartKey::of(part);
-        if key.masked { &self.caster_masked[usize::from(key.streams.surface)] } else { &self.caster }
+        match part.casting {
+            Casting::CutOut(_) => &self.caster_masked[usize::from(part.has.surface)],
+            Casting::Whole | Casting::Nothing => &self.caster,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The renderer's WGSL and its pictures. Tests that need a graphics device have `gpu` in their path, and `cargo xtask test`
 //! leaves them out on machines without one.
 
+mod alpha_gpu;
 mod clamp_gpu;
 mod devices;
 mod frames_gpu;

@@ -1,6 +1,6 @@
 //! Probes are the same whether fragments know their primitive or vertices number the triangles.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use shadowfit_render::Probe;
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
@@ -46,7 +46,7 @@ fn what_deforms_is_probed_in_its_pose_without_the_primitive_index() {
     let mut scene = sheets();
     let at_rest = scene.clone();
     scene.nodes[1].morph_weights = vec![-1.0];
-    scene.nodes[7].rest.translation += Vec3::Y * 0.8;
+    scene.nodes[7].rest.translation.y += 0.8;
     let eye = DVec3::new(1.0, 4.0, 6.0);
     let [indexed, unrolled] = FEATURES.map(|features| {
         let mut stage = stage(features, &at_rest, eye);

@@ -1,8 +1,8 @@
 //! A scene with all that parts of scenes can be: bent by a morph target or a skin, with holes, of glass, mirrored.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use shadowfit_scene::{
-    AlphaMode, Image, Material, Mesh, MorphTarget, Node, Primitive, Scene, Skin, Texture, Transform, Wrap,
+    AlphaMode, Geometry, Image, Material, Mesh, MorphTarget, Node, Primitive, Scene, Skin, Texture, Transform, Wrap,
 };
 
 /// Materials of the scene.
@@ -38,7 +38,7 @@ pub(crate) fn sheets() -> Scene {
 }
 
 fn node(mesh: Option<usize>, place: [f32; 3], scale: [f32; 3]) -> Node {
-    let rest = Transform { translation: place.into(), scale: scale.into(), ..Transform::default() };
+    let rest = Transform::new(place.into(), Quat::IDENTITY, scale.into());
     Node { mesh, rest, ..Node::default() }
 }
 
@@ -48,27 +48,29 @@ fn sheet(material: usize) -> Primitive {
     let corners = (0..side * side).map(|index| Vec2::new((index % side) as f32, (index / side) as f32) / CELLS as f32);
     let uvs: Vec<Vec2> = corners.collect();
     let cells = (0..CELLS * CELLS).map(|cell| cell / CELLS * side + cell % CELLS);
-    Primitive {
-        material,
+    let geometry = Geometry {
         positions: uvs.iter().map(|uv| Vec3::new(uv.x * 2.0 - 1.0, 0.0, uv.y * 2.0 - 1.0)).collect(),
         normals: vec![Vec3::Y; uvs.len()],
         indices: cells.flat_map(|a| [a, a + side, a + 1, a + 1, a + side, a + side + 1]).collect(),
         uvs,
-        ..Primitive::default()
-    }
+        ..Geometry::default()
+    };
+    Primitive { material, ..geometry.into() }
 }
 
 fn morphed() -> Primitive {
-    let primitive = sheet(PLAIN);
+    let mut primitive = sheet(PLAIN);
     let positions = primitive.positions.iter().map(|at| Vec3::Y * (at.x * 2.0).sin() * 0.4).collect();
-    Primitive { morphs: vec![MorphTarget { positions, normals: Vec::new() }], ..primitive }
+    primitive.morphs = vec![MorphTarget { positions, normals: Vec::new() }];
+    primitive
 }
 
 /// Each half follows a joint.
 fn skinned() -> Primitive {
-    let primitive = sheet(PLAIN);
-    let weights = primitive.uvs.iter().map(|uv| Vec4::new(1.0 - uv.x, uv.x, 0.0, 0.0)).collect();
-    Primitive { joints: vec![[0, 1, 0, 0]; primitive.uvs.len()], weights, ..primitive }
+    let mut primitive = sheet(PLAIN);
+    primitive.weights = primitive.uvs.iter().map(|uv| Vec4::new(1.0 - uv.x, uv.x, 0.0, 0.0)).collect();
+    primitive.joints = vec![[0, 1, 0, 0]; primitive.uvs.len()];
+    primitive
 }
 
 fn materials() -> Vec<Material> {

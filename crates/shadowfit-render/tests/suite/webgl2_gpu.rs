@@ -141,7 +141,7 @@ fn maps_that_are_kept_are_mended_where_casters_move() {
     };
     let before = drawn(&scene, true);
     scene.nodes[1].morph_weights = vec![-1.0];
-    scene.nodes[7].rest.translation += Vec3::Y * 0.8;
+    scene.nodes[7].rest.translation.y += 0.8;
     let kept = drawn(&scene, true);
     let anew = drawn(&scene, false);
     assert_ne!(before, kept, "nothing moved");

@@ -1,17 +1,21 @@
 //! Typed reads from buffers, every range checked before anything is allocated or read.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::ops::Deref;
+use std::rc::Rc;
 
 use gltf::json::accessor::{Accessor, ComponentType, sparse::Sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, buffer};
 
 use super::container::MAX_FILE_BYTES;
+use super::extensions::{COMPRESSED, DECOMPRESS};
 use super::uri::{Folder, read_uri};
 use crate::error::Problem;
 
-/// Elements that one import may decode. Files can refer to the same data many times, so that their
-/// size alone does not bound the memory; this many 16-byte elements fit in 2 GiB.
+/// Elements that one import may decode. Accessors may overlap, so that the size of a file alone does not bound the memory;
+/// this many 16-byte elements fit in 2 GiB. Data that several primitives share counts once.
 const MAX_ELEMENTS: u64 = 1 << 27;
 
 /// Elements of an accessor that has no data of its own (all zero, or sparse over zero): its count is
@@ -32,6 +36,17 @@ pub(crate) struct Reader<'a> {
     root: &'a Root,
     buffers: Vec<Result<Vec<u8>, Problem>>,
     elements_left: Cell<u64>,
+    /// Data of the sparse accessors that were read, by their index, with the elements that they replace.
+    dense: RefCell<HashMap<usize, Rc<[u8]>>>,
+}
+
+/// Elements of an accessor that are read.
+#[derive(Clone, Copy)]
+pub(crate) enum Elements<'a> {
+    /// All of them, in their order.
+    All,
+    /// Those with these indices, all less than the accessor's count, in the order of the list.
+    Listed(&'a [u32]),
 }
 
 /// Where an accessor's data is and how it is laid out, checked.
@@ -44,6 +59,25 @@ struct Layout<'a> {
     normalized: bool,
 }
 
+/// The bytes of an accessor's elements.
+enum Bytes<'a> {
+    /// In their buffer.
+    Plain(&'a [u8]),
+    /// Those of a sparse accessor, put together.
+    Dense(Rc<[u8]>),
+}
+
+impl Deref for Bytes<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Plain(bytes) => bytes,
+            Self::Dense(bytes) => bytes,
+        }
+    }
+}
+
 impl<'a> Reader<'a> {
     /// Loads the buffers. One that cannot be loaded is a problem only for what reads it.
     pub(crate) fn new(root: &'a Root, mut binary: Option<Vec<u8>>, folder: Folder<'_>) -> Self {
@@ -54,7 +88,17 @@ impl<'a> Reader<'a> {
             bytes_left -= loaded.as_ref().map_or(0, |bytes| bytes.len() as u64).min(bytes_left);
             buffers.push(loaded);
         }
-        Self { root, buffers, elements_left: Cell::new(MAX_ELEMENTS) }
+        Self { root, buffers, elements_left: Cell::new(MAX_ELEMENTS), dense: RefCell::default() }
+    }
+
+    /// Number of elements of an accessor of `components` each, whose data is there.
+    pub(crate) fn checked_count(
+        &self,
+        index: Index<Accessor>,
+        element: &str,
+        components: usize,
+    ) -> Result<usize, Problem> {
+        Ok(self.layout(self.accessor(index, element)?, components, &named(element, index))?.count)
     }
 
     /// Number of elements that an accessor declares.
@@ -73,6 +117,12 @@ impl<'a> Reader<'a> {
         Err(Problem::new(named(element, index), format!("it has {has} elements for {count} positions")))
     }
 
+    /// Whether an accessor has data of its own.
+    pub(crate) fn has_data(&self, index: Index<Accessor>) -> bool {
+        let accessor = self.root.accessors.get(index.value());
+        accessor.is_some_and(|accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some())
+    }
+
     /// Number of components of an accessor's elements, 1 to 16; 0 where its type is invalid.
     pub(crate) fn components(&self, index: Index<Accessor>) -> usize {
         match self.root.accessors.get(index.value()).map(|accessor| accessor.type_) {
@@ -88,22 +138,35 @@ impl<'a> Reader<'a> {
         element: &str,
         integers: Integers,
     ) -> Result<Vec<[f32; N]>, Problem> {
-        let always = integers == Integers::Normalized;
-        self.read(index, element, |bytes, component, normalized| float(bytes, component, normalized || always))
+        self.some_floats(index, element, integers, Elements::All)
     }
 
-    /// All elements as unsigned integers.
+    /// Some elements as floats.
+    pub(crate) fn some_floats<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        element: &str,
+        integers: Integers,
+        elements: Elements<'_>,
+    ) -> Result<Vec<[f32; N]>, Problem> {
+        let always = integers == Integers::Normalized;
+        let convert = |bytes: &[u8], component, normalized| float(bytes, component, normalized || always);
+        self.read(index, element, elements, convert)
+    }
+
+    /// Some elements as unsigned integers.
     pub(crate) fn integers<const N: usize>(
         &self,
         index: Index<Accessor>,
         element: &str,
+        elements: Elements<'_>,
     ) -> Result<Vec<[u32; N]>, Problem> {
         use ComponentType::{U8, U16, U32};
         let accessor = self.accessor(index, element)?;
         if !matches!(accessor.component_type, Checked::Valid(kind) if matches!(kind.0, U8 | U16 | U32)) {
             return Err(Problem::new(named(element, index), "its components are not unsigned integers"));
         }
-        self.read(index, element, |bytes, component, _| unsigned(bytes, component))
+        self.read(index, element, elements, |bytes, component, _| unsigned(bytes, component))
     }
 
     /// The bytes of a buffer view.
@@ -135,24 +198,57 @@ impl<'a> Reader<'a> {
         &self,
         index: Index<Accessor>,
         element: &str,
+        elements: Elements<'_>,
         convert: impl Fn(&[u8], ComponentType, bool) -> T,
     ) -> Result<Vec<[T; N]>, Problem> {
         let name = named(element, index);
         let accessor = self.accessor(index, element)?;
         let layout = self.layout(accessor, N, &name)?;
-        self.spend(layout.count, &name)?;
+        let count = match elements {
+            Elements::All => layout.count,
+            Elements::Listed(list) => list.len(),
+        };
+        self.spend(count, &name)?;
         let size = layout.component.size();
-        let decode = |bytes: &[u8]| -> [T; N] {
+        let data = self.data(accessor, index, &layout, size * N, &name)?;
+        let Some((bytes, stride)) = data else { return Ok(vec![[T::default(); N]; count]) };
+        let decode = |at: usize| -> [T; N] {
+            let bytes = &bytes[at * stride..];
             std::array::from_fn(|c| convert(&bytes[c * size..], layout.component, layout.normalized))
         };
-        let mut values = match layout.bytes {
-            Some(bytes) => (0..layout.count).map(|i| decode(&bytes[i * layout.stride..])).collect(),
-            None => vec![[T::default(); N]; layout.count],
+        Ok(match elements {
+            Elements::All => (0..count).map(decode).collect(),
+            Elements::Listed(list) => list.iter().map(|&at| decode(at as usize)).collect(),
+        })
+    }
+
+    /// The bytes of all elements, each of `size`, and the distance from one to the next; `None` where all are zero. The
+    /// elements of a sparse accessor are put together once, however often it is read.
+    fn data<'b>(
+        &self,
+        accessor: &Accessor,
+        index: Index<Accessor>,
+        layout: &Layout<'b>,
+        size: usize,
+        name: &str,
+    ) -> Result<Option<(Bytes<'b>, usize)>, Problem> {
+        let Some(sparse) = &accessor.sparse else {
+            return Ok(layout.bytes.map(|bytes| (Bytes::Plain(bytes), layout.stride)));
         };
-        if let Some(sparse) = &accessor.sparse {
-            self.overlay(sparse, &mut values, size * N, &name, decode)?;
+        if let Some(dense) = self.dense.borrow().get(&index.value()) {
+            return Ok(Some((Bytes::Dense(Rc::clone(dense)), size)));
         }
-        Ok(values)
+        self.spend(layout.count, name)?;
+        let mut dense = vec![0; layout.count * size];
+        if let Some(bytes) = layout.bytes {
+            for (element, at) in dense.chunks_exact_mut(size).zip((0..).step_by(layout.stride)) {
+                element.copy_from_slice(&bytes[at..][..size]);
+            }
+        }
+        self.overlay(sparse, &mut dense, size, name)?;
+        let dense: Rc<[u8]> = dense.into();
+        self.dense.borrow_mut().insert(index.value(), Rc::clone(&dense));
+        Ok(Some((Bytes::Dense(dense), size)))
     }
 
     fn layout(&self, accessor: &Accessor, components: usize, name: &str) -> Result<Layout<'_>, Problem> {
@@ -179,7 +275,8 @@ impl<'a> Reader<'a> {
         };
         let bytes = self.view(view, name)?;
         let declared = self.root.buffer_views[view.value()].byte_stride;
-        let stride = declared.map_or(size, |stride| stride.0);
+        // Some exporters write 0 for elements without gaps.
+        let stride = declared.map(|stride| stride.0).filter(|&stride| stride > 0).unwrap_or(size);
         if stride < size {
             return Err(wrong(format!("its stride of {stride} bytes is smaller than its elements of {size}")));
         }
@@ -196,15 +293,8 @@ impl<'a> Reader<'a> {
         Ok(Layout { bytes: Some(bytes), stride, count, component, normalized })
     }
 
-    /// Replaces the elements that a sparse accessor lists.
-    fn overlay<T: Copy>(
-        &self,
-        sparse: &Sparse,
-        values: &mut [T],
-        size: usize,
-        name: &str,
-        decode: impl Fn(&[u8]) -> T,
-    ) -> Result<(), Problem> {
+    /// Replaces the elements, each of `size` bytes, that a sparse accessor lists.
+    fn overlay(&self, sparse: &Sparse, dense: &mut [u8], size: usize, name: &str) -> Result<(), Problem> {
         let name = format!("{name}, sparse");
         let wrong = |reason: &str| Problem::new(name.clone(), reason);
         let Checked::Valid(component) = sparse.indices.component_type else {
@@ -212,7 +302,7 @@ impl<'a> Reader<'a> {
         };
         let component = component.0;
         let count = sparse.count.0;
-        if count > values.len() as u64 {
+        if count > (dense.len() / size) as u64 {
             return Err(wrong("it replaces more elements than there are"));
         }
         let part = |view, offset: u64, size: usize| -> Result<&[u8], Problem> {
@@ -224,13 +314,14 @@ impl<'a> Reader<'a> {
         let indices = indices.chunks_exact(component.size());
         for (index, replacement) in indices.zip(replacements.chunks_exact(size)) {
             let index = unsigned(index, component) as usize;
-            let value = values.get_mut(index).ok_or_else(|| wrong("one of its indices is out of range"))?;
-            *value = decode(replacement);
+            let element = dense.chunks_exact_mut(size).nth(index);
+            element.ok_or_else(|| wrong("one of its indices is out of range"))?.copy_from_slice(replacement);
         }
         Ok(())
     }
 
-    fn spend(&self, count: usize, name: &str) -> Result<(), Problem> {
+    /// Counts elements that are decoded or copied, and refuses more than an import may have.
+    pub(crate) fn spend(&self, count: usize, name: &str) -> Result<(), Problem> {
         let left = self.elements_left.get().checked_sub(count as u64).ok_or_else(|| {
             Problem::new(name, format!("the file decodes to more than {MAX_ELEMENTS} elements"))
                 .hint("Split or simplify the scene")
@@ -251,7 +342,11 @@ fn load_buffer(
     let wrong = |reason: String| Problem::new(format!("buffers[{index}]"), reason);
     let bytes = match &buffer.uri {
         Some(uri) => read_uri(folder, uri, max_bytes).map_err(|reason| wrong(reason).hint(HINT))?,
-        None => binary.take().ok_or_else(|| wrong("it has neither a URI nor a binary chunk".to_owned()))?,
+        None => binary.take().ok_or_else(|| {
+            let problem = wrong("it has neither a URI nor a binary chunk".to_owned());
+            let is_compressed = |name| buffer.extensions.as_ref().is_some_and(|own| own.others.contains_key(name));
+            if COMPRESSED.into_iter().any(is_compressed) { problem.hint(DECOMPRESS) } else { problem }
+        })?,
     };
     let claimed = buffer.byte_length.0;
     if claimed > bytes.len() as u64 {

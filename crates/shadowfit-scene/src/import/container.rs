@@ -2,23 +2,19 @@
 //!
 //! The gltf crate's own GLB reader and validation are not used: both can panic on bad input.
 
+use std::borrow::Cow;
 use std::path::Path;
 
-use gltf::json::{Root, Value, deserialize};
+use gltf::json::{Root, Value, deserialize, serialize};
 
-use crate::SceneError;
+use super::{extensions, repair, transforms};
+use crate::{SceneError, Transform};
 
 /// Largest file read, glTF and buffers alike: what a GLB can hold at most.
 pub(crate) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
 
-/// Extensions that a file may require.
-const SUPPORTED: [&str; 5] = [
-    "EXT_texture_webp",
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
+/// What some editors write before UTF-8 text.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// A parsed file.
 pub(crate) struct Source {
@@ -26,60 +22,67 @@ pub(crate) struct Source {
     pub(crate) root: Root,
     /// The binary chunk of a GLB.
     pub(crate) binary: Option<Vec<u8>>,
-    /// Extensions that the file uses, does not require, and that import ignores.
-    pub(crate) ignored_extensions: Vec<String>,
-    /// Number of animation channels that move no node, which import ignores.
-    pub(crate) channels_without_node: usize,
+    /// Transforms of the nodes, in the precision of the file.
+    pub(crate) transforms: Vec<Transform>,
+    /// Sentences about extensions that the file uses and import ignores.
+    pub(crate) notes: Vec<String>,
 }
 
 /// Parses the content of the file `path`. Before that, `tell_json` is called with the length of the JSON, in bytes.
 pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> Result<Source, SceneError> {
-    let malformed = |(element, reason): (&str, String)| SceneError::Malformed {
+    let malformed = |(element, reason)| malformed(path, element, reason);
+    let (json, binary) = split(bytes).map_err(malformed)?;
+    tell_json(json.len() as u64);
+    let (json, root) = readable(path, json)?;
+    check_version(&root.asset.version).map_err(malformed)?;
+    extensions::check(path, root.extensions_required.iter().map(String::as_str), has_plain_textures(&root))?;
+    let transforms = transforms::read(&json).map_err(|error| malformed(("JSON", error.to_string())))?;
+    let notes = root.extensions_used.iter().filter_map(|name| extensions::note(name)).collect();
+    Ok(Source { root, binary: binary.map(<[u8]>::to_vec), transforms, notes })
+}
+
+/// The JSON in a form that the gltf crate reads, and its content. Where the crate cannot read it, other versions of glTF
+/// and required extensions are refused first, since their own layout may be the reason.
+fn readable<'a>(path: &Path, json: &'a [u8]) -> Result<(Cow<'a, [u8]>, Root), SceneError> {
+    let unread = match deserialize::from_slice(json) {
+        Ok(root) => return Ok((Cow::Borrowed(json), root)),
+        Err(error) => error,
+    };
+    let malformed = |(element, reason)| malformed(path, element, reason);
+    let mut loose: Value = deserialize::from_slice(json).map_err(|error| malformed(("JSON", error.to_string())))?;
+    check_version(version_of(&loose)).map_err(malformed)?;
+    let required = loose["extensionsRequired"].as_array().into_iter().flatten();
+    extensions::check(path, required.filter_map(Value::as_str), true)?;
+    repair::complete(&mut loose);
+    let repaired = serialize::to_vec(&loose).and_then(|json| Ok((deserialize::from_slice(&json)?, json)));
+    // The first error has the line and column of the file.
+    let (root, json) = repaired.map_err(|_| malformed(("JSON", unread.to_string())))?;
+    Ok((Cow::Owned(json), root))
+}
+
+/// Whether each texture has an image that needs no extension.
+fn has_plain_textures(root: &Root) -> bool {
+    root.textures.iter().all(|texture| texture.source.value() < root.images.len())
+}
+
+fn malformed(path: &Path, element: &str, reason: String) -> SceneError {
+    SceneError::Malformed {
         path: path.to_owned(),
         element: element.to_owned(),
         reason,
         hint: "Export it again as glTF 2.0, or fetch the file again if it was cut short",
-    };
-    let (json, binary) = split(bytes).map_err(malformed)?;
-    tell_json(json.len() as u64);
-    let mut parsed = deserialize::from_slice::<Root>(json);
-    let mut channels_without_node = 0;
-    if parsed.is_err() {
-        // The JSON may be sound and only of another version, or use an extension's own layout.
-        let mut loose = deserialize::from_slice(json).map_err(|e| malformed(("JSON", e.to_string())))?;
-        check_version(version_of(&loose)).map_err(malformed)?;
-        let required = loose["extensionsRequired"].as_array().into_iter().flatten();
-        check_extensions(path, required.filter_map(Value::as_str))?;
-        channels_without_node = drop_channels_without_node(&mut loose);
-        if channels_without_node > 0 {
-            parsed = deserialize::from_value(loose);
-        }
     }
-    let root = parsed.map_err(|error| malformed(("JSON", error.to_string())))?;
-    check_version(&root.asset.version).map_err(malformed)?;
-    check_extensions(path, root.extensions_required.iter().map(String::as_str))?;
-    let used = root.extensions_used.iter();
-    let ignored_extensions = used.filter(|e| !SUPPORTED.contains(&e.as_str())).cloned().collect();
-    Ok(Source { root, binary: binary.map(<[u8]>::to_vec), ignored_extensions, channels_without_node })
-}
-
-/// Removes the animation channels that move no node, such as channels of `KHR_animation_pointer`. Returns their number.
-/// glTF allows them, but the gltf crate refuses their file.
-fn drop_channels_without_node(json: &mut Value) -> usize {
-    let mut dropped = 0;
-    for animation in json.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
-        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else { continue };
-        let before = channels.len();
-        channels.retain(|channel| channel["target"].get("node").is_some());
-        dropped += before - channels.len();
-    }
-    dropped
 }
 
 type Split<'a> = (&'a [u8], Option<&'a [u8]>);
 
-/// Separates the JSON from the binary chunk.
+/// Separates the JSON from the binary chunk. A byte order mark before the JSON is skipped.
 fn split(bytes: &[u8]) -> Result<Split<'_>, (&'static str, String)> {
+    let (json, binary) = chunks(bytes)?;
+    Ok((json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(json), binary))
+}
+
+fn chunks(bytes: &[u8]) -> Result<Split<'_>, (&'static str, String)> {
     if bytes.is_empty() {
         return Err(("file", "it is empty".to_owned()));
     }
@@ -137,28 +140,6 @@ fn check_version(version: &str) -> Result<(), (&'static str, String)> {
         return Ok(());
     }
     Err(("asset.version", format!("it is {version:?}, not 2.0")))
-}
-
-fn check_extensions<'a>(path: &Path, required: impl Iterator<Item = &'a str>) -> Result<(), SceneError> {
-    for (index, name) in required.enumerate() {
-        if !SUPPORTED.contains(&name) {
-            return Err(SceneError::Extension {
-                path: path.to_owned(),
-                element: format!("extensionsRequired[{index}]"),
-                name: name.to_owned(),
-                hint: extension_hint(name),
-            });
-        }
-    }
-    Ok(())
-}
-
-fn extension_hint(name: &str) -> &'static str {
-    if name.contains("draco") || name.contains("meshopt") {
-        "Export the file without mesh compression, or decompress it with a tool such as glTF-Transform"
-    } else {
-        "Export the file without it"
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use glam::Vec4;
 use gltf::json::mesh::{self, Semantic};
 use gltf::json::validation::Checked;
 
-use super::accessor::{Integers, Reader};
+use super::accessor::{Elements, Integers, Reader};
 use crate::error::Problem;
 
 /// Sets of four influences read at most; files in the wild have one or two.
@@ -12,12 +12,12 @@ const MAX_SETS: u32 = 8;
 
 type Influences = (Vec<[u16; 4]>, Vec<Vec4>);
 
-/// Loads joints and weights of `count` vertices; both empty where the primitive has none.
+/// Loads joints and weights of some of `count` vertices. Both are empty if the primitive has none.
 pub(crate) fn load(
     reader: &Reader,
     json: &mesh::Primitive,
     element: &str,
-    count: usize,
+    (count, vertices): (usize, Elements<'_>),
 ) -> Result<Influences, Problem> {
     let mut strongest: Vec<[(u16, f32); 4]> = Vec::new();
     for set in 0..MAX_SETS {
@@ -33,10 +33,10 @@ pub(crate) fn load(
         for (name, index) in [("JOINTS", joints), ("WEIGHTS", weights)] {
             reader.check_count(index, &format!("{element}.attributes.{name}_{set}"), count)?;
         }
-        let joints = reader.integers::<4>(joints, &format!("{element}.attributes.JOINTS_{set}"))?;
+        let joints = reader.integers::<4>(joints, &format!("{element}.attributes.JOINTS_{set}"), vertices)?;
         let name = format!("{element}.attributes.WEIGHTS_{set}");
-        let weights = reader.floats::<4>(weights, &name, Integers::Normalized)?;
-        strongest.resize(count, [(0, 0.0); 4]);
+        let weights = reader.some_floats::<4>(weights, &name, Integers::Normalized, vertices)?;
+        strongest.resize(joints.len(), [(0, 0.0); 4]);
         for (slots, (joints, weights)) in strongest.iter_mut().zip(joints.into_iter().zip(weights)) {
             for (joint, weight) in joints.into_iter().zip(weights) {
                 insert(slots, joint, weight);

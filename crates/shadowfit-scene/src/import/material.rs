@@ -27,6 +27,8 @@ pub(crate) struct Look {
     pub(crate) uv_set: u32,
     /// Texture transform of the normal map, if there is one.
     pub(crate) uv_from_texcoord: Option<[Vec3; 2]>,
+    /// Whether the material cuts out all of its surface.
+    pub(crate) is_hidden: bool,
 }
 
 /// Loads each material at most once, and only those that a primitive uses.
@@ -36,6 +38,8 @@ pub(crate) struct Materials<'a> {
     images: Images<'a>,
     looks: HashMap<usize, Look>,
     loaded: Vec<Material>,
+    /// Number of blended ones.
+    blended: usize,
 }
 
 /// A reference to a texture from a material.
@@ -49,7 +53,7 @@ struct Use<'a> {
 impl<'a> Materials<'a> {
     /// Holds the default material only.
     pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, images: Images<'a>) -> Self {
-        Self { root, reader, images, looks: HashMap::new(), loaded: vec![Material::default()] }
+        Self { root, reader, images, looks: HashMap::new(), loaded: vec![Material::default()], blended: 0 }
     }
 
     /// The look of a primitive's material, loaded if need be.
@@ -70,12 +74,22 @@ impl<'a> Materials<'a> {
     }
 
     /// The materials and images for the scene.
-    pub(crate) fn finish(self) -> (Vec<Material>, Vec<Image>) {
+    pub(crate) fn finish(self, notes: &mut Notes) -> (Vec<Material>, Vec<Image>) {
+        if self.blended > 0 {
+            notes.add(format!(
+                "blended materials cast where their alpha, with texture and vertex colour, is at least 0.5: {}",
+                self.blended
+            ));
+        }
         (self.loaded, self.images.finish())
     }
 
     fn load(&mut self, json: &json::Material, element: &str, notes: &mut Notes) -> Result<Look, Problem> {
-        let base = base_color_use(json, element);
+        let gloss = SpecularGlossiness::of(json, element)?;
+        let base = match &gloss {
+            Some(gloss) => gloss.texture(element),
+            None => base_color_use(json, element),
+        };
         let transform = json.normal_texture.as_ref().and_then(normal_transform);
         let normal = json.normal_texture.as_ref().map(|info| Use {
             element: format!("{element}.normalTexture"),
@@ -99,11 +113,17 @@ impl<'a> Materials<'a> {
             normal_texture = None;
         }
         let mut material = plain(json, element, notes);
+        if let Some(gloss) = &gloss {
+            gloss.apply(&mut material);
+        }
         material.base_color_texture = base_color_texture;
         material.normal_texture = normal_texture;
+        if material.alpha == AlphaMode::Blend {
+            self.blended += 1;
+        }
         self.loaded.push(material);
         let uv_from_texcoord = normal_texture.map(|texture| texture.uv_from_texcoord);
-        Ok(Look { material: self.loaded.len() - 1, uv_set, uv_from_texcoord })
+        Ok(Look { material: self.loaded.len() - 1, uv_set, uv_from_texcoord, is_hidden: is_hidden(json) })
     }
 
     /// A texture; `None` where its image cannot be used.
@@ -176,13 +196,55 @@ fn webp_source(texture: &texture::Texture, element: &str) -> Result<Option<usize
 
 fn base_color_use<'a>(json: &'a json::Material, element: &str) -> Option<Use<'a>> {
     let info = json.pbr_metallic_roughness.base_color_texture.as_ref()?;
-    let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
-    Some(Use {
-        element: format!("{element}.pbrMetallicRoughness.baseColorTexture"),
-        texture: info.index,
-        uv_set: transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord),
-        transform,
-    })
+    Some(texture_use(info, format!("{element}.pbrMetallicRoughness.baseColorTexture")))
+}
+
+fn texture_use(info: &texture::Info, element: String) -> Use<'_> {
+    let transform = info.extensions.as_ref().and_then(|own| own.texture_transform.as_ref());
+    let uv_set = transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord);
+    Use { element, texture: info.index, uv_set, transform }
+}
+
+/// Whether a mask cuts out all of a surface: no alpha reaches a cutoff above 1.
+fn is_hidden(json: &json::Material) -> bool {
+    let is_masked = matches!(json.alpha_mode, Checked::Valid(JsonAlpha::Mask));
+    is_masked && json.alpha_cutoff.is_some_and(|cutoff| cutoff.0 > 1.0)
+}
+
+/// `KHR_materials_pbrSpecularGlossiness`: base colour and alpha of materials from before metallic-roughness. Its
+/// reflections are those of a non-metal.
+#[derive(serde::Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct SpecularGlossiness {
+    diffuse_factor: [f32; 4],
+    diffuse_texture: Option<texture::Info>,
+    glossiness_factor: f32,
+}
+
+impl Default for SpecularGlossiness {
+    fn default() -> Self {
+        Self { diffuse_factor: [1.0; 4], diffuse_texture: None, glossiness_factor: 1.0 }
+    }
+}
+
+impl SpecularGlossiness {
+    fn of(json: &json::Material, element: &str) -> Result<Option<Self>, Problem> {
+        const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
+        let Some(value) = json.extensions.as_ref().and_then(|own| own.others.get(NAME)) else { return Ok(None) };
+        let wrong = |error: gltf::json::Error| Problem::new(format!("{element}.extensions.{NAME}"), error.to_string());
+        deserialize::from_value(value.clone()).map(Some).map_err(wrong)
+    }
+
+    fn texture(&self, element: &str) -> Option<Use<'_>> {
+        let name = format!("{element}.extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture");
+        self.diffuse_texture.as_ref().map(|info| texture_use(info, name))
+    }
+
+    fn apply(&self, material: &mut Material) {
+        material.base_color = Vec4::from_array(self.diffuse_factor.map(unit));
+        material.metallic = 0.0;
+        material.roughness = 1.0 - unit(self.glossiness_factor);
+    }
 }
 
 /// The gltf crate leaves this extension of normal textures unparsed.

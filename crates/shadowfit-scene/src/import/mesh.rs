@@ -1,94 +1,200 @@
 //! Primitives: attributes, indices, morph targets and joint influences.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::accessor::Accessor;
 use gltf::json::mesh::{self, Mode, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, mesh::MorphTarget as JsonTarget};
 
-use super::accessor::{Integers, Reader};
+use super::accessor::{Elements, Integers, Reader};
+use super::extensions::{COMPRESSED, DECOMPRESS};
 use super::influence;
 use super::material::{Look, unit};
 use super::notes::{Notes, Tally};
 use super::surface;
-use super::topology::{triangle_list, without_triangles};
+use super::topology::{UsedVertices, triangle_list, without_triangles};
 use crate::error::Problem;
-use crate::{MorphTarget, Primitive};
+use crate::{Geometry, MorphTarget, Primitive};
 
-/// Greatest coordinate accepted, in metres: the product of three of them, as in a volume, is still
-/// finite in f32.
+/// Greatest coordinate accepted, in metres: transforms in f64 are exact to a millimetre up to here, and the product of
+/// three coordinates, as in a volume, is still finite in f32.
 pub(crate) const MAX_COORDINATE: f32 = 1e12;
+
+/// Loads geometry once, however many primitives share it.
+pub(crate) struct Geometries<'a> {
+    reader: &'a Reader<'a>,
+    known: HashMap<Key, Arc<Geometry>>,
+    used: UsedVertices,
+}
+
+/// All that decides the geometry of a primitive: its accessors, and the textures' coordinates.
+#[derive(PartialEq, Eq, Hash)]
+struct Key {
+    mode: u32,
+    indices: Option<usize>,
+    attributes: Vec<(Checked<Semantic>, usize)>,
+    /// Positions and normals of each morph target.
+    targets: Vec<[Option<usize>; 2]>,
+    uv_set: u32,
+    /// Bits of the normal map's texture transform.
+    tangents: Option<[[u32; 3]; 2]>,
+}
+
+impl Key {
+    fn new(json: &mesh::Primitive, mode: Mode, look: &Look) -> Self {
+        let number = |index: Option<Index<Accessor>>| index.map(|index| index.value());
+        let targets = json.targets.iter().flatten();
+        Self {
+            mode: mode.as_gl_enum(),
+            indices: number(json.indices),
+            attributes: json.attributes.iter().map(|(name, index)| (name.clone(), index.value())).collect(),
+            targets: targets.map(|target| [number(target.positions), number(target.normals)]).collect(),
+            uv_set: look.uv_set,
+            tangents: look.uv_from_texcoord.map(|rows| rows.map(|row| row.to_array().map(f32::to_bits))),
+        }
+    }
+}
+
+impl<'a> Geometries<'a> {
+    /// Loads nothing yet.
+    pub(crate) fn new(reader: &'a Reader<'a>) -> Self {
+        Self { reader, known: HashMap::new(), used: UsedVertices::default() }
+    }
+
+    /// Loads a primitive with the look of its material; `None` where it has no triangles to draw.
+    pub(crate) fn load(
+        &mut self,
+        json: &mesh::Primitive,
+        element: &str,
+        look: &Look,
+        notes: &mut Notes,
+    ) -> Result<Option<Primitive>, Problem> {
+        let Checked::Valid(mode) = json.mode else {
+            return Err(Problem::new(format!("{element}.mode"), "it is not a primitive mode"));
+        };
+        if let Some(kind) = without_triangles(mode) {
+            notes.add(format!("{element}: {kind} skipped: only triangles are drawn"));
+            return Ok(None);
+        }
+        let Some(&positions) = json.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+            notes.add(format!("{element}: skipped: it has no positions"));
+            return Ok(None);
+        };
+        let key = Key::new(json, mode, look);
+        let geometry = if let Some(known) = self.known.get(&key) {
+            Arc::clone(known)
+        } else {
+            let made = Arc::new(self.decode((json, element), (mode, positions), look, notes)?);
+            self.known.insert(key, Arc::clone(&made));
+            made
+        };
+        Ok(Some(Primitive { material: look.material, geometry }))
+    }
+
+    fn decode(
+        &mut self,
+        (json, element): (&mesh::Primitive, &str),
+        (mode, positions): (Mode, Index<Accessor>),
+        look: &Look,
+        notes: &mut Notes,
+    ) -> Result<Geometry, Problem> {
+        let reader = self.reader;
+        let name = format!("{element}.attributes.POSITION");
+        check_plain(reader, json, positions, element)?;
+        let count = reader.checked_count(positions, &name, 3)?;
+        let mut indices = indices(reader, json, element, (mode, count))?;
+        let used = self.used.compact(&mut indices, count);
+        let vertices = used.as_deref().map_or(Elements::All, Elements::Listed);
+        let attributes = Attributes { reader, json, element, count, vertices };
+        let mut geometry = Geometry {
+            positions: attributes.positions(positions, &name)?,
+            normals: attributes.vectors(&Semantic::Normals, Vec3::from_array)?,
+            tangents: attributes.vectors(&Semantic::Tangents, Vec4::from_array)?,
+            uvs: attributes.uvs(look.uv_set, notes)?,
+            colors: attributes.colors()?,
+            indices,
+            morphs: attributes.morphs()?,
+            ..Geometry::default()
+        };
+        (geometry.joints, geometry.weights) = influence::load(reader, json, element, (count, vertices))?;
+        complete(&mut geometry, mode, look, notes);
+        Ok(geometry)
+    }
+}
+
+/// Refuses a primitive whose vertices are there in compressed form only.
+fn check_plain(
+    reader: &Reader,
+    json: &mesh::Primitive,
+    positions: Index<Accessor>,
+    element: &str,
+) -> Result<(), Problem> {
+    let is_compressed = |name: &&str| json.extensions.as_ref().is_some_and(|own| own.others.contains_key(*name));
+    let Some(name) = COMPRESSED.into_iter().find(is_compressed).filter(|_| !reader.has_data(positions)) else {
+        return Ok(());
+    };
+    Err(Problem::new(element, format!("it is compressed by {name} and has no plain copy")).hint(DECOMPRESS))
+}
+
+/// Indices of a triangle list, all below `count`.
+fn indices(
+    reader: &Reader,
+    json: &mesh::Primitive,
+    element: &str,
+    (mode, count): (Mode, usize),
+) -> Result<Vec<u32>, Problem> {
+    let Some(index) = json.indices else {
+        let all: Vec<u32> = (0..count as u32).collect();
+        return Ok(triangle_list(mode, &all));
+    };
+    let element = format!("{element}.indices");
+    let corners = reader.integers::<1>(index, &element, Elements::All)?;
+    let corners: Vec<u32> = corners.into_iter().map(|[corner]| corner).collect();
+    if let Some(at) = corners.iter().position(|&corner| corner as usize >= count) {
+        let reason = format!("index {at} is {}, there are {count} vertices", corners[at]);
+        return Err(Problem::new(format!("{element}, accessor {index}"), reason));
+    }
+    Ok(triangle_list(mode, &corners))
+}
 
 /// Reads the attributes of one primitive.
 struct Attributes<'a> {
     reader: &'a Reader<'a>,
     json: &'a mesh::Primitive,
     element: &'a str,
-    /// Number of vertices; all attributes must agree.
+    /// Number of vertices in the file; all attributes must agree.
     count: usize,
-}
-
-/// Loads a primitive with the look of its material; `None` where it has no triangles to draw.
-pub(crate) fn load(
-    reader: &Reader,
-    json: &mesh::Primitive,
-    element: &str,
-    look: &Look,
-    notes: &mut Notes,
-) -> Result<Option<Primitive>, Problem> {
-    let Checked::Valid(mode) = json.mode else {
-        return Err(Problem::new(format!("{element}.mode"), "it is not a primitive mode"));
-    };
-    if let Some(kind) = without_triangles(mode) {
-        notes.add(format!("{element}: {kind} skipped: only triangles are drawn"));
-        return Ok(None);
-    }
-    let Some(&positions) = json.attributes.get(&Checked::Valid(Semantic::Positions)) else {
-        notes.add(format!("{element}: skipped: it has no positions"));
-        return Ok(None);
-    };
-    let count = reader.count(positions, &format!("{element}.attributes.POSITION"))?;
-    let attributes = Attributes { reader, json, element, count };
-    let mut primitive = Primitive {
-        material: look.material,
-        positions: attributes.positions(positions, &format!("{element}.attributes.POSITION"))?,
-        normals: attributes.vectors(&Semantic::Normals, Vec3::from_array)?,
-        tangents: attributes.vectors(&Semantic::Tangents, Vec4::from_array)?,
-        uvs: attributes.uvs(look.uv_set, notes)?,
-        colors: attributes.colors()?,
-        indices: attributes.indices(mode)?,
-        morphs: attributes.morphs()?,
-        ..Primitive::default()
-    };
-    (primitive.joints, primitive.weights) = influence::load(reader, json, element, count)?;
-    complete(&mut primitive, mode, look, notes);
-    Ok(Some(primitive))
+    /// The vertices that its triangles use.
+    vertices: Elements<'a>,
 }
 
 /// Repairs and computes what the file leaves open.
-fn complete(primitive: &mut Primitive, mode: Mode, look: &Look, notes: &mut Notes) {
-    if primitive.morphs.is_empty() && primitive.joints.is_empty() {
-        let dropped = surface::drop_zero_area(primitive);
+fn complete(geometry: &mut Geometry, mode: Mode, look: &Look, notes: &mut Notes) {
+    if geometry.morphs.is_empty() && geometry.joints.is_empty() {
+        let dropped = surface::drop_zero_area(geometry);
         // Strips join their parts by such triangles on purpose.
         if mode != Mode::TriangleStrip {
             notes.count(Tally::ZeroAreaTriangles, dropped);
         }
     }
-    if primitive.normals.is_empty() {
-        surface::flatten(primitive);
+    if geometry.normals.is_empty() {
+        surface::flatten(geometry);
         notes.count(Tally::ComputedNormals, 1);
     } else {
-        notes.count(Tally::RepairedNormals, surface::repair_normals(primitive));
+        notes.count(Tally::RepairedNormals, surface::repair_normals(geometry));
     }
     let usable = |tangent: &Vec4| tangent.is_finite() && tangent.truncate().length_squared() > 0.25;
     match look.uv_from_texcoord {
-        None => primitive.tangents.clear(),
-        Some(_) if !primitive.tangents.is_empty() && primitive.tangents.iter().all(usable) => {}
+        None => geometry.tangents.clear(),
+        Some(_) if !geometry.tangents.is_empty() && geometry.tangents.iter().all(usable) => {}
         Some([u, v]) => {
-            let uv = |vertex: usize| primitive.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO).extend(1.0);
-            let uvs = (0..primitive.positions.len()).map(uv);
+            let uv = |vertex: usize| geometry.uvs.get(vertex).copied().unwrap_or(Vec2::ZERO).extend(1.0);
+            let uvs = (0..geometry.positions.len()).map(uv);
             let uvs: Vec<Vec2> = uvs.map(|uv| Vec2::new(u.dot(uv), v.dot(uv))).collect();
-            surface::compute_tangents(primitive, &uvs);
+            surface::compute_tangents(geometry, &uvs);
         }
     }
 }
@@ -99,7 +205,8 @@ impl Attributes<'_> {
         Some((index, format!("{}.attributes.{}", self.element, semantic.to_string())))
     }
 
-    /// Elements of an accessor that must have one a vertex; the count is checked before any is read.
+    /// Elements of the used vertices, from an accessor that must have one for each vertex. The count is checked before any
+    /// is read.
     fn elements<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -107,7 +214,7 @@ impl Attributes<'_> {
         integers: Integers,
     ) -> Result<Vec<[f32; N]>, Problem> {
         self.reader.check_count(index, element, self.count)?;
-        self.reader.floats(index, element, integers)
+        self.reader.some_floats(index, element, integers, self.vertices)
     }
 
     /// Positions or displacements: finite and not beyond what f32 can compute with.
@@ -117,8 +224,13 @@ impl Attributes<'_> {
         let wrong = values.iter().position(|v| !v.is_finite() || v.abs().max_element() > MAX_COORDINATE);
         let Some(vertex) = wrong else { return Ok(values) };
         let name = format!("{element}, accessor {index}");
-        let [x, y, z] = values[vertex].to_array();
-        Err(if values[vertex].is_finite() {
+        let value = values[vertex];
+        let [x, y, z] = value.to_array();
+        let vertex = match self.vertices {
+            Elements::All => vertex,
+            Elements::Listed(list) => list[vertex] as usize,
+        };
+        Err(if value.is_finite() {
             let reason = format!("vertex {vertex} at ({x:e}, {y:e}, {z:e}) is beyond {MAX_COORDINATE:e} m");
             Problem::new(name, reason).hint("Scale the scene down")
         } else {
@@ -156,22 +268,6 @@ impl Attributes<'_> {
         Ok(colors)
     }
 
-    /// Indices of a triangle list, all in range.
-    fn indices(&self, mode: Mode) -> Result<Vec<u32>, Problem> {
-        let Some(index) = self.json.indices else {
-            let all: Vec<u32> = (0..self.count as u32).collect();
-            return Ok(triangle_list(mode, &all));
-        };
-        let element = format!("{}.indices", self.element);
-        let corners = self.reader.integers::<1>(index, &element)?;
-        let corners: Vec<u32> = corners.into_iter().map(|[corner]| corner).collect();
-        if let Some(at) = corners.iter().position(|&corner| corner as usize >= self.count) {
-            let reason = format!("index {at} is {}, there are {} vertices", corners[at], self.count);
-            return Err(Problem::new(format!("{element}, accessor {index}"), reason));
-        }
-        Ok(triangle_list(mode, &corners))
-    }
-
     fn morphs(&self) -> Result<Vec<MorphTarget>, Problem> {
         let targets = self.json.targets.iter().flatten().enumerate();
         targets.map(|(i, target)| self.morph(&format!("{}.targets[{i}]", self.element), target)).collect()
@@ -183,7 +279,11 @@ impl Attributes<'_> {
             None => Ok(Vec::new()),
         };
         let mut positions = read(target.positions, "POSITION")?;
-        positions.resize(self.count, Vec3::ZERO);
+        let vertices = match self.vertices {
+            Elements::All => self.count,
+            Elements::Listed(list) => list.len(),
+        };
+        positions.resize(vertices, Vec3::ZERO);
         Ok(MorphTarget { positions, normals: read(target.normals, "NORMAL")? })
     }
 }

@@ -9,16 +9,20 @@ mod animation;
 mod container;
 #[cfg(not(target_family = "wasm"))]
 mod decode;
+mod extensions;
 mod image;
 mod influence;
+mod instancing;
 mod material;
 mod mesh;
 mod nodes;
 mod notes;
+mod repair;
 mod size;
 mod skin;
 mod surface;
 mod topology;
+mod transforms;
 mod uri;
 mod view;
 
@@ -26,7 +30,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use gltf::json::Root;
 use shadowfit::Aabb;
 
@@ -38,6 +42,7 @@ pub use self::decode::decode_image;
 use self::image::Images;
 pub use self::image::{DecodeImage, DecodedImage};
 use self::material::Materials;
+use self::mesh::Geometries;
 pub(crate) use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
@@ -46,11 +51,15 @@ use self::uri::Folder;
 #[cfg(not(target_family = "wasm"))]
 use self::uri::{file_size, read_file};
 use crate::error::{Problem, entry};
-use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
+use crate::{Mesh, Node, Primitive, Scene, SceneError, Skin};
 
 /// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
 /// number of them.
 const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
+
+/// Greatest coordinate of the middle of a scene that stays where its file has it, in metres. Up to twice as far, f32
+/// positions are exact to half a millimetre.
+const NEAR_ORIGIN: f64 = 4096.0;
 
 /// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
 ///
@@ -151,7 +160,7 @@ fn load(
         progress(LoadStep::Parse, &size);
     })?;
     let binary = source.binary.take();
-    let tree = nodes::collect(&source.root, scene).map_err(|problem| problem.at(path))?;
+    let tree = nodes::collect(&source.root, &source.transforms, scene).map_err(|problem| problem.at(path))?;
     check_not_empty(&source.root, &tree, path)?;
     progress(LoadStep::Decode, &size.with_content(&source.root, &tree, folder));
     let reader = Reader::new(&source.root, binary, folder);
@@ -162,11 +171,18 @@ fn load(
 }
 
 fn check_not_empty(root: &Root, tree: &Tree, path: &Path) -> Result<(), SceneError> {
-    let drawn = tree.file_index.iter().any(|&index| root.nodes[index].mesh.is_some());
-    if drawn {
+    let has_mesh = |index: &usize| root.nodes[*index].mesh.is_some();
+    let visible = tree.file_index.iter().zip(&tree.hidden).filter(|(_, hidden)| !**hidden);
+    if visible.map(|(index, _)| index).any(has_mesh) {
         return Ok(());
     }
-    let reason = if root.meshes.is_empty() { "the file has no meshes" } else { "no node of the scene has a mesh" };
+    let reason = if root.meshes.is_empty() {
+        "the file has no meshes"
+    } else if tree.file_index.iter().any(has_mesh) {
+        "KHR_node_visibility hides every node of the scene that has a mesh"
+    } else {
+        "no node of the scene has a mesh"
+    };
     let hint = "Choose a file or scene that draws triangles";
     Err(SceneError::Empty { path: path.to_owned(), reason: reason.to_owned(), hint })
 }
@@ -179,12 +195,7 @@ fn import<'a>(
 ) -> Result<Scene, Problem> {
     let root = &source.root;
     let mut notes = Notes::default();
-    if !source.ignored_extensions.is_empty() {
-        notes.add(format!("extensions ignored: {}", source.ignored_extensions.join(", ")));
-    }
-    if source.channels_without_node > 0 {
-        notes.add(format!("animation channels that move no node ignored: {}", source.channels_without_node));
-    }
+    source.notes.iter().for_each(|note| notes.add(note));
     let mut nodes = std::mem::take(&mut tree.nodes);
     let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, images, &mut notes)?;
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
@@ -193,11 +204,12 @@ fn import<'a>(
     let animations = animations.load(&mut notes)?;
     let cameras = view::cameras(root, &tree, &mut notes)?;
     let suns = view::suns(root, &tree, &mut notes)?;
-    let (materials, images) = materials.finish();
+    let (materials, images) = materials.finish(&mut notes);
     let nodes = std::mem::take(&mut tree.nodes);
     let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, suns, ..Scene::default() };
+    instancing::expand((root, reader), &mut tree, &mut scene, &mut notes)?;
+    move_near_origin(&mut scene, &tree, &mut notes)?;
     let rest = scene.pose(None, 0.0);
-    check_extent(&scene, &rest, &tree)?;
     scene.sun = scene.sun_of(&rest);
     view::note_views(&scene, &rest, &mut notes);
     scene.notes = notes.finish();
@@ -214,15 +226,16 @@ fn meshes<'a>(
     notes: &mut Notes,
 ) -> Result<(Vec<Mesh>, Materials<'a>), Problem> {
     let mut materials = Materials::new(root, reader, images);
+    let mut geometries = Geometries::new(reader);
     let mut meshes = Vec::new();
     let mut loaded = HashMap::new();
-    for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
-        let Some(mesh) = root.nodes[index].mesh else { continue };
+    for ((node, &index), &hidden) in nodes.iter_mut().zip(&tree.file_index).zip(&tree.hidden) {
+        let Some(mesh) = root.nodes[index].mesh.filter(|_| !hidden) else { continue };
         node.mesh = match loaded.entry(mesh.value()) {
             Entry::Occupied(known) => Some(*known.get()),
             Entry::Vacant(new) => {
                 let json = entry(&root.meshes, mesh.value(), "mesh", &format!("nodes[{index}].mesh"))?;
-                meshes.push(load_mesh(json, &format!("meshes[{mesh}]"), reader, &mut materials, notes)?);
+                meshes.push(load_mesh(json, &format!("meshes[{mesh}]"), &mut geometries, &mut materials, notes)?);
                 Some(*new.insert(meshes.len() - 1))
             }
         };
@@ -233,7 +246,7 @@ fn meshes<'a>(
 fn load_mesh(
     json: &gltf::json::Mesh,
     element: &str,
-    reader: &Reader,
+    geometries: &mut Geometries,
     materials: &mut Materials,
     notes: &mut Notes,
 ) -> Result<Mesh, Problem> {
@@ -243,7 +256,11 @@ fn load_mesh(
     for (index, primitive) in json.primitives.iter().enumerate() {
         let element = format!("{element}.primitives[{index}]");
         let look = materials.look(primitive.material, &element, notes)?;
-        primitives.extend(mesh::load(reader, primitive, &element, &look, notes)?);
+        if look.is_hidden {
+            notes.add(format!("{element}: skipped: alphaCutoff of its material is above 1, which hides it"));
+            continue;
+        }
+        primitives.extend(geometries.load(primitive, &element, &look, notes)?);
     }
     Ok(Mesh { name: json.name.clone().unwrap_or_default(), primitives, morph_weights })
 }
@@ -267,15 +284,32 @@ fn skins(root: &Root, reader: &Reader, tree: &Tree, nodes: &mut [Node], meshes: 
     Ok(skins)
 }
 
-/// Checks that the scene at rest stays within what f32 can compute with, from the corners of its
-/// primitives: no vertex is visited per node, so that sharing a mesh stays cheap.
-fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> {
+/// Sets the origin of a scene that lies far from that of its file, where f32 positions are coarse, to its middle. Scenes
+/// that are larger than they are far away stay.
+fn move_near_origin(scene: &mut Scene, tree: &Tree, notes: &mut Notes) -> Result<(), Problem> {
+    let Some(bounds) = extent(scene, tree)? else { return Ok(()) };
+    let middle = bounds.min.as_dvec3().midpoint(bounds.max.as_dvec3());
+    let distance = middle.abs().max_element();
+    if distance > NEAR_ORIGIN && distance > f64::from(bounds.size().max_element()) {
+        scene.origin = middle.round();
+        let [x, y, z] = scene.origin.to_array();
+        notes.add(format!(
+            "moved near the origin, where positions are exact: world positions are relative to ({x}, {y}, {z}) m of the file"
+        ));
+    }
+    Ok(())
+}
+
+/// World bounds of the scene at rest, from the corners of its primitives: no vertex is visited per node, so that sharing
+/// a mesh stays cheap. Refuses what f32 cannot compute with.
+fn extent(scene: &Scene, tree: &Tree) -> Result<Option<Aabb>, Problem> {
+    let rest = scene.pose(None, 0.0);
     let boxes: Vec<Vec<Option<Aabb>>> = scene
         .meshes
         .iter()
         .map(|mesh| mesh.primitives.iter().map(|p| Aabb::from_points(p.positions.iter().copied())).collect())
         .collect();
-    let mut triangles = 0;
+    let (mut triangles, mut all) = (0, None::<Aabb>);
     for instance in scene.instances() {
         let element = || format!("nodes[{}]", tree.file_index[instance.node]);
         let primitive: &Primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
@@ -289,17 +323,20 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
             Some(skin) => rest.world_from_mesh_by_joint(skin),
             None => vec![rest.world_from(instance.node)],
         };
-        if !matrices.iter().all(|&matrix| is_within_reach(bounds, matrix)) {
-            let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
-            return Err(Problem::new(element(), reason).hint("Scale the scene down"));
+        for matrix in matrices {
+            let Some(world) = world_bounds(bounds, matrix) else {
+                let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
+                return Err(Problem::new(element(), reason).hint("Scale the scene down"));
+            };
+            all = Some(all.map_or(world, |all| all.union(world)));
         }
     }
-    Ok(())
+    Ok(all)
 }
 
-fn is_within_reach(bounds: Aabb, world_from_local: Mat4) -> bool {
-    bounds.corners().into_iter().all(|corner| {
-        let world = world_from_local.transform_point3(corner);
-        world.is_finite() && world.abs().max_element() <= MAX_COORDINATE
-    })
+/// World bounds of a box; `None` where they reach beyond what f32 can compute with.
+fn world_bounds(bounds: Aabb, world_from_local: Mat4) -> Option<Aabb> {
+    let corners = bounds.corners().map(|corner| world_from_local.transform_point3(corner));
+    let is_near = |corner: &Vec3| corner.is_finite() && corner.abs().max_element() <= MAX_COORDINATE;
+    Aabb::from_points(corners).filter(|_| corners.iter().all(is_near))
 }

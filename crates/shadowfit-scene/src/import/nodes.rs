@@ -1,7 +1,6 @@
 //! The nodes of one scene, parents first, walked without recursion so that deep chains are harmless.
 
-use glam::{Mat4, Quat, Vec3};
-use gltf::json::{Index, Root, scene};
+use gltf::json::{Index, Root, Value, scene};
 
 use crate::error::{Problem, entry};
 use crate::pose::MAX_MORPH_WEIGHT;
@@ -15,13 +14,16 @@ pub(crate) struct Tree {
     pub(crate) file_index: Vec<usize>,
     /// Index into `nodes` of each node of the file; `None` where it is not part of the scene.
     pub(crate) scene_index: Vec<Option<usize>>,
+    /// Whether each node of `nodes` is hidden by `KHR_node_visibility`, its own or that of an ancestor.
+    pub(crate) hidden: Vec<bool>,
 }
 
 /// Collects the nodes of a scene: the given one, else the default one, else the first; in a file
-/// without scenes all nodes without a parent.
-pub(crate) fn collect(root: &Root, scene: Option<usize>) -> Result<Tree, Problem> {
+/// without scenes all nodes without a parent. `transforms` has the transform of each node of the file.
+pub(crate) fn collect(root: &Root, transforms: &[Transform], scene: Option<usize>) -> Result<Tree, Problem> {
     let (element, roots) = roots(root, scene)?;
-    let mut tree = Tree { nodes: Vec::new(), file_index: Vec::new(), scene_index: vec![None; root.nodes.len()] };
+    let scene_index = vec![None; root.nodes.len()];
+    let mut tree = Tree { nodes: Vec::new(), file_index: Vec::new(), scene_index, hidden: Vec::new() };
     let mut pending: Vec<_> = roots.iter().rev().map(|&index| (index, None)).collect();
     while let Some((index, parent)) = pending.pop() {
         let parent_element = || match parent {
@@ -36,7 +38,9 @@ pub(crate) fn collect(root: &Root, scene: Option<usize>) -> Result<Tree, Problem
         let own = tree.nodes.len();
         tree.scene_index[index.value()] = Some(own);
         tree.file_index.push(index.value());
-        tree.nodes.push(node(index.value(), json, parent)?);
+        tree.hidden.push(!is_visible(json) || parent.is_some_and(|parent| tree.hidden[parent]));
+        let rest = transforms.get(index.value()).copied().unwrap_or_default();
+        tree.nodes.push(node(index.value(), json, (parent, rest))?);
         let children = json.children.iter().flatten().rev();
         pending.extend(children.map(|&child| (child, Some(own))));
     }
@@ -66,27 +70,20 @@ fn roots(root: &Root, scene: Option<usize>) -> Result<Roots, Problem> {
     Ok(("nodes".to_owned(), all.filter(|index| !is_child[index.value()]).collect()))
 }
 
-fn node(index: usize, json: &scene::Node, parent: Option<usize>) -> Result<Node, Problem> {
-    let rest = transform(json);
-    if !rest.matrix().is_finite() {
+/// Whether the node itself is visible, which is the default of `KHR_node_visibility`.
+fn is_visible(json: &scene::Node) -> bool {
+    let extension = json.extensions.as_ref().and_then(|own| own.others.get("KHR_node_visibility"));
+    extension.and_then(|own| own.get("visible")).and_then(Value::as_bool).unwrap_or(true)
+}
+
+fn node(index: usize, json: &scene::Node, (parent, rest): (Option<usize>, Transform)) -> Result<Node, Problem> {
+    if !rest.matrix().as_mat4().is_finite() {
         return Err(Problem::new(format!("nodes[{index}]"), "its transform is not finite"));
     }
     let weights = json.weights.clone().unwrap_or_default();
     check_weights(&weights, &format!("nodes[{index}]"))?;
     let name = json.name.clone().unwrap_or_default();
     Ok(Node { name, parent, rest, mesh: None, skin: None, morph_weights: weights })
-}
-
-fn transform(json: &scene::Node) -> Transform {
-    let matrix = json.matrix.map(|m| Mat4::from_cols_array(&m)).filter(|&m| m != Mat4::IDENTITY);
-    let rotation = json.rotation.map_or(Quat::IDENTITY, |r| Quat::from_array(r.0));
-    let length = rotation.length();
-    Transform {
-        translation: json.translation.map_or(Vec3::ZERO, Vec3::from_array),
-        rotation: if length > 0.0 { rotation * (1.0 / length) } else { Quat::IDENTITY },
-        scale: json.scale.map_or(Vec3::ONE, Vec3::from_array),
-        matrix,
-    }
 }
 
 /// Refuses weights of morph targets that f32 cannot compute with.

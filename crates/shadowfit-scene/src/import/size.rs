@@ -4,6 +4,7 @@ use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, image, mesh};
 
+use super::instancing;
 use super::nodes::Tree;
 use super::uri::{Folder, uri_size};
 
@@ -35,10 +36,12 @@ impl SceneSize {
     pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: Folder<'_>) -> Self {
         let mut is_counted = vec![false; root.meshes.len()];
         let (mut all, mut drawn) = (0, 0);
-        for index in tree.file_index.iter().filter_map(|node| root.nodes[*node].mesh) {
+        for (node, _) in tree.file_index.iter().zip(&tree.hidden).filter(|(_, hidden)| !**hidden) {
+            let node = &root.nodes[*node];
+            let Some(index) = node.mesh else { continue };
             let Some(mesh) = root.meshes.get(index.value()) else { continue };
             let triangles: u64 = mesh.primitives.iter().map(|primitive| triangles(root, primitive)).sum();
-            drawn += triangles;
+            drawn += triangles.saturating_mul(instancing::declared(root, node));
             if !std::mem::replace(&mut is_counted[index.value()], true) {
                 all += triangles;
             }

@@ -31,9 +31,60 @@ pub(crate) fn without_triangles(mode: Mode) -> Option<&'static str> {
     }
 }
 
+/// Finds the vertices that triangles use. It is kept from one primitive to the next, so that primitives which share a
+/// large accessor take time for their own triangles alone.
+#[derive(Default)]
+pub(crate) struct UsedVertices {
+    /// By vertex: its place in the list of used ones; between two calls all are [`UNUSED`].
+    places: Vec<u32>,
+}
+
+const UNUSED: u32 = u32::MAX;
+
+impl UsedVertices {
+    /// Lists the vertices that indices use, in the order of their first use, and renumbers the indices by this list.
+    /// Returns `None`, and leaves the indices, if all of `count` vertices are used. Indices are below `count`.
+    pub(crate) fn compact(&mut self, indices: &mut [u32], count: usize) -> Option<Vec<u32>> {
+        if self.places.len() < count {
+            self.places.resize(count, UNUSED);
+        }
+        let mut used = Vec::new();
+        for &vertex in indices.iter() {
+            let place = &mut self.places[vertex as usize];
+            if *place == UNUSED {
+                *place = used.len() as u32;
+                used.push(vertex);
+            }
+        }
+        let some = used.len() < count;
+        if some {
+            for vertex in indices.iter_mut() {
+                *vertex = self.places[*vertex as usize];
+            }
+        }
+        for &vertex in &used {
+            self.places[vertex as usize] = UNUSED;
+        }
+        some.then_some(used)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn unused_vertices_are_left_out_and_nothing_of_a_primitive_is_left_for_the_next() {
+        let mut used = UsedVertices::default();
+        for _ in 0..2 {
+            let mut indices = [7, 2, 7, 9, 2, 7];
+            assert_eq!(used.compact(&mut indices, 10), Some(vec![7, 2, 9]));
+            assert_eq!(indices, [0, 1, 0, 2, 1, 0]);
+        }
+        let mut all = [2, 0, 1];
+        assert_eq!((used.compact(&mut all, 3), all), (None, [2, 0, 1]));
+        assert_eq!(used.compact(&mut [], 10), Some(Vec::new()));
+    }
 
     #[test]
     fn strips_and_fans_keep_the_winding_of_their_first_triangle() {

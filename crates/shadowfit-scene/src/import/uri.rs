@@ -1,6 +1,7 @@
 //! Bytes behind a URI: data URIs, and files inside the folder of the glTF file, or those that came with it where there
 //! is no file system. Nothing else is ever opened, whatever the file asks for.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
@@ -31,7 +32,7 @@ pub(crate) enum Folder<'a> {
 
 /// Reads what `uri` refers to from `folder`; the error is a readable reason.
 pub(crate) fn read_uri(folder: Folder<'_>, uri: &str, max_bytes: u64) -> Result<Vec<u8>, String> {
-    if let Some(data) = uri.strip_prefix("data:") {
+    if let Some(data) = data_of(uri) {
         return decode_data(data);
     }
     if has_scheme(uri) {
@@ -72,6 +73,7 @@ fn check_length(bytes: u64, max_bytes: u64) -> Result<(), String> {
 /// The content of the file that a relative URI names: that of its path, or of its name alone.
 fn find<'a>(files: &'a BTreeMap<String, Vec<u8>>, uri: &str) -> Option<&'a Vec<u8>> {
     let decoded = percent_decode_str(uri).decode_utf8().ok()?;
+    let decoded = decoded.replace('\\', "/");
     let path = decoded.strip_prefix("./").unwrap_or(&decoded);
     let name = path.rsplit('/').next()?;
     files.get(path).or_else(|| files.get(uri)).or_else(|| files.get(name))
@@ -84,16 +86,24 @@ pub(crate) fn file_size(path: &Path) -> u64 {
 
 /// About as many bytes as `uri` refers to; 0 where that is unknown.
 pub(crate) fn uri_size(folder: Folder<'_>, uri: &str) -> u64 {
-    match (uri.strip_prefix("data:"), folder) {
+    match (data_of(uri), folder) {
         (Some(data), _) => data.len() as u64 / 4 * 3,
         (None, Folder::Disk(folder)) => locate(folder, uri).map_or(0, |path| file_size(&path)),
         (None, Folder::Memory(files)) => find(files, uri).map_or(0, |bytes| bytes.len() as u64),
     }
 }
 
+/// What follows the scheme of a data URI; schemes have no case.
+fn data_of(uri: &str) -> Option<&str> {
+    let (scheme, data) = uri.split_at_checked("data:".len())?;
+    scheme.eq_ignore_ascii_case("data:").then_some(data)
+}
+
 fn decode_data(data: &str) -> Result<Vec<u8>, String> {
     let (head, payload) = data.split_once(',').ok_or("the data URI has no comma before its data")?;
-    if head.ends_with(";base64") {
+    if head.to_ascii_lowercase().ends_with(";base64") {
+        // Padding and plus signs may be percent-encoded.
+        let payload: Cow<'_, [u8]> = percent_decode_str(payload).into();
         BASE64.decode(payload).map_err(|error| format!("the data URI is not valid base64: {error}"))
     } else {
         Ok(percent_decode_str(payload).collect())
@@ -107,15 +117,18 @@ fn has_scheme(uri: &str) -> bool {
     scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(allowed)
 }
 
-/// The file that a relative URI names: percent-decoded, or as written where only that exists.
+/// The file that a relative URI names: percent-decoded, or as written, or with the separators of Windows, where only that
+/// exists.
 fn locate(folder: &Path, uri: &str) -> Result<PathBuf, String> {
     let decoded = percent_decode_str(uri).decode_utf8();
     let decoded = decoded.map_err(|_| format!("the URI {} is not UTF-8", quoted(uri)))?;
-    let decoded = inside(folder, uri, &decoded);
-    if decoded.is_err() && uri.contains('%') {
-        return inside(folder, uri, uri).or(decoded);
-    }
-    decoded
+    // Exporters of Windows write its separators.
+    let others = [uri.to_owned(), decoded.replace('\\', "/")];
+    let found = inside(folder, uri, &decoded);
+    others
+        .iter()
+        .filter(|other| **other != decoded)
+        .fold(found, |found, other| found.or_else(|error| inside(folder, uri, other).map_err(|_| error)))
 }
 
 /// Joins and resolves, and refuses whatever is not below `folder` afterwards, links included.
@@ -151,6 +164,7 @@ mod tests {
         assert_eq!(read_uri(folder, "data:;base64,AQI=", 9).unwrap(), [1, 2]);
         assert_eq!(read_uri(folder, "data:application/octet-stream;base64,AQI", 9).unwrap(), [1, 2]);
         assert_eq!(read_uri(folder, "data:text/plain,a%20b", 9).unwrap(), b"a b");
+        assert_eq!(read_uri(folder, "DATA:image/x-odd;charset=utf-8;Base64,+/8%3D", 9).unwrap(), [251, 255]);
         assert!(read_uri(folder, "data:;base64,???", 9).unwrap_err().contains("base64"));
     }
 

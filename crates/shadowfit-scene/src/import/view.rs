@@ -69,7 +69,8 @@ pub(crate) fn suns(root: &Root, tree: &Tree, notes: &mut Notes) -> Result<Vec<Sc
     let (mut suns, mut others) = (Vec::new(), 0);
     for (node, &index) in tree.file_index.iter().enumerate() {
         let extensions = root.nodes[index].extensions.as_ref();
-        let Some(link) = extensions.and_then(|e| e.khr_lights_punctual.as_ref()) else { continue };
+        let link = extensions.and_then(|e| e.khr_lights_punctual.as_ref()).filter(|_| !tree.hidden[node]);
+        let Some(link) = link else { continue };
         let element = format!("nodes[{index}].extensions.KHR_lights_punctual");
         let light = entry(lights, link.light.value(), "light", &element)?;
         if matches!(light.type_, Checked::Valid(LightType::Directional)) {

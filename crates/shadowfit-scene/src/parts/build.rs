@@ -65,7 +65,7 @@ impl Builder {
         scale: impl Into<Vec3>,
         yaw: f32,
     ) -> usize {
-        self.pose(parent, mesh, Transform { scale: scale.into(), ..turned(at, yaw) })
+        self.pose(parent, mesh, Transform::new(at.into(), Quat::from_rotation_y(yaw), scale.into()))
     }
 
     /// Places a mesh under `parent` by a whole transform.
@@ -102,7 +102,7 @@ impl Builder {
         let back = (eye - target).normalize();
         let right = Vec3::Y.cross(back).normalize();
         let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
-        let rest = Transform { translation: eye, rotation, ..Transform::default() };
+        let rest = Transform::new(eye, rotation, Vec3::ONE);
         let node = self.node("start view", None, rest, None);
         self.scene.cameras.push(SceneCamera { name: "start view".to_owned(), node, lens });
     }
@@ -110,7 +110,7 @@ impl Builder {
 
 /// A transform to a place, with a turn by `yaw` radians about the vertical.
 pub fn turned(at: impl Into<Vec3>, yaw: f32) -> Transform {
-    Transform { translation: at.into(), rotation: Quat::from_rotation_y(yaw), ..Transform::default() }
+    Transform::new(at.into(), Quat::from_rotation_y(yaw), Vec3::ONE)
 }
 
 /// Sunlight from `azimuth` (from +z toward +x) and `elevation` above the horizon, in radians.

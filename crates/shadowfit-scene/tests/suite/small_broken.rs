@@ -64,7 +64,7 @@ fn files_without_anything_to_draw_say_so() {
 fn required_extensions_are_refused_by_name_even_where_the_json_is_theirs() {
     let nodes = r#""nodes":[{"mesh":0}]"#;
     let required = r#""extensionsRequired":["KHR_texture_transform","KHR_draco_mesh_compression"]"#;
-    let words = ["extensionsRequired[1]", "KHR_draco_mesh_compression", "without mesh compression"];
+    let words = ["extensionsRequired[1]", "KHR_draco_mesh_compression", "gltf-transform cp"];
     refused(nodes, &format!("{nodes},{required}"), &words);
     refused(nodes, &format!(r#""nodes":"theirs",{required}"#), &words);
 }

@@ -80,3 +80,20 @@ fn a_view_that_follows_no_other_is_seen_by_rays_and_the_next_ones_by_pictures_wh
         assert!(!told(&stage).0, "another technique begins anew, whatever is on its way");
     }
 }
+
+#[test]
+fn the_switch_for_blended_surfaces_changes_what_casts_in_the_very_next_picture() {
+    let mut scene = default_scene();
+    for material in &mut scene.materials {
+        material.alpha = shadowfit_scene::AlphaMode::Blend;
+    }
+    let mut stage = Stage::new(renderer_gpu(), scene, 1).expect("a scene");
+    let target = stage.target([64, 36]);
+    for blended_cast in [true, false, true] {
+        stage.settings.view.blended_cast = blended_cast;
+        draw(&mut stage, &target);
+        let prepared = stage.prepared_scene();
+        assert_eq!(prepared.casting_triangles() > 0, blended_cast);
+        assert_eq!(!prepared.gpu_scene.casters().moves.is_empty(), blended_cast);
+    }
+}

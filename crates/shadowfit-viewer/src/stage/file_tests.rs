@@ -52,7 +52,7 @@ fn add_camera(scene: &mut Scene, rest: Transform, lens: FileLens) {
 /// Adds suns of some intensities, which travel along -z turned by `pitch` about x.
 fn add_suns(scene: &mut Scene, suns: &[(f32, f32)]) {
     for (intensity, pitch) in suns {
-        let node = add_node(scene, Transform { rotation: Quat::from_rotation_x(-pitch), ..Transform::default() });
+        let node = add_node(scene, Transform { rotation: DQuat::from_rotation_x(f64::from(-pitch)), ..Transform::default() });
         scene.suns.push(SceneSun { name: String::new(), node, color: Vec3::ONE, intensity: *intensity });
     }
     let taken = scene.strongest_sun().map(|index| &scene.suns[index]);
@@ -63,7 +63,7 @@ fn add_suns(scene: &mut Scene, suns: &[(f32, f32)]) {
 /// Turns a node about y from 0 to a right angle in 2 s.
 fn turn(scene: &mut Scene, node: usize) {
     let rest = scene.nodes[node].rest.rotation;
-    let values = ChannelValues::Rotation(vec![rest, Quat::from_rotation_y(FRAC_PI_2) * rest]);
+    let values = ChannelValues::Rotation(vec![rest.as_quat(), Quat::from_rotation_y(FRAC_PI_2) * rest.as_quat()]);
     let channel = Channel { node, times: vec![0.0, 2.0], interpolation: Interpolation::Linear, values };
     scene.animations.push(Animation { name: String::new(), duration: 2.0, channels: vec![channel] });
 }
@@ -78,14 +78,14 @@ const PERSPECTIVE: FileLens = FileLens::Perspective { fov_y: 0.8, near: 0.1, far
 
 #[test]
 fn gpu_a_scene_opens_with_the_picture_of_its_camera_whatever_lens_and_node_that_has() {
-    let rolled = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(-0.4) * Quat::from_rotation_z(0.6);
-    let down = Quat::from_rotation_x(-FRAC_PI_2);
-    let node = |rotation, scale| Transform { translation: Vec3::new(3.0, 6.0, 7.0), rotation, scale, matrix: None };
+    let rolled = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(-0.4) * DQuat::from_rotation_z(0.6);
+    let down = DQuat::from_rotation_x(-FRAC_PI_2);
+    let node = |rotation, scale| Transform { translation: DVec3::new(3.0, 6.0, 7.0), rotation, scale, matrix: None };
     let nodes = [
-        node(rolled, Vec3::ONE),
-        node(rolled, Vec3::new(0.01, 40.0, 3.0)),
-        node(down, Vec3::splat(5.0)),
-        node(Quat::IDENTITY, Vec3::new(-1.0, 1.0, 1.0)),
+        node(rolled, DVec3::ONE),
+        node(rolled, DVec3::new(0.01, 40.0, 3.0)),
+        node(down, DVec3::splat(5.0)),
+        node(DQuat::IDENTITY, DVec3::new(-1.0, 1.0, 1.0)),
     ];
     let degrees = [0.2_f32, 5.0, 45.0, 150.0, 170.0, 178.0];
     let mut lenses: Vec<FileLens> =
@@ -121,7 +121,7 @@ fn gpu_a_scene_opens_with_the_picture_of_its_camera_whatever_lens_and_node_that_
 #[test]
 fn gpu_a_camera_of_the_file_moves_with_the_animation_until_it_is_flown() {
     let mut scene = model(1.0);
-    let rest = Transform { translation: Vec3::new(0.0, 2.0, 9.0), ..Transform::default() };
+    let rest = Transform { translation: DVec3::new(0.0, 2.0, 9.0), ..Transform::default() };
     add_camera(&mut scene, rest, PERSPECTIVE);
     add_camera(&mut scene, rest, FileLens::Orthographic { half_height: 3.0, near: 0.1, far: 40.0 });
     let node = scene.cameras[0].node;
@@ -237,7 +237,7 @@ fn gpu_an_orthographic_view_is_fitted_and_judged_like_any_other() {
         Vec3::NEG_Z,
         -eye.normalize(),
     ))));
-    let rest = Transform { translation: eye, rotation, ..Transform::default() };
+    let rest = Transform { translation: eye.as_dvec3(), rotation: rotation.as_dquat(), ..Transform::default() };
     add_camera(&mut scene, rest, FileLens::Orthographic { half_height: 4.0, near: 0.0, far: 30.0 });
     let mut stage = stage(scene);
     for preset in ["windows-4", "stable-4", "calm-4", "xna-1"] {

@@ -61,5 +61,5 @@ pub(super) fn build() -> Scene {
 
 /// A place with a turn about y in radians and a scale.
 fn placed(translation: Vec3, turn: f32, scale: f32) -> Transform {
-    Transform { translation, rotation: Quat::from_rotation_y(turn), scale: Vec3::splat(scale), ..Transform::default() }
+    Transform::new(translation, Quat::from_rotation_y(turn), Vec3::splat(scale))
 }

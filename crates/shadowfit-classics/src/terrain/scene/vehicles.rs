@@ -38,12 +38,7 @@ pub(super) fn build(builder: &mut Builder) -> usize {
         (jeep::parts(), PI, Vec3::ZERO),
     ];
     for (place, (parts, facing, at)) in PLACES.iter().zip(models) {
-        let rest = Transform {
-            translation: place.at,
-            rotation: Quat::from_rotation_y(place.yaw),
-            scale: Vec3::splat(SIZE),
-            ..Transform::default()
-        };
+        let rest = Transform::new(place.at, Quat::from_rotation_y(place.yaw), Vec3::splat(SIZE));
         let vehicle = builder.node(place.name, Some(all), rest, None);
         let mesh = builder.mesh(place.name, parts.primitives());
         builder.place(vehicle, mesh, at, facing);

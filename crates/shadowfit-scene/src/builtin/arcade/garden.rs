@@ -122,6 +122,6 @@ fn wing_across(builder: &mut Builder, group: usize) {
     }
     let slope = block([-5.3, -0.06, -half - 0.3], [0.95, 0.06, half + 0.3], 0.02);
     let slope = builder.solid("roof across", &slope, Paint::Roof, CRISP);
-    let lie = Transform { rotation: Quat::from_rotation_z(-0.24), ..turned([0.0, 4.86, 0.0], 0.0) };
+    let lie = Transform { rotation: Quat::from_rotation_z(-0.24).as_dquat(), ..turned([0.0, 4.86, 0.0], 0.0) };
     builder.pose(wing, slope, lie);
 }

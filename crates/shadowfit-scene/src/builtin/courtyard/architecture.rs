@@ -109,7 +109,8 @@ fn roof(builder: &mut Builder, group: usize) {
     let beam_top = PLATFORM + COLUMN + 0.28;
     let beam = block([-7.6, beam_top - 0.285, ROW - 0.15], [7.6, beam_top, ROW + 0.15], 0.01);
     builder.fix(group, "beam", &beam, Paint::Timber, CRISP);
-    let tilt = Transform { rotation: Quat::from_rotation_x(PITCH), ..turned([0.0, beam_top - 0.02, ROW], 0.0) };
+    let tilt =
+        Transform { rotation: Quat::from_rotation_x(PITCH).as_dquat(), ..turned([0.0, beam_top - 0.02, ROW], 0.0) };
     let slope = builder.node("roof", Some(group), tilt, None);
     let rafter = block([-0.05, 0.0, -2.55], [0.05, 0.15, 0.72], 0.008);
     let rafter = builder.solid("rafter", &rafter, Paint::Timber, CRISP);

@@ -111,7 +111,7 @@ fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice
         // A far crown is as wide as that of other trees, however thin its trunk.
         let scale = Vec3::new(across.max(0.8), along, across.max(0.8));
         let name = ["far beech", "far birch"][kind];
-        builder.node(name, Some(group), Transform { scale, ..rest }, Some(meshes.far[kind][shape]));
+        builder.node(name, Some(group), Transform { scale: scale.as_dvec3(), ..rest }, Some(meshes.far[kind][shape]));
         return;
     }
     let root = builder.node(["beech", "birch"][kind], Some(group), rest, None);
@@ -121,7 +121,7 @@ fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice
         let at = trunk_middle(shape, tree.lowest + (0.97 - tree.lowest) * t) * size;
         let size = tree.spread * (1.0 - 0.45 * t) * dice.between(0.85, 1.15);
         let rotation = bough_turn(index, t, dice);
-        let rest = Transform { rotation, scale: Vec3::splat(size), ..turned(at, 0.0) };
+        let rest = Transform::new(at, rotation, Vec3::splat(size));
         let bough = builder.pose(root, meshes.boughs[kind][index % 3], rest);
         if distance < SWAYS {
             sway.push(swaying(bough, rotation, size, dice));

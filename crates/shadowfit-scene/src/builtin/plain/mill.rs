@@ -6,7 +6,7 @@ use glam::{Affine3A, Quat, Vec3};
 
 use super::land::on_land;
 use super::palette::Paint;
-use crate::parts::{Builder, CRISP, SMOOTH, Solid, block, capsule, ellipsoid, lathe, plank, rotations, turned};
+use crate::parts::{Builder, CRISP, SMOOTH, Solid, block, capsule, ellipsoid, lathe, plank, rotations};
 use crate::{Channel, Transform};
 
 /// Time of a whole turn of the sails, in seconds: a steady breeze.
@@ -31,7 +31,7 @@ const BARS: usize = 14;
 pub(super) fn build(builder: &mut Builder) -> Channel {
     let at = on_land(AT[0], AT[1]);
     let mill = builder.group("mill", at, FACING);
-    builder.scene.nodes[mill].rest.scale = Vec3::splat(SIZE);
+    builder.scene.nodes[mill].rest.scale = Vec3::splat(SIZE).as_dvec3();
     let tower = [(3.5, -2.0), (3.4, 0.6), (2.25, 8.8), (2.35, 8.9), (2.35, 9.1), (2.2, 9.15)];
     let cap = ellipsoid([2.35, 2.1, 2.65], 24, 10).moved(Vec3::Y * 9.35);
     let low = [0.25, 2.2, 3.9].map(|turn| opening(turn, 0.6));
@@ -47,7 +47,7 @@ pub(super) fn build(builder: &mut Builder) -> Channel {
     let sails = builder.solids("sails", [(frame(), Paint::Timber, CRISP), (canvas(), Paint::Canvas, CRISP)]);
     let (lean, start) = (Quat::from_rotation_x(-0.10), 0.35);
     let rotation = lean * Quat::from_rotation_z(start);
-    let node = builder.pose(mill, sails, Transform { rotation, ..turned([0.0, HUB, 3.2], 0.0) });
+    let node = builder.pose(mill, sails, Transform::new(Vec3::new(0.0, HUB, 3.2), rotation, Vec3::ONE));
     rotations(node, TURN_TIME, TURN_KEYS, |phase| lean * Quat::from_rotation_z(start - phase))
 }
 

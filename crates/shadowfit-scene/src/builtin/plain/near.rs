@@ -59,7 +59,7 @@ fn slabs(builder: &mut Builder, group: usize) {
     for index in 0..26 {
         let at = on_land(path(z) + dice.between(-0.22, 0.22), z) + Vec3::Y * 0.01;
         let size = Vec3::new(dice.between(0.75, 1.05), 1.0, dice.between(0.75, 1.0));
-        let lie = Transform { scale: size, rotation: on_slope(at, dice.roll() * TAU), ..turned(at, 0.0) };
+        let lie = Transform::new(at, on_slope(at, dice.roll() * TAU), size);
         builder.pose(group, slabs[index % 3], lie);
         z -= dice.between(0.85, 1.05);
     }
@@ -77,7 +77,7 @@ fn dry_wall(builder: &mut Builder, group: usize) {
         // Along -z, then down the slope.
         let yaw = Quat::from_rotation_arc(Vec3::NEG_Z, ahead.with_y(0.0).normalize());
         let rotation = yaw * Quat::from_rotation_x(ahead.y.asin());
-        builder.pose(group, pieces[index % 2], Transform { rotation, ..turned(start.midpoint(end), 0.0) });
+        builder.pose(group, pieces[index % 2], Transform::new(start.midpoint(end), rotation, Vec3::ONE));
         (x, z) = (end_x, end_z);
     }
 }
@@ -119,7 +119,7 @@ fn fence(builder: &mut Builder, group: usize) {
     for index in 0..19 {
         let yaw = Quat::from_rotation_y(dice.roll() * TAU);
         let lean = Quat::from_rotation_z(dice.between(-0.07, 0.07)) * Quat::from_rotation_x(dice.between(-0.07, 0.07));
-        builder.pose(group, post, Transform { rotation: yaw * lean, ..turned(line(index), 0.0) });
+        builder.pose(group, post, Transform::new(line(index), yaw * lean, Vec3::ONE));
         if index == 18 {
             break;
         }

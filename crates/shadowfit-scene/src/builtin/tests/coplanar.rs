@@ -22,13 +22,16 @@ fn plane(triangle: &Triangle) -> (Vec3, Plane) {
     (normal, [x, y, z, (normal.dot(a) * STEPS).round() as i32])
 }
 
-/// Whether the middle of `a` is inside `b`, whose unit normal is given, by more than a millimetre.
+/// Whether the middle of `a` lies in the plane of `b`, whose unit normal is given, and inside it by more than a millimetre.
 fn covers(b: &Triangle, normal: Vec3, a: &Triangle) -> bool {
     let middle = a.vertices.iter().sum::<Vec3>() / 3.0;
-    (0..3).all(|corner| {
-        let (from, to) = (b.vertices[corner], b.vertices[(corner + 1) % 3]);
-        normal.cross(to - from).normalize_or_zero().dot(middle - from) > 1e-3
-    })
+    // Planes of almost one direction, far from the origin, may differ more than their rounded distances tell.
+    let is_in_plane = normal.dot(middle - b.vertices[0]).abs() < 1.0 / STEPS;
+    is_in_plane
+        && (0..3).all(|corner| {
+            let (from, to) = (b.vertices[corner], b.vertices[(corner + 1) % 3]);
+            normal.cross(to - from).normalize_or_zero().dot(middle - from) > 1e-3
+        })
 }
 
 /// A triangle with its unit normal and its bounds.

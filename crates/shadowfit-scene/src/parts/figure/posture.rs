@@ -23,11 +23,10 @@ impl Posture {
     pub(super) fn transforms(&self) -> [Transform; JOINTS] {
         let mut transforms = [Transform::default(); JOINTS];
         for (joint, bone) in RIG.iter().enumerate() {
-            transforms[joint].translation = bone.offset;
-            transforms[joint].rotation = self.rotations[joint];
+            transforms[joint] = Transform::new(bone.offset, self.rotations[joint], Vec3::ONE);
         }
-        transforms[Joint::Root as usize].translation = self.root;
-        transforms[Joint::Hips as usize].translation = self.hips;
+        transforms[Joint::Root as usize].translation = self.root.as_dvec3();
+        transforms[Joint::Hips as usize].translation = self.hips.as_dvec3();
         transforms
     }
 

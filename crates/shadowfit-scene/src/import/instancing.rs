@@ -1,0 +1,179 @@
+//! `EXT_mesh_gpu_instancing`: a node draws its mesh once for each transform of a table.
+//!
+//! Each instance becomes a child of the node, so that all follow its animation. The children stand behind all other
+//! nodes.
+
+use glam::{Quat, Vec3};
+use gltf::json::accessor::Accessor;
+use gltf::json::scene::Node as JsonNode;
+use gltf::json::{Index, Root, Value};
+
+use super::accessor::{Integers, Reader};
+use super::nodes::Tree;
+use super::notes::Notes;
+use super::transforms::rotation;
+use crate::error::Problem;
+use crate::{Animation, Channel, ChannelValues, Node, Scene, Transform};
+
+/// Instances that a scene may have in tables. Each takes a few hundred bytes in the scene and on the GPU.
+const MAX_INSTANCES: usize = 1 << 20;
+
+/// Number of instances that a node's table declares; 1 where it has none, and where it is broken.
+pub(super) fn declared(root: &Root, json: &JsonNode) -> u64 {
+    let first = table(json).and_then(Value::as_object).and_then(|table| table.values().next());
+    let accessor = first.and_then(Value::as_u64).and_then(|index| root.accessors.get(usize::try_from(index).ok()?));
+    accessor.map_or(1, |accessor| accessor.count.0)
+}
+
+/// The attributes of a node's table.
+fn table(json: &JsonNode) -> Option<&Value> {
+    json.extensions.as_ref()?.others.get("EXT_mesh_gpu_instancing")?.get("attributes")
+}
+
+/// Adds the instances of all nodes with a table and a mesh. Animated morph weights of such a node move its instances.
+pub(super) fn expand(
+    (root, reader): (&Root, &Reader),
+    tree: &mut Tree,
+    scene: &mut Scene,
+    notes: &mut Notes,
+) -> Result<(), Problem> {
+    let nodes = &mut scene.nodes;
+    let mut left = MAX_INSTANCES;
+    for node in 0..tree.file_index.len() {
+        let index = tree.file_index[node];
+        let Some(table) = table(&root.nodes[index]).filter(|_| nodes[node].mesh.is_some()) else { continue };
+        let element = format!("nodes[{index}].extensions.EXT_mesh_gpu_instancing.attributes");
+        if nodes[node].skin.is_some() {
+            // Joints place a skinned mesh, so that all instances would coincide.
+            notes.add(format!("{element}: a skinned mesh is drawn once, where its joints are"));
+            continue;
+        }
+        let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;
+        // Instances without transforms of their own coincide.
+        let Some(transforms) = transforms else { continue };
+        let first = nodes.len();
+        let mesh = nodes[node].mesh.take();
+        let instance = |rest: Transform| Node {
+            rest,
+            mesh,
+            parent: Some(node),
+            name: nodes[node].name.clone(),
+            morph_weights: nodes[node].morph_weights.clone(),
+            skin: None,
+        };
+        let instances: Vec<Node> = transforms.into_iter().map(instance).collect();
+        tree.file_index.extend(instances.iter().map(|_| index));
+        nodes.extend(instances);
+        for animation in &mut scene.animations {
+            move_weights(reader, animation, (node, first..nodes.len()), &element)?;
+        }
+    }
+    Ok(())
+}
+
+/// Gives each instance of a node the channels that animate the node's morph weights.
+fn move_weights(
+    reader: &Reader,
+    animation: &mut Animation,
+    (node, instances): (usize, std::ops::Range<usize>),
+    element: &str,
+) -> Result<(), Problem> {
+    let weights = |channel: &Channel| match &channel.values {
+        ChannelValues::MorphWeights(values) if channel.node == node => Some(values.len() + channel.times.len()),
+        _ => None,
+    };
+    let (of_node, mut others): (Vec<Channel>, _) =
+        std::mem::take(&mut animation.channels).into_iter().partition(|channel| weights(channel).is_some());
+    for channel in of_node {
+        reader.spend(weights(&channel).unwrap_or(0).saturating_mul(instances.len()), element)?;
+        others.extend(instances.clone().map(|node| Channel { node, ..channel.clone() }));
+    }
+    animation.channels = others;
+    Ok(())
+}
+
+/// A table of transforms.
+struct Table<'a> {
+    reader: &'a Reader<'a>,
+    json: &'a Value,
+    element: &'a str,
+}
+
+impl Table<'_> {
+    /// Reads its transforms, at most `left`, and subtracts their number from it. `None` if it has no attribute of
+    /// transforms.
+    fn read(&self, left: &mut usize) -> Result<Option<Vec<Transform>>, Problem> {
+        let [translation, rotations, scale] = ["TRANSLATION", "ROTATION", "SCALE"].map(|name| self.find(name));
+        let [translation, rotations, scale] = [translation?, rotations?, scale?];
+        let given = [translation, rotations, scale].into_iter().flatten();
+        let Some(count) = self.count(given)? else { return Ok(None) };
+        *left = left.checked_sub(count).ok_or_else(|| {
+            let reason = format!("with its {count} instances the scene has more than {MAX_INSTANCES} in tables");
+            Problem::new(self.element, reason).hint("Split or simplify the scene")
+        })?;
+        let translations = self.values::<3>(translation, Integers::AsDeclared)?;
+        let rotations = self.values::<4>(rotations, Integers::Normalized)?;
+        let scales = self.values::<3>(scale, Integers::AsDeclared)?;
+        let at = |index: usize| {
+            let translation = translations.as_ref().map_or(Vec3::ZERO, |all| Vec3::from_array(all[index]));
+            let turn = rotations.as_ref().map_or(Quat::IDENTITY, |all| Quat::from_array(all[index]));
+            let scale = scales.as_ref().map_or(Vec3::ONE, |all| Vec3::from_array(all[index]));
+            Transform { rotation: rotation(turn.as_dquat()), ..Transform::new(translation, Quat::IDENTITY, scale) }
+        };
+        Ok(Some((0..count).map(at).collect()))
+    }
+
+    /// The accessor of an attribute, with the attribute's name.
+    fn find(&self, name: &'static str) -> Result<Option<Attribute>, Problem> {
+        let Some(value) = self.json.get(name) else { return Ok(None) };
+        let index = value.as_u64().and_then(|index| u32::try_from(index).ok());
+        let wrong =
+            || Problem::new(format!("{}.{name}", self.element), format!("{value} is not the index of an accessor"));
+        Ok(Some(Attribute { name, index: Index::new(index.ok_or_else(wrong)?) }))
+    }
+
+    /// Number of elements, the same in all attributes.
+    fn count(&self, attributes: impl Iterator<Item = Attribute>) -> Result<Option<usize>, Problem> {
+        let mut first: Option<(usize, &str)> = None;
+        for attribute in attributes {
+            let element = self.name(&attribute);
+            let count = self.reader.count(attribute.index, &element)?;
+            match first {
+                Some((other, name)) if other != count => {
+                    let reason = format!("it has {count} elements, {name} has {other}");
+                    return Err(Problem::new(format!("{element}, accessor {}", attribute.index), reason));
+                }
+                _ => first = Some((count, attribute.name)),
+            }
+        }
+        Ok(first.map(|(count, _)| count))
+    }
+
+    fn values<const N: usize>(
+        &self,
+        attribute: Option<Attribute>,
+        integers: Integers,
+    ) -> Result<Option<Vec<[f32; N]>>, Problem> {
+        let Some(attribute) = attribute else { return Ok(None) };
+        let element = self.name(&attribute);
+        let values = self.reader.floats::<N>(attribute.index, &element, integers)?;
+        match values.iter().position(|value| !value.iter().all(|component| component.is_finite())) {
+            Some(at) => {
+                let element = format!("{element}, accessor {}", attribute.index);
+                Err(Problem::new(element, format!("element {at} is not finite")))
+            }
+            None => Ok(Some(values)),
+        }
+    }
+
+    fn name(&self, attribute: &Attribute) -> String {
+        format!("{}.{}", self.element, attribute.name)
+    }
+}
+
+/// An attribute of a table.
+#[derive(Clone, Copy)]
+struct Attribute {
+    name: &'static str,
+    index: Index<Accessor>,
+}

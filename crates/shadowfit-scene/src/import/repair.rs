@@ -1,0 +1,44 @@
+//! Repairs of JSON that is valid glTF 2.0, but not as the gltf crate reads it.
+
+use gltf::json::Value;
+
+/// Whole numbers up to here are exact in f64.
+const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// Completes the JSON of a file:
+///
+/// - whole numbers that are written with a fraction, such as `24.0`, become integers,
+/// - scenes without nodes get an empty list of them,
+/// - animation channels without a target node, which extensions define, are removed.
+pub(super) fn complete(json: &mut Value) {
+    make_whole(json);
+    for scene in items(json, "scenes") {
+        if let Some(scene) = scene.as_object_mut() {
+            scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
+        }
+    }
+    for animation in items(json, "animations") {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            channels.retain(|channel| channel["target"].get("node").is_some());
+        }
+    }
+}
+
+fn items<'a>(json: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Value> {
+    json.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten()
+}
+
+/// JSON that was parsed is not nested deeper than its parser allows, so recursion is safe.
+fn make_whole(json: &mut Value) {
+    match json {
+        Value::Array(values) => values.iter_mut().for_each(make_whole),
+        Value::Object(members) => members.values_mut().for_each(make_whole),
+        Value::Number(number) if number.is_f64() => {
+            let whole = number.as_f64().filter(|value| value.fract() == 0.0 && value.abs() <= MAX_EXACT);
+            if let Some(whole) = whole {
+                *json = Value::from(whole as i64);
+            }
+        }
+        _ => {}
+    }
+}
