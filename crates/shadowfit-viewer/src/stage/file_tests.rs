@@ -3,7 +3,7 @@
 
 use core::f32::consts::FRAC_PI_2;
 
-use glam::{DVec3, Quat, Vec2, Vec3};
+use glam::{DQuat, DVec3, Quat, Vec2, Vec3};
 use shadowfit_params as params;
 use shadowfit_scene::{
     Animation, Channel, ChannelValues, Interpolation, Lens as FileLens, Node, SceneCamera, SceneSun, Sun, Transform,
@@ -52,7 +52,8 @@ fn add_camera(scene: &mut Scene, rest: Transform, lens: FileLens) {
 /// Adds suns of some intensities, which travel along -z turned by `pitch` about x.
 fn add_suns(scene: &mut Scene, suns: &[(f32, f32)]) {
     for (intensity, pitch) in suns {
-        let node = add_node(scene, Transform { rotation: DQuat::from_rotation_x(f64::from(-pitch)), ..Transform::default() });
+        let node =
+            add_node(scene, Transform { rotation: DQuat::from_rotation_x(f64::from(-pitch)), ..Transform::default() });
         scene.suns.push(SceneSun { name: String::new(), node, color: Vec3::ONE, intensity: *intensity });
     }
     let taken = scene.strongest_sun().map(|index| &scene.suns[index]);
@@ -79,7 +80,7 @@ const PERSPECTIVE: FileLens = FileLens::Perspective { fov_y: 0.8, near: 0.1, far
 #[test]
 fn gpu_a_scene_opens_with_the_picture_of_its_camera_whatever_lens_and_node_that_has() {
     let rolled = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(-0.4) * DQuat::from_rotation_z(0.6);
-    let down = DQuat::from_rotation_x(-FRAC_PI_2);
+    let down = DQuat::from_rotation_x(-f64::from(FRAC_PI_2));
     let node = |rotation, scale| Transform { translation: DVec3::new(3.0, 6.0, 7.0), rotation, scale, matrix: None };
     let nodes = [
         node(rolled, DVec3::ONE),

@@ -33,8 +33,8 @@ use core::f32::consts::SQRT_2;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
-pub(crate) use self::reach::{HARDWARE_SNAP, rounding};
 pub use self::reach::Reach;
+pub(crate) use self::reach::{HARDWARE_SNAP, rounding};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::fits::LightProjection;

@@ -83,7 +83,10 @@ mod tests {
             met += 1;
             // Axes are rounded to f32, and rays begin far away.
             let tolerance = 3e-7 * 1e5;
-            assert!(low <= least + tolerance && high >= greatest - tolerance, "{i}: {low}..{high}, {least}..{greatest}");
+            assert!(
+                low <= least + tolerance && high >= greatest - tolerance,
+                "{i}: {low}..{high}, {least}..{greatest}"
+            );
             let is_inside = size.x.min(size.z) > 500.0;
             if is_ground && is_inside && axes.z.y > 0.2 {
                 assert!(low >= least - tolerance && high <= greatest + tolerance, "{i}: {low}..{high}");

@@ -141,7 +141,7 @@ struct Triangle<'a> {
     projected: [Vec3; 3],
 }
 
-impl<'a> Triangle<'a> {
+impl Triangle<'_> {
     /// Weights of the three vertices at a place, by two of their coordinates.
     fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> DVec3 {
         let whole = (b - a).perp_dot(c - a);
