@@ -265,7 +265,7 @@ pub struct DepthRounding {
     /// [Step](depth_step) of the map's format over its depth range.
     pub step: f32,
     /// The step, and how far f32 arithmetic shifts a receiver against the surface that the map stores: the
-    /// [`depth_precision`](crate::bias::depth_precision).
+    /// [`depth_precision`].
     pub needed: f32,
     /// [`Bias::constant_depth`].
     pub bias: f32,
