@@ -3,5 +3,6 @@
 
 mod agreement_gpu;
 mod artefacts_gpu;
+mod large_grounds_gpu;
 mod shapes;
 mod traced_gpu;

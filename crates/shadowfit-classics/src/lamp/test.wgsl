@@ -4,7 +4,7 @@
 // further: the rise of a plane's depth along u and v, and 1 where points outside of the light's image are lit.
 
 // Below this cosine between normal and light the plane's depth rises no more.
-const MIN_COSINE: f32 = 0.01;
+const MIN_COSINE: f32 = 0.005;
 
 // Change of the stored depth over a texel along u and along v, on the plane through a point with a normal toward the light.
 // Both are the same everywhere on a plane. `rise`: per texel of a plane at the unit distance.

@@ -51,9 +51,9 @@ struct shadowfit_Receiver {
 
 @group(GROUP) @binding(BINDING_0) var<uniform> shadowfit_receiver: shadowfit_Receiver;
 
-// Below this cosine (89.4 degrees from the light) the slope's tangent is held, so that a grazing
+// Below this cosine (89.7 degrees from the light) the slope's tangent is held, so that a grazing
 // surface gets a finite bias; it receives next to no light anyway.
-const SHADOWFIT_MIN_COSINE: f32 = 0.01;
+const SHADOWFIT_MIN_COSINE: f32 = 0.005;
 
 // Where a point is looked up in a map, and what the look-up needs of the map.
 struct shadowfit_Projected {

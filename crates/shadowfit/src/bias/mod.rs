@@ -73,9 +73,9 @@ pub struct PlaneBias {
     pub depth: f32,
 }
 
-/// Below this cosine between normal and light (89.4°) a depth bias grows no more: such a surface
+/// Below this cosine between normal and light (89.7°) a depth bias grows no more: such a surface
 /// receives next to no light. Normal offsets need no such limit.
-pub const MIN_COSINE: f32 = 0.01;
+pub const MIN_COSINE: f32 = 0.005;
 
 /// Constant bias of [`BiasSettings::automatic`], in texels: room for normals that are not quite those of the surface.
 /// The rounding of depths and positions, which is less in most maps, is covered by [`BiasSettings::depth_steps`].

@@ -1,0 +1,96 @@
+//! Grounds of 10 m to 100 km in one box: a plane never shadows itself, whatever the sun, the technique and the format of
+//! its maps.
+
+use std::collections::BTreeMap;
+
+use shadowfit::glam::Vec3;
+use shadowfit::settings::{MapFormat, MapSettings};
+use shadowfit::{PRESETS, Preset, Technique};
+use shadowfit_testing::pairs::{all_pairs, full_product};
+
+use super::shapes::{Arrangement, floor, solid};
+
+/// Sides of the ground, in metres.
+const GROUNDS: [f32; 6] = [10.0, 100.0, 1e3, 1e4, 3e4, 1e5];
+/// Distances from the eye to a wall, in metres.
+const WALLS: [f32; 4] = [0.2, 2.0, 10.0, 50.0];
+/// Elevations of the sun, in degrees.
+const SUNS: [f32; 6] = [0.3, 2.0, 10.0, 30.0, 60.0, 90.0];
+
+/// One cell of the sweep.
+struct Cell {
+    ground: f32,
+    wall: f32,
+    sun: f32,
+    preset: &'static Preset,
+    format: MapFormat,
+}
+
+impl Cell {
+    fn of(row: &[usize]) -> Self {
+        let [ground, wall, sun, preset, format] = *row else { unreachable!("five columns") };
+        Self {
+            ground: GROUNDS[ground],
+            wall: WALLS[wall],
+            sun: SUNS[sun],
+            preset: &PRESETS[preset],
+            format: MapFormat::ALL[format],
+        }
+    }
+
+    fn name(&self) -> String {
+        let Self { ground, wall, sun, preset, format } = self;
+        format!("ground {ground} m, wall at {wall} m, sun at {sun}°, {}, {format:?}", preset.name)
+    }
+
+    fn technique(&self) -> Technique {
+        let technique = self.preset.technique().with_format(self.format);
+        let map = MapSettings { max_distance: 400.0, ..technique.fit };
+        technique.with_fit(map).with_resolution(1024, 1024)
+    }
+
+    /// The ground beside the end of a wall of 3 m. The sun stands behind the wall: ground alone is lit, so that the
+    /// filter reads no other surface than the plane that it shades.
+    fn arrangement(&self) -> Arrangement {
+        // Rounding must not put a vertical sun in front of the wall.
+        let (sin, cos) = if self.sun == 90.0 { (1.0, 0.0) } else { self.sun.to_radians().sin_cos() };
+        let direction = Vec3::new(0.6 * cos, -sin, 0.8 * cos);
+        let wall = solid(Vec3::new(-0.45 * self.ground.min(20.0), 0.0, -0.3), Vec3::new(0.0, 3.0, 0.0));
+        let eye = Vec3::new(0.1, self.wall.clamp(0.3, 1.7), self.wall.min(0.4 * self.ground));
+        let target = Vec3::new(0.4, 0.0, -0.5 - 0.5 * eye.z);
+        let mut seen = Arrangement::new(vec![floor(self.ground * 0.5), wall], eye, target, direction);
+        (seen.camera.near, seen.camera.far) = (0.02, 400.0);
+        seen
+    }
+}
+
+/// Numbers of values of a cell's properties.
+const COUNTS: [usize; 5] = [GROUNDS.len(), WALLS.len(), SUNS.len(), PRESETS.len(), MapFormat::ALL.len()];
+
+#[test]
+fn no_plane_shadows_itself_on_grounds_of_any_size() {
+    assert_no_false_shadow(&all_pairs(&COUNTS));
+}
+
+#[test]
+#[ignore = "the full product of grounds, walls, suns, presets and formats: cargo xtask test --all"]
+fn no_plane_shadows_itself_in_the_full_product_of_grounds_walls_suns_presets_and_formats() {
+    assert_no_false_shadow(&full_product(&COUNTS));
+}
+
+/// Asserts that the pictures of cells have no false shadow away from edges, and prints the most by preset and ground.
+fn assert_no_false_shadow(rows: &[Vec<usize>]) {
+    let mut most = BTreeMap::<_, (f64, usize)>::new();
+    for cell in rows.iter().map(|row| Cell::of(row)) {
+        let tally = cell.arrangement().judged(&cell.technique());
+        assert!(tally.all.facing > 10_000, "{}: {} pixels face the sun", cell.name(), tally.all.facing);
+        let share = 100.0 * tally.all.false_shadow as f64 / tally.all.facing as f64;
+        let (worst, count) = most.entry((cell.preset.name, cell.ground as u32)).or_default();
+        (*worst, *count) = (worst.max(share), *count + 1);
+        if share > 0.0 {
+            println!("{}: {share:.3}% in false shadow", cell.name());
+        }
+    }
+    println!("{most:?}");
+    assert!(most.values().all(|(share, _)| *share == 0.0), "{most:?}");
+}
