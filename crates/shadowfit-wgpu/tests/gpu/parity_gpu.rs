@@ -16,7 +16,7 @@ const POINTS: usize = 600;
 const RESOLUTION: u32 = 256;
 
 /// The WGSL's cosine below which the slope's tangent is held.
-const MIN_COSINE: f64 = 0.01;
+const MIN_COSINE: f64 = 0.005;
 
 /// Difference allowed in texture coordinates and depth. A term of the projection is at most |p| / extent, about 3 here;
 /// the longest chain is 12 operations in f32 (2⁻²⁴ each), a square root and a division of 2.5 units by WGSL's rules.

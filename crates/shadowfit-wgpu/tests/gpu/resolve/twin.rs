@@ -50,7 +50,7 @@ const MOST_BLOCKS: f32 = 6.0;
 const ROUNDED_TEXEL: f32 = 0.02;
 const BENT: f32 = 0.015_625;
 const ROUNDINGS: f32 = 4.0;
-const MIN_COSINE: f32 = 0.01;
+const MIN_COSINE: f32 = 0.005;
 const POSITION_ROUNDING: f32 = 4.768_371_6e-7;
 /// Least height of a ray's start, in metres: [`ResolveView::new`](shadowfit_wgpu::resolve::ResolveView::new)'s.
 const RAY_OFFSET: f32 = 1e-3;
