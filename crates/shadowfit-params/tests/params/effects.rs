@@ -34,9 +34,6 @@ fn what_only_some_filters_and_formats_use_says_where_it_has_no_effect() {
         ("softness.ceiling", &[("map.filter", "pcss")], ("map.filter", "pcf_3x3"), "Filter"),
         ("map.edge_samples", &[("map.edges", "traced")], ("map.edges", "filtered"), "Edges"),
         ("map.fade", &[("fit.max_distance", "50")], ("fit.max_distance", "far_plane"), "Shadow distance"),
-        ("bias.depth_steps", &[("map.format", "depth16_unorm")], ("map.format", "depth32float"), "Format"),
-        ("bias.depth_steps", &[("map.format", "r16_float")], ("map.format", "r32float"), "Format"),
-        ("bias.depth_steps", &[("map.format", "r8_grey")], ("map.format", "rgba8_packed"), "Format"),
     ] {
         loses_its_effect(id, base, set, word);
     }

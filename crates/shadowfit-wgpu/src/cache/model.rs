@@ -380,13 +380,19 @@ impl World {
         for rect in &plan.rects[pass.cleared.clone()] {
             samples(*rect).for_each(|index| layer[index] = Sample::default());
         }
+        let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
         for piece in &plan.pieces[pass.pieces.clone()] {
             let standing = |number: &u32| self.objects.iter().find(|object| object.stands == Some(*number));
             let casters = plan.casters[piece.casters.clone()].iter().map(|number| &listed[*number as usize]);
             let standing =
                 plan.standing[piece.standing.clone()].iter().map(|number| standing(number).expect("it stands"));
             for object in casters.chain(standing) {
-                let (rect, viewport) = (covered(map, &object.aabb(self.place), self.place), piece.part.viewport());
+                let aabb = object.aabb(self.place);
+                // The GPU clips what lies outside the map, such as beyond its far plane.
+                if self.cache.settings.culling != Culling::Off && !volume.intersects_aabb(aabb.min, aabb.max) {
+                    continue;
+                }
+                let (rect, viewport) = (covered(map, &aabb, self.place), piece.part.viewport());
                 let min = rect.min.as_ivec2() + viewport;
                 let [min, end] = [min, min + rect.size.as_ivec2()].map(|corner| corner.max(IVec2::ZERO).as_uvec2());
                 let drawn = TexelRect { min, size: end - min }.intersection(piece.part.stored);
