@@ -51,6 +51,13 @@ const CELLS_UNDER_HIGH_SUNS: f64 = 2.0;
 /// cosine of the sun's elevation, so cells begin to grow above 60 degrees.
 const CELLS_PER_COSINE: f64 = 8.0;
 
+/// The same number holds for lenses that show between so many metres of height for each metre of distance. Cells of
+/// narrower ones are smaller, down to a quarter, since little of a wide cell is in view. Cells of wider ones are larger:
+/// the sides of the picture lie many times as far from the eye as the view depth that their pixels belong to.
+const NARROW: f64 = 0.07;
+const WIDE: f64 = 2.0;
+const LENSES: (f64, f64) = (0.25, 16.0);
+
 /// Points that the light meets at less than this cosine are left out: they are next to dark, and
 /// would ask for the finest texels of all.
 pub const MIN_FACING: f32 = 0.05;
@@ -117,7 +124,8 @@ impl DemandSpace {
         // Orthographic views may reach farther behind the eye than before it.
         let reach = f64::from(far.max(-view.near));
         let distance = (reach / height * f64::from(PIXELS)) as f32;
-        let cell = (f64::from(texel * distance) / cells_in_distance(direction.dot(up))) as f32;
+        let cells = cells_in_distance(direction.dot(up), height / reach);
+        let cell = (f64::from(texel * distance) / cells) as f32;
         let (x, y) = (plane.axes.x, plane.axes.y * (1.0 / plane.shape as f32));
         let least = f32::MIN_POSITIVE;
         checks::within("the texel of a demand grid", f64::from(texel), f64::from(least), f64::from(f32::MAX))?;
@@ -184,10 +192,13 @@ impl DemandGrid<'_> {
     }
 }
 
-/// Number of cells in the distance for which a level is made, by the sine of the sun's elevation.
-fn cells_in_distance(sine: f64) -> f64 {
+/// Number of cells in the distance for which a level is made, from the sine of the sun's elevation and the height of the
+/// picture for each metre of distance.
+fn cells_in_distance(sine: f64, height: f64) -> f64 {
     let cosine = libm::sqrt((1.0 - sine * sine).max(0.0));
-    (CELLS_PER_COSINE * cosine).clamp(CELLS_UNDER_HIGH_SUNS, CELLS_IN_DISTANCE)
+    let narrow = (height / NARROW).clamp(LENSES.0, 1.0);
+    let wide = (height / WIDE).clamp(1.0, LENSES.1);
+    (CELLS_PER_COSINE * cosine).clamp(CELLS_UNDER_HIGH_SUNS, CELLS_IN_DISTANCE) / (narrow * wide)
 }
 
 /// Length of the difference of two unit directions up to which demand under the one serves for the
