@@ -39,9 +39,24 @@ pub const CELLS: usize = LEVELS * SIDE * SIDE;
 /// count in pixels of the same size.
 pub const PIXELS: f32 = 1080.0;
 
-/// Number of cells in the distance for which a level is made. That distance lies at most [`SIDE`] / 2 cells from the
-/// eye.
-const CELLS_IN_DISTANCE: f32 = 4.0;
+/// Number of cells in the distance for which a level is made: more are finer, fewer reach farther. That distance lies at
+/// most [`SIDE`] / 2 cells from the eye.
+const CELLS_IN_DISTANCE: f64 = 4.0;
+
+/// The least number under a high sun, which meets walls at grazing angles. They ask for much finer texels than their
+/// distance does, and where the cells of that level do not reach them they count as coarser.
+const CELLS_UNDER_HIGH_SUNS: f64 = 2.0;
+
+/// The number of cells under a sun that meets a wall at a cosine of 1, unlimited. Walls are at most as well lit as the
+/// cosine of the sun's elevation, so cells begin to grow above 60 degrees.
+const CELLS_PER_COSINE: f64 = 8.0;
+
+/// The same number holds for lenses that show between so many metres of height for each metre of distance. Cells of
+/// narrower ones are smaller, down to a quarter, since little of a wide cell is in view. Cells of wider ones are larger:
+/// the sides of the picture lie many times as far from the eye as the view depth that their pixels belong to.
+const NARROW: f64 = 0.07;
+const WIDE: f64 = 2.0;
+const LENSES: (f64, f64) = (0.25, 16.0);
 
 /// Points that the light meets at less than this cosine are left out: they are next to dark, and
 /// would ask for the finest texels of all.
@@ -109,7 +124,8 @@ impl DemandSpace {
         // Orthographic views may reach farther behind the eye than before it.
         let reach = f64::from(far.max(-view.near));
         let distance = (reach / height * f64::from(PIXELS)) as f32;
-        let cell = texel * distance / CELLS_IN_DISTANCE;
+        let cells = cells_in_distance(direction.dot(up), height / reach);
+        let cell = (f64::from(texel * distance) / cells) as f32;
         let (x, y) = (plane.axes.x, plane.axes.y * (1.0 / plane.shape as f32));
         let least = f32::MIN_POSITIVE;
         checks::within("the texel of a demand grid", f64::from(texel), f64::from(least), f64::from(f32::MAX))?;
@@ -174,6 +190,15 @@ impl DemandGrid<'_> {
         let far = checks::length(direction.as_dvec3() + plane.axes.z.as_dvec3());
         is_finite && cell.is_finite() && texel.is_finite() && self.counts.len() == CELLS && far <= SAME_LIGHT
     }
+}
+
+/// Number of cells in the distance for which a level is made, from the sine of the sun's elevation and the height of the
+/// picture for each metre of distance.
+fn cells_in_distance(sine: f64, height: f64) -> f64 {
+    let cosine = libm::sqrt((1.0 - sine * sine).max(0.0));
+    let narrow = (height / NARROW).clamp(LENSES.0, 1.0);
+    let wide = (height / WIDE).clamp(1.0, LENSES.1);
+    (CELLS_PER_COSINE * cosine).clamp(CELLS_UNDER_HIGH_SUNS, CELLS_IN_DISTANCE) / (narrow * wide)
 }
 
 /// Length of the difference of two unit directions up to which demand under the one serves for the

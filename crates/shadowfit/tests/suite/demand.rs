@@ -198,3 +198,60 @@ proptest! {
         prop_assert!(found >= least.max(0.0) && found <= level.max(0.0) + 2.0, "level {found} for {level}");
     }
 }
+
+/// A lens's space for a camera that looks level along -z, under a sun at an elevation in degrees to the left.
+fn space_of(fov_y: f32, elevation: f32) -> DemandSpace {
+    let (eye, forward, up) = (DVec3::ZERO, Vec3::NEG_Z, Vec3::Y);
+    let camera = PerspectiveCamera { eye, forward, up, fov_y, aspect: 16.0 / 9.0, near: 0.1, far: 500.0 };
+    let (sin, cos) = elevation.to_radians().sin_cos();
+    DemandSpace::new(&camera.frustum().unwrap(), Vec3::new(cos, -sin, 0.0), up, f32::MAX).unwrap()
+}
+
+/// Octaves by which a point counts as coarser than it asks for, on average over an octave of view depths. The point is at
+/// shares of the view depth to the right and above, on a surface that faces the camera or the sun's side.
+fn octaves_too_coarse(fov_y: f32, elevation: f32, (right, above): (f32, f32), normal: Vec3) -> f32 {
+    let space = space_of(fov_y, elevation);
+    let octave = |i: u8| {
+        let depth = 10.0 * (f32::from(i) / 8.0).exp2();
+        let pixel = 2.0 * (fov_y * 0.5).tan() / shadowfit::demand::PIXELS * depth;
+        let across = if normal.x == 0.0 { Vec3::X } else { Vec3::Z };
+        let (a, b) = (across * pixel, Vec3::NEG_Y * pixel);
+        let seen = [a, b].map(|v| (space.x.dot(v), space.y.dot(v)));
+        let wanted = least_singular_value(seen);
+        let index = space.index(Vec3::new(right, above, -1.0) * depth, normal, a, b).expect("it is lit");
+        (index / (SIDE * SIDE)) as f32 - (wanted / space.texel).log2().floor()
+    };
+    (0..8).map(octave).sum::<f32>() / 8.0
+}
+
+/// The least singular value of a matrix of these columns.
+fn least_singular_value([(ax, ay), (bx, by)]: [(f32, f32); 2]) -> f32 {
+    let sum = ax * ax + ay * ay + bx * bx + by * by;
+    let det = ax * by - ay * bx;
+    ((sum - (sum * sum - 4.0 * det * det).max(0.0).sqrt()) * 0.5).sqrt()
+}
+
+/// A street's wall asks for texels a sixth as wide as its pixels under a sun 80 degrees high.
+#[test]
+fn walls_under_a_high_sun_count_by_their_own_octave_or_the_next() {
+    let coarser = octaves_too_coarse(0.9, 80.0, (0.4, 0.2), Vec3::NEG_X);
+    assert!(coarser < 1.0, "{coarser} octaves too coarse");
+}
+
+/// The sides of a picture of 170 degrees lie twenty times as far from the eye as their view depth.
+#[test]
+fn the_sides_of_a_wide_picture_count_by_their_own_octave_or_the_next() {
+    let coarser = octaves_too_coarse(2.967, 45.0, (15.0, 5.0), Vec3::NEG_X);
+    assert!(coarser < 1.0, "{coarser} octaves too coarse");
+}
+
+#[test]
+fn cells_of_a_long_lens_are_a_quarter_as_wide() {
+    let [usual, long] = [0.9_f32, 0.0175].map(|fov| {
+        let space = space_of(fov, 45.0);
+        // The view depth at which a pixel is as wide as the finest texel.
+        let depth = space.texel * shadowfit::demand::PIXELS / (2.0 * (fov * 0.5).tan());
+        space.cell / depth
+    });
+    assert!((usual - 0.25).abs() < 1e-3 && (long - 0.0625).abs() < 1e-3, "{usual} {long}");
+}
