@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat, MapSelection, Softness};
-use shadowfit::{Bias, DepthConvention, LightProjection, PerspectiveCamera, fit};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, PerspectiveCamera, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::engine::Engine;
@@ -80,9 +80,12 @@ fn uv(fit: &LightProjection, position: DVec3) -> DVec3 {
     (m.x_axis * position.x + m.y_axis * position.y + m.z_axis * position.z + m.w_axis).truncate()
 }
 
+fn bias_of(fit: &LightProjection) -> Bias {
+    Bias::from_texels(&BIAS, MapFormat::Depth32Float, fit)
+}
+
 /// What `shadowfit_project` promises, from the core's own `Bias`.
-fn projected(fit: &LightProjection, point: &Point) -> DVec3 {
-    let bias = Bias::from_texels(&BIAS, MapFormat::Depth32Float, fit);
+fn projected(fit: &LightProjection, bias: &Bias, point: &Point) -> DVec3 {
     let (position, normal) = (Vec3::from(point.position).as_dvec3(), Vec3::from(point.normal).as_dvec3());
     let cosine = normal.dot(-fit.direction.as_dvec3()).clamp(MIN_COSINE, 1.0);
     let sine = (1.0 - cosine * cosine).sqrt();
@@ -152,8 +155,9 @@ fn projection_and_biases_are_the_same_in_wgsl_and_rust() {
         let given = two_fits(DVec3::new(1000.0, 20.0, -3000.0), descriptor.depth);
         let harness = Harness::new(&gpu, &descriptor, origin, &given, &BIAS, &[Vec::new(), Vec::new()]);
         for (index, fit) in fits.iter().enumerate() {
+            let map = FittedMap::new(given[index], bias_of(&given[index])).relative_to(origin);
             for (point, answer) in points.iter().zip(harness.ask(index as u32, &points)) {
-                let expected = projected(fit, point);
+                let expected = projected(fit, &map.bias, point);
                 // Far outside the near map coordinates are large, and so is their rounding; slopes likewise.
                 let scale = expected.abs().max_element().max(1.0);
                 let error = (answer.projected.as_dvec3() - expected).abs().max_element();
@@ -184,7 +188,7 @@ fn the_factor_is_that_of_the_first_map_which_covers_the_point_and_one_outside_al
             let position = Vec3::from(point.position).as_dvec3();
             let at = fits.each_ref().map(|fit| uv(fit, position));
             let map = at.iter().position(|uv| is_inside(*uv));
-            let depth = map.map_or(0.0, |map| projected(&fits[map], point).z);
+            let depth = map.map_or(0.0, |map| projected(&fits[map], &bias_of(&fits[map]), point).z);
             let on_the_caster = (depth - 0.5).abs() < 0.001;
             if at.iter().any(|uv| is_at_border(*uv)) || on_the_caster {
                 continue;

@@ -19,9 +19,9 @@ const FINE: [u32; 2] = [240, 135];
 /// Rays over the sun's disc from a pixel that the maps are sure of.
 const RAYS: u32 = 64;
 
-/// Pixels of all pictures of the built-in scenes together that the maps are sure of and rays are not: 3 of 61,718 were
+/// Pixels of all pictures of the built-in scenes together that the maps are sure of and rays are not: 4 of 67,800 were
 /// found, in the courtyard under both suns, behind casters that are narrower than a texel.
-const WRONG: usize = 3;
+const WRONG: usize = 4;
 
 pub(super) fn technique(radius: f32) -> Technique {
     let softness = Softness::default().with_radius(SoftRadius::SunAngle(radius));
