@@ -217,7 +217,7 @@ impl Measure<'_> {
         let start = Instant::now();
         let factors_before = seen.factors_before(&shadowed?).ok_or("the frame before was not drawn without shadows")?;
         let measured = maps.measured(self.settings.map_size, before.to_light());
-        let PixelCamera { eye, forward, .. } = PixelCamera::new(&before.camera(), self.settings.size);
+        let PixelCamera { eye, forward, .. } = PixelCamera::new(before.camera(), self.settings.size);
         let before = MapsBefore { maps: self.picture_maps(&measured), eye, forward, factors: &factors_before };
         // Where the cascade of a point's depth does not hold it, Bevy's shader finds light, and no later one.
         let mut judged = judged.clone();

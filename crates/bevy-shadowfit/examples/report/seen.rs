@@ -41,7 +41,7 @@ impl Seen {
         size: [u32; 2],
         unshadowed: Vec<f32>,
     ) -> Result<Self, Box<dyn Error>> {
-        let camera = PixelCamera::new(&frame.camera(), size);
+        let camera = PixelCamera::new(frame.camera(), size);
         let mut seen = Truth::seen_by_rays(tracer, &camera);
         let expected = expected(tracer, &camera, frame.to_light(), &seen);
         let different = differences(&expected, &unshadowed);
