@@ -33,7 +33,7 @@ impl Shown {
     pub(crate) fn measure(&self, tracer: &Tracer, extent: f64) -> Figures {
         let width = (PIXELS * self.camera.aspect).sqrt().round().max(1.0);
         let size = [width, (PIXELS / width).round().max(1.0)].map(|side| side as u32);
-        let camera = PixelCamera::new(&self.camera, size);
+        let camera = PixelCamera::new(self.camera, size);
         let light = &self.light;
         let max_distance = light.maps.last().map_or(0.0, |map| map.bound);
         let settings = TruthSettings { max_distance, ..TruthSettings::new(light.to_light) };

@@ -42,7 +42,8 @@ impl Day {
     /// One with these steps, whose windows have settled.
     fn settled(technique: &Technique, steps: SunSteps) -> Self {
         let mut day = Self::new(Engine::shared(), technique, Some(steps));
-        for _ in 0..40 {
+        // For 60 frames after one window was replaced, the next replacement needs a larger gain.
+        for _ in 0..120 {
             day.go_on(0.0);
         }
         day
