@@ -171,6 +171,7 @@ pub fn prove(app: &mut App, light: Entity, camera: Entity) {
             normal_offset: sun.shadow_normal_bias * std::f32::consts::SQRT_2 * cascade.texel_size,
             is_shared: false,
             casters: CasterPolicy::DepthClamp,
+            bias: None,
         };
         let proof = prove_map(&input, &map.unwrap(), &query, &mut Scratch::new(&mut storage)).unwrap();
         assert!(proof.is_proven(), "{near} m to {far} m of {:?}: {proof:?}", config.bounds);
