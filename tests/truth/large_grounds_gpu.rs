@@ -1,5 +1,5 @@
-//! Grounds of 10 m to 100 km in one box: a plane never shadows itself, whatever the sun, the technique and the format of
-//! its maps.
+//! Grounds of 10 m to 100 km in one box: a plane never shadows itself, under any sun, with any preset and in any format
+//! of its maps.
 
 use std::collections::BTreeMap;
 

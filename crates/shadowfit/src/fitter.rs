@@ -60,7 +60,7 @@ impl FitState {
 
     /// Fits the maps of a frame. There are none where all views begin beyond the [shadow
     /// distance](crate::settings::MapSettings::max_distance), or [are empty](ViewFrustum::is_empty): the frame has no
-    /// shadows. What is held of earlier frames serves the next one that has some.
+    /// shadows. The state of earlier frames serves the next frame with shadows.
     ///
     /// # Errors
     ///
@@ -120,7 +120,7 @@ impl FitState {
         Ok(())
     }
 
-    /// A frame without shadows: it has no maps, and what is held of earlier frames stays for later ones.
+    /// Leaves a frame without maps and keeps the state of earlier frames for later ones.
     fn pass_over(&mut self, input: &FitInput, maps: &mut FittedMaps) {
         *maps = FittedMaps::default();
         if let Some(last) = &mut self.last {

@@ -54,8 +54,8 @@ impl FittedMap {
         self
     }
 
-    /// The same map for shaders that take positions relative to another world position, in metres. f32 rounds positions
-    /// that are farther away more, and biases grow by that much unless they are 0.
+    /// Returns this map for shaders that take positions relative to another world position, in metres. f32 rounds
+    /// positions more that are farther away, and biases grow by that much unless they are 0.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
         let projection = self.projection.relative_to(origin);

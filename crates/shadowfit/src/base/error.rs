@@ -60,7 +60,7 @@ pub enum FitError {
     UnusablePlane {
         /// The plane, or planes.
         plane: &'static str,
-        /// What is wrong with it, and what to do.
+        /// Its fault, and the cure.
         why: &'static str,
     },
     /// The far plane is infinite and the maximum shadow distance is `f32::MAX`: shadows would have no end.

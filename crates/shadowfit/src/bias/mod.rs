@@ -77,7 +77,7 @@ pub struct PlaneBias {
 /// receives next to no light. Normal offsets need no such limit.
 pub const MIN_COSINE: f32 = 0.005;
 
-/// Constant bias of [`BiasSettings::automatic`], in texels: room for normals that are not quite those of the surface.
+/// Constant bias of [`BiasSettings::automatic`], in texels: room for inexact surface normals.
 /// The rounding of depths and positions, which is less in most maps, is covered by [`BiasSettings::depth_steps`].
 const SPARE_TEXELS: f32 = 1.0 / 32.0;
 
@@ -100,6 +100,7 @@ impl Bias {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
         let rounding = settings.depth_steps * rounding(fit) as f32;
         let constant = settings.constant * texel;
+        // The larger of both: the constant covers rounding up to its own size. Negative constants stay negative.
         let constant = constant + (rounding - constant.abs()).max(0.0);
         let bias = Self {
             constant_depth: 0.0,
@@ -111,8 +112,8 @@ impl Bias {
         Self { constant_depth, ..bias.widened(rounding, fit) }
     }
 
-    /// This bias where positions are rounded by more, in metres: what is 0 stays 0. A surface that is shifted across the
-    /// light is off by its slope times the shift.
+    /// Returns this bias with room for more rounding of positions, in metres. Biases of 0 stay 0. A shift of a surface
+    /// across the light changes its depth by the slope times the shift, so the other forms grow, too.
     pub(crate) fn widened(self, rounding: f32, fit: &LightProjection) -> Self {
         let more = |bias: f32, rounding: f32| if bias > 0.0 { bias + rounding } else { bias };
         Self {

@@ -35,11 +35,11 @@ pub(crate) const HARDWARE_SNAP: f32 = 1.0 / 256.0;
 
 /// Roundings of 2⁻²⁴ between a receiver's depth and the depth that its surface stores there, as a multiple of the
 /// distance of the farthest corner of the map's box: four operations a term on terms that sum to twice that distance in
-/// the receiver's transform, and on the translation alone, which is one distance, in that of the vertices.
+/// the receiver's transform, and four on the translation in the vertices' transform, which is one such distance.
 const MAP_ROUNDINGS: f64 = 12.0;
 
-/// The same as a multiple of the distance of the farthest vertex: four operations a term in its transform, three where
-/// the rasteriser interpolates the depths of a triangle, and three where it interpolates the receiver's position.
+/// Roundings of 2⁻²⁴ as a multiple of the distance of the farthest vertex: four operations a term in its transform, three
+/// in the interpolation of a triangle's depths, and three in the interpolation of the receiver's position.
 const VERTEX_ROUNDINGS: f64 = 10.0;
 
 impl Reach {

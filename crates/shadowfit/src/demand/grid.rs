@@ -51,7 +51,7 @@ const CELLS_UNDER_HIGH_SUNS: f64 = 2.0;
 /// cosine of the sun's elevation, so cells begin to grow above 60 degrees.
 const CELLS_PER_COSINE: f64 = 8.0;
 
-/// The same number holds for lenses that show between so many metres of height for each metre of distance. Cells of
+/// Lenses that show a height between these two, in metres for each metre of distance, have equal cells. Cells of
 /// narrower ones are smaller, down to a quarter, since little of a wide cell is in view. Cells of wider ones are larger:
 /// the sides of the picture lie many times as far from the eye as the view depth that their pixels belong to.
 const NARROW: f64 = 0.07;

@@ -328,8 +328,8 @@ pub(crate) const DEFAULT_WASTE: f32 = 1.8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct BiasSettings {
-    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/32, for normals that
-    /// are not quite those of the surface.
+    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/32, for inexact
+    /// surface normals.
     pub constant: f32,
     /// Depth bias times the tangent of the angle between the surface normal and the light, in
     /// texel sizes. Default: 0.
