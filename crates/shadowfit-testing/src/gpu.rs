@@ -13,21 +13,27 @@ pub struct TestGpu {
     pub queue: wgpu::Queue,
 }
 
-/// A device that one test has to itself, and the list that it goes back to when the test's thread ends.
+/// A device, or a value that holds one, that one test has to itself. It goes back to a list when the test's thread ends: keep
+/// it in a thread-local variable.
 ///
 /// Two tests must not share a device at the same time: wgpu may run a callback in the thread of another test that polls the
 /// device. The first test then finds its work done before its callback has run.
 #[derive(Debug)]
-struct Lent<T: Clone + 'static> {
+pub struct Lent<T: Clone + 'static> {
     gpu: T,
     free: &'static Mutex<Vec<T>>,
 }
 
 impl<T: Clone> Lent<T> {
     /// Takes a device from the list, or opens one if the list is empty.
-    fn new(free: &'static Mutex<Vec<T>>, open: impl FnOnce() -> T) -> Self {
+    pub fn new(free: &'static Mutex<Vec<T>>, open: impl FnOnce() -> T) -> Self {
         let taken = free.lock().unwrap_or_else(PoisonError::into_inner).pop();
         Self { gpu: taken.unwrap_or_else(open), free }
+    }
+
+    /// Returns a handle of the device, for use in this thread.
+    pub fn get(&self) -> T {
+        self.gpu.clone()
     }
 }
 
@@ -52,7 +58,7 @@ pub fn software_gpu() -> TestGpu {
         static LENT: Lent<TestGpu> =
             Lent::new(&FREE, || open_software_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()));
     }
-    LENT.with(|lent| lent.gpu.clone())
+    LENT.with(Lent::get)
 }
 
 /// Opens the software adapter again, with these features, if the adapter has them, and these limits.
@@ -88,7 +94,7 @@ pub fn renderer_gpu() -> shadowfit_render::Gpu {
     std::thread_local! {
         static LENT: Lent<shadowfit_render::Gpu> = Lent::new(&FREE, open_renderer_gpu);
     }
-    LENT.with(|lent| lent.gpu.clone())
+    LENT.with(Lent::get)
 }
 
 /// Opens the software adapter again, as the renderer does.

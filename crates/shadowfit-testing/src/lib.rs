@@ -11,6 +11,6 @@ pub mod read_back;
 #[cfg(feature = "wgsl")]
 pub mod wgsl;
 
-pub use gpu::{TestGpu, open_software_gpu, software_gpu};
+pub use gpu::{Lent, TestGpu, open_software_gpu, software_gpu};
 #[cfg(feature = "render")]
 pub use gpu::{open_renderer_gpu, renderer_gpu};

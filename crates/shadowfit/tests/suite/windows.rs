@@ -3,6 +3,7 @@
 mod content;
 mod coverage;
 mod light;
+mod presets;
 mod room;
 mod scaled;
 mod scrolled;
@@ -93,6 +94,36 @@ fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<H
         })
     };
     all.filter_map(hit).collect()
+}
+
+/// Pixels of a picture that is 1080 high for a texel along the worse axis: one over the least singular value of how
+/// far a point moves in the map for a pixel.
+fn pixels_per_texel(maps: &FittedMaps, technique: &Technique, view: &SceneView, hit: &Hit) -> Option<f64> {
+    let read = maps.read(technique, view.eye + hit.point, hit.point.dot(view.axes()[2]))?;
+    let fit = &maps[read.main()].projection;
+    let rows = fit.light_from_world.transpose();
+    let texels = |v: DVec3| {
+        let [x, y] = [rows.x_axis, rows.y_axis].map(|row| row.truncate().as_dvec3().dot(v));
+        DVec2::new(x, y) / fit.texel_size.as_dvec2()
+    };
+    let (a, b) = (texels(hit.right), texels(hit.down));
+    let (half, diff) =
+        ((a.length_squared() + b.length_squared()) * 0.5, (a.length_squared() - b.length_squared()) * 0.5);
+    let greatest = (half + (diff * diff + a.dot(b) * a.dot(b)).sqrt()).sqrt();
+    Some(greatest / a.perp_dot(b).abs())
+}
+
+/// The 95% quantile over what is seen and turned to the light.
+fn quantile(maps: &FittedMaps, technique: &Technique, world: &World, view: &SceneView, light: Vec3) -> f64 {
+    let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::demand::MIN_FACING);
+    let seen = hits(view, world.origin, &world.boxes, f64::from(technique.fit.max_distance));
+    let mut all: Vec<f64> = seen
+        .iter()
+        .filter(|hit| is_lit(hit))
+        .map(|hit| pixels_per_texel(maps, technique, view, hit).expect("covered"))
+        .collect();
+    all.sort_by(f64::total_cmp);
+    all[all.len() * 19 / 20]
 }
 
 /// A demand grid and its counts.

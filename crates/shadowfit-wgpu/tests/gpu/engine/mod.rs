@@ -7,14 +7,14 @@ pub(crate) mod picture;
 pub(crate) mod points;
 
 use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex};
+use std::sync::{Arc, Mutex};
 
 use bytemuck::{NoUninit, Pod};
-use shadowfit_testing::{TestGpu, open_software_gpu, read_back, software_gpu};
+use shadowfit_testing::{Lent, TestGpu, open_software_gpu, read_back};
 use wgpu::util::DeviceExt;
 
-/// A device of the software adapter. The tests that share it share its pipelines: most of them draw with few shaders, and
-/// compiling one takes longer than drawing with it.
+/// A device of the software adapter. A test has it to itself and finds the pipelines of the tests before it: most tests draw
+/// with few shaders, and compiling one takes longer than drawing with it.
 #[derive(Clone)]
 pub(crate) struct Engine {
     pub(crate) adapter: wgpu::Adapter,
@@ -30,7 +30,6 @@ type Made<T> = Arc<Mutex<HashMap<String, T>>>;
 
 /// Returns the thing of a text, and makes it if it is missing.
 fn made<T: Clone>(all: &Made<T>, text: String, make: impl FnOnce() -> T) -> T {
-    // No lock while it is made: other tests go on.
     let found = all.lock().expect("no thread panics with the lock").get(&text).cloned();
     found.unwrap_or_else(|| {
         let new = make();
@@ -40,16 +39,25 @@ fn made<T: Clone>(all: &Made<T>, text: String, make: impl FnOnce() -> T) -> T {
 }
 
 impl Engine {
-    /// Returns the device that all tests share.
+    /// Returns this test's device with depth clamp, the same each time.
     pub(crate) fn shared() -> Self {
-        static ENGINE: LazyLock<Engine> = LazyLock::new(|| Engine::of(software_gpu()));
-        ENGINE.clone()
+        static FREE: Mutex<Vec<Engine>> = Mutex::new(Vec::new());
+        fn open() -> Engine {
+            Engine::of(open_software_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()))
+        }
+        std::thread_local! {
+            static LENT: Lent<Engine> = Lent::new(&FREE, open);
+        }
+        LENT.with(Lent::get)
     }
 
-    /// Returns a device without depth clamp, which tests share, too.
+    /// Returns this test's device without depth clamp, the same each time.
     pub(crate) fn without_clamp() -> Self {
-        static ENGINE: LazyLock<Engine> = LazyLock::new(|| Engine::open(wgpu::Limits::default()));
-        ENGINE.clone()
+        static FREE: Mutex<Vec<Engine>> = Mutex::new(Vec::new());
+        std::thread_local! {
+            static LENT: Lent<Engine> = Lent::new(&FREE, || Engine::open(wgpu::Limits::default()));
+        }
+        LENT.with(Lent::get)
     }
 
     /// Opens a device of its own without optional features.

@@ -1,13 +1,12 @@
 //! Out of a small room onto a plain and back: sizes follow a change of scene.
 
-use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, FittedMaps};
+use shadowfit::Aabb;
+use shadowfit::glam::{DVec3, Vec3};
 
-use super::{Hit, Run, World, hits, street_view, windows};
-use crate::scenes::SceneView;
+use super::{Run, World, quantile, street_view, windows};
 
 /// A room of 5 by 4 m with a door and furniture, on a plain with boxes up to 250 m away.
-fn room_on_a_plain() -> World {
+pub(super) fn room_on_a_plain() -> World {
     let b = |min: [f32; 3], max: [f32; 3]| Aabb::new(Vec3::from_array(min), Vec3::from_array(max));
     let mut boxes = vec![
         b([-300.0, -1.0, -300.0], [300.0, 0.0, 300.0]),
@@ -35,36 +34,6 @@ fn room_on_a_plain() -> World {
         boxes.push(Aabb::new(Vec3::new(x - s, 0.0, z - s), Vec3::new(x + s, 1.5 * s, z + s)));
     }
     World { origin: DVec3::ZERO, boxes }
-}
-
-/// Pixels of a picture that is 1080 high for a texel along the worse axis: one over the least singular value of how
-/// far a point moves in the map for a pixel.
-fn pixels_per_texel(maps: &FittedMaps, run: &Run, view: &SceneView, hit: &Hit) -> Option<f64> {
-    let read = maps.read(&run.technique, view.eye + hit.point, hit.point.dot(view.axes()[2]))?;
-    let fit = &maps[read.main()].projection;
-    let rows = fit.light_from_world.transpose();
-    let texels = |v: DVec3| {
-        let [x, y] = [rows.x_axis, rows.y_axis].map(|row| row.truncate().as_dvec3().dot(v));
-        DVec2::new(x, y) / fit.texel_size.as_dvec2()
-    };
-    let (a, b) = (texels(hit.right), texels(hit.down));
-    let (half, diff) =
-        ((a.length_squared() + b.length_squared()) * 0.5, (a.length_squared() - b.length_squared()) * 0.5);
-    let greatest = (half + (diff * diff + a.dot(b) * a.dot(b)).sqrt()).sqrt();
-    Some(greatest / a.perp_dot(b).abs())
-}
-
-/// The 95% quantile over what is seen and turned to the light.
-fn quantile(maps: &FittedMaps, run: &Run, view: &SceneView, light: Vec3) -> f64 {
-    let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::demand::MIN_FACING);
-    let seen = hits(view, run.world.origin, &run.world.boxes, f64::MAX);
-    let mut all: Vec<f64> = seen
-        .iter()
-        .filter(|hit| is_lit(hit))
-        .map(|hit| pixels_per_texel(maps, run, view, hit).expect("covered"))
-        .collect();
-    all.sort_by(f64::total_cmp);
-    all[all.len() * 19 / 20]
 }
 
 /// Frames for which the camera stays where it is, and within which it must be as sharp as what begins anew.
@@ -106,11 +75,11 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
             }
             let mut anew = Run::new(room_on_a_plain(), &run.technique);
             let fresh = (0..ANEW).map(|_| anew.frame(&to, light)).last().unwrap();
-            let fresh = quantile(&fresh, &anew, &to, light);
+            let fresh = quantile(&fresh, &run.technique, &run.world, &to, light);
             let arrived = run.frame(&to, light);
-            let first = quantile(&arrived, &run, &to, light) / fresh;
+            let first = quantile(&arrived, &run.technique, &run.world, &to, light) / fresh;
             let settled = (1..STAY).map(|_| run.frame(&to, light)).last().unwrap();
-            let last = quantile(&settled, &run, &to, light) / fresh;
+            let last = quantile(&settled, &run.technique, &run.world, &to, light) / fresh;
             let line =
                 format!("{count} windows, {name}: {first:.2} on arrival, {last:.2} after {STAY} frames, of {fresh:.2}");
             println!("{line}");
