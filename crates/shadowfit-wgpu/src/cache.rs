@@ -383,9 +383,7 @@ impl KeptMap {
     /// The map that is read: the fitted one, or the one that was drawn.
     fn shown(&self, fitted: &FittedMap, decision: &Decision) -> FittedMap {
         match (&self.drawn, decision) {
-            (Some(drawn), Decision::Wait) => {
-                FittedMap { projection: drawn.projection.relative_to(fitted.projection.origin), ..*drawn }
-            }
+            (Some(drawn), Decision::Wait) => drawn.relative_to(fitted.projection.origin),
             _ => *fitted,
         }
     }

@@ -223,7 +223,7 @@ pub fn fewest_maps(
 
 /// Everything that is shadowed.
 fn whole_range(input: &FitInput, distance: f32) -> Range {
-    let views = || input.views.iter().filter(|view| !view.is_empty());
+    let views = || input.views.iter().filter(|view| view.begins_before(distance));
     let near = views().map(|view| view.near).fold(f32::MAX, f32::min);
     let far = views().map(|view| view.far).fold(f32::MIN, f32::max);
     Range { near, far: far.min(distance) }

@@ -117,7 +117,7 @@ impl DemandView {
             corner: [left, top],
             size: [width, height],
             step: self.step(),
-            pixels: height as f32 / PIXELS,
+            pixels: height as f32 / PIXELS * self.shown() as f32,
             exponent: ((space.texel.to_bits() >> 23) & 0xff).cast_signed(),
             near: first,
             far,
@@ -166,15 +166,14 @@ impl DemandView {
         if eighths >= 1.0 { eighths / 8.0 } else { 1.0 }
     }
 
-    /// Width of a pixel that faces the eye, of a picture [`PIXELS`] high, in metres: at the eye, and its growth per
-    /// metre of view depth.
+    /// Width of a pixel that faces the eye, of a picture whose part in the frustum is [`PIXELS`] high, in metres: at the
+    /// eye, and its growth per metre of view depth.
     fn pixel_width(&self) -> [f32; 2] {
         let [near, far] = [self.frustum.near, self.frustum.far];
         let height = |top: usize, bottom: usize| {
             (self.frustum.corners[top].as_dvec3() - self.frustum.corners[bottom].as_dvec3()).length()
         };
-        let shown = self.shown();
-        let (at_near, at_far) = (height(0, 3) / shown, height(4, 7) / shown);
+        let (at_near, at_far) = (height(0, 3), height(4, 7));
         let growth = (at_far - at_near) / (f64::from(far) - f64::from(near));
         [at_near - growth * f64::from(near), growth].map(|width| (width / f64::from(PIXELS)) as f32)
     }

@@ -100,8 +100,8 @@ impl Bias {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
         let rounding = settings.depth_steps * rounding(fit) as f32;
         let constant = settings.constant * texel;
-        // The larger of both: the constant covers rounding up to its own size. Negative constants stay negative.
-        let constant = constant + (rounding - constant.abs()).max(0.0);
+        // The constant covers rounding up to its own size. A negative one asks for less than that, and stays.
+        let constant = if (0.0..rounding).contains(&constant) { rounding } else { constant };
         let bias = Self {
             constant_depth: 0.0,
             slope_depth: settings.slope * texel / fit.depth_range,

@@ -39,8 +39,7 @@ pub const CELLS: usize = LEVELS * SIDE * SIDE;
 /// count in pixels of the same size.
 pub const PIXELS: f32 = 1080.0;
 
-/// Number of cells in the distance for which a level is made: more are finer, fewer reach farther. That distance lies at
-/// most [`SIDE`] / 2 cells from the eye.
+/// Number of cells in the distance for which a level is made: more are finer, fewer reach farther.
 const CELLS_IN_DISTANCE: f64 = 4.0;
 
 /// The least number under a high sun, which meets walls at grazing angles. They ask for much finer texels than their
@@ -114,19 +113,23 @@ impl DemandSpace {
             return Err(FitError::NearNotBelowFar { near: view.near, far });
         }
         let plane = Plane::new(direction, up);
-        // Height of the picture at the far end, from the rectangle of the far plane: the same everywhere where the view
-        // begins behind the eye, as only orthographic ones do.
-        let [top, bottom] = [view.corners[4], view.corners[7]].map(Vec3::as_dvec3);
-        let share = if view.near > 0.0 { f64::from(far) / f64::from(view.far) } else { 1.0 };
-        let height = checks::length(top - bottom) * share;
+        // The picture's rectangle where shadows end.
+        let share = (f64::from(far) - f64::from(view.near)) / (f64::from(view.far) - f64::from(view.near));
+        let [near_corners, far_corners] = [0, 4].map(|first| [0, 1, 2, 3].map(|i| view.corners[first + i].as_dvec3()));
+        let end = [0, 1, 2, 3].map(|i| near_corners[i] + (far_corners[i] - near_corners[i]) * share);
+        let height = checks::length(end[0] - end[3]);
         let coarsest = (height / f64::from(PIXELS)) as f32;
         let texel = power_of_two(coarsest) * 2.0 / (1_u32 << LEVELS) as f32;
         // Orthographic views may reach farther behind the eye than before it.
         let reach = f64::from(far.max(-view.near));
         let distance = (reach / height * f64::from(PIXELS)) as f32;
         let cells = cells_in_distance(direction.dot(up), height / reach);
-        let cell = (f64::from(texel * distance) / cells) as f32;
         let (x, y) = (plane.axes.x, plane.axes.y * (1.0 / plane.shape as f32));
+        // The cells of the last level reach all that is seen.
+        let farthest =
+            near_corners.into_iter().chain(end).map(|corner| plane.of(plane.axes.project(corner)).abs().max_element());
+        let least = farthest.fold(0.0, f64::max) / f64::from((SIDE as u32 / 2) << (LEVELS - 1)) * (1.0 + ROUNDING);
+        let cell = (f64::from(texel * distance) / cells).max(least) as f32;
         let least = f32::MIN_POSITIVE;
         checks::within("the texel of a demand grid", f64::from(texel), f64::from(least), f64::from(f32::MAX))?;
         Ok(Self { origin: view.origin, direction: direction.as_vec3(), x, y, texel, cell })
@@ -137,7 +140,8 @@ impl DemandSpace {
     ///
     /// `position` is relative to [`Self::origin`], in metres; `normal` is the surface's geometric unit
     /// normal on the side of the eye; `right` and `down` are how far the point moves on its surface, in
-    /// metres, from one pixel to the next of a picture that is [`PIXELS`] high. All in world axes.
+    /// metres, from one pixel to the next of a picture whose part in the view's frustum is [`PIXELS`] high. All in world
+    /// axes.
     pub fn index(&self, position: Vec3, normal: Vec3, right: Vec3, down: Vec3) -> Option<usize> {
         let facing = -dot(normal, self.direction);
         // NaN is turned away too.
@@ -191,6 +195,9 @@ impl DemandGrid<'_> {
         is_finite && cell.is_finite() && texel.is_finite() && self.counts.len() == CELLS && far <= SAME_LIGHT
     }
 }
+
+/// Share of the farthest cells that is left for the rounding of positions.
+const ROUNDING: f64 = 1e-5;
 
 /// Number of cells in the distance for which a level is made, from the sine of the sun's elevation and the height of the
 /// picture for each metre of distance.

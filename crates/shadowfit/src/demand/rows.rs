@@ -34,7 +34,7 @@ impl Seen {
     /// # Errors
     ///
     /// [`FitError::OutOfRange`] for rows that are not full, a width below 3 and a stride of 0, and
-    /// [`FitError::SingularMatrix`] for a matrix without an inverse.
+    /// [`FitError::NotFinite`] for a matrix without an inverse.
     pub fn count_rows(&mut self, rows: &DepthRows, stride: u32) -> Result<(), FitError> {
         let picture = Picture::new(rows)?;
         checks::within("the stride of depth rows", f64::from(stride), 1.0, f64::from(u32::MAX))?;
@@ -52,16 +52,20 @@ impl Seen {
     }
 
     fn count_point(&mut self, point: &Point, forward: Vec3, height: usize) {
-        let Point { position, right, down, pixel } = *point;
+        let Point { position, ray, right, down, pixel } = *point;
+        let depth = position.dot(forward.as_dvec3());
+        // Shadows end there.
+        if depth >= f64::from(self.space().far) {
+            return;
+        }
         let normal = down.cross(right);
-        let toward_eye = if normal.dot(position) > 0.0 { -normal } else { normal };
+        let toward_eye = if normal.dot(ray) > 0.0 { -normal } else { normal };
         let Ok(normal) = checks::unit("a normal", toward_eye.as_vec3()) else { return };
         let direction = self.space().demand.direction;
         let [right, down] = [right, down].map(DVec3::as_vec3);
         let space = self.space().demand;
         if normal.dot(direction.as_dvec3()) < 0.0 {
             let texel = f64::from(needed_texel(right, down, direction));
-            let depth = position.dot(forward.as_dvec3());
             self.count_depth(depth as f32, libm::log2(pixel / texel) as f32);
         }
         // A grid is counted for pictures of a certain height.
@@ -75,6 +79,8 @@ impl Seen {
 /// A point that a pixel shows, relative to the eye, in metres.
 struct Point {
     position: DVec3,
+    /// Direction of the view ray, away from the eye; of any length.
+    ray: DVec3,
     /// How it moves on its surface from a pixel to the next, to the right and down.
     right: DVec3,
     down: DVec3,
@@ -103,7 +109,7 @@ impl<'a> Picture<'a> {
         checks::within("the depths of the last row", rest, 0.0, 0.0)?;
         let world_from_clip = rows.clip_from_world.as_dmat4().inverse();
         if !world_from_clip.is_finite() {
-            return Err(FitError::SingularMatrix { corner: 0, w: 0.0 });
+            return Err(FitError::NotFinite { input: "the inverse of a depth buffer's matrix", value: f64::NAN });
         }
         let (far, depth) = match rows.depth {
             DepthConvention::ZeroToOne => (1.0, (1.0, 0.0)),
@@ -132,9 +138,15 @@ impl<'a> Picture<'a> {
     /// The way from a point to the view ray through another, at the same view depth: where the near plane is tilted, the
     /// same stored depth is another view depth.
     fn across(&self, other: DVec3, point: DVec3) -> DVec3 {
-        let along = self.world_from_clip.z_axis;
-        let (way, ray) = (other - point, along.truncate() - other * along.w);
+        let (way, ray) = (other - point, self.ray(other));
         way - ray * (way.dot(self.forward) / ray.dot(self.forward))
+    }
+
+    /// The direction of the view ray through a point, away from the eye; of any length.
+    fn ray(&self, point: DVec3) -> DVec3 {
+        let along = self.world_from_clip.z_axis;
+        let ray = along.truncate() - point * along.w;
+        if ray.dot(self.forward) < 0.0 { -ray } else { ray }
     }
 
     /// Change of depth from a pixel to the next, from the neighbour that is nearer in depth: what lies behind a
@@ -155,7 +167,7 @@ impl<'a> Picture<'a> {
         let right = self.at(column + 1.0, row, depth + across) - position;
         let down = self.at(column, row + 1.0, depth + along) - position;
         let pixel = checks::length(self.across(self.at(column, row + 1.0, depth), position));
-        Some(Point { position, right, down, pixel })
+        Some(Point { position, ray: self.ray(position), right, down, pixel })
     }
 }
 
@@ -230,6 +242,39 @@ mod tests {
     }
 
     #[test]
+    fn points_beyond_the_shadow_distance_do_not_count() {
+        let depths = ground(DepthConvention::Reversed);
+        let view = camera().frustum().expect("a camera");
+        let counted_to = |distance: f32| {
+            let space = SeenSpace::new(&view, Vec3::new(0.3, -0.8, 0.2), Vec3::Y, distance).expect("a distance");
+            let (mut seen, depth) = (Seen::new(space), DepthConvention::Reversed);
+            let clip_from_world = camera().clip_from_world(depth);
+            let rows = DepthRows { depths: &depths, width: WIDTH, clip_from_world, depth, forward: view.forward };
+            seen.count_rows(&rows, 1).expect("a picture");
+            (seen.demand().counts.iter().sum::<u32>(), seen.histogram().bins.iter().sum::<u32>())
+        };
+        let (near, far) = (counted_to(20.0), counted_to(300.0));
+        assert!(near.0 > 0 && near.0 < far.0 * 9 / 10, "{near:?} of {far:?}");
+        assert_eq!(near.0, near.1, "all of the ground is lit well enough for both");
+    }
+
+    #[test]
+    fn a_slanted_surface_beside_the_axis_of_an_orthographic_picture_is_lit() {
+        let lens = crate::view::Lens::Orthographic { half_height: 50.0 };
+        let (eye, forward, up) = (DVec3::ZERO, Vec3::NEG_Z, Vec3::Y);
+        let camera = crate::view::Camera { eye, forward, up, lens, aspect: 1.0, near: 0.0, far: 100.0 };
+        let (view, depth) = (camera.frustum().expect("a camera"), DepthConvention::ZeroToOne);
+        // A plane that turns away from the eye, but not from the rays of its right half.
+        let stored = |x: u16| (60.0 - (f32::from(x) - 31.5) / 32.0 * 50.0 * 0.75) / 100.0;
+        let depths: Vec<f32> = (0..64 * 64_u16).map(|i| stored(i % 64)).collect();
+        let direction = Vec3::new(0.6, 0.0, -0.8);
+        let mut seen = Seen::new(SeenSpace::new(&view, direction, Vec3::Y, 100.0).expect("a view"));
+        let clip_from_world = camera.clip_from_world(depth);
+        seen.count_rows(&DepthRows { depths: &depths, width: 64, clip_from_world, depth, forward }, 1).expect("rows");
+        assert_eq!(seen.demand().counts.iter().sum::<u32>(), 62 * 62);
+    }
+
+    #[test]
     fn points_lie_where_the_ground_is() {
         let depths = ground(DepthConvention::Reversed);
         let rows = DepthRows {
@@ -241,7 +286,7 @@ mod tests {
         };
         let picture = Picture::new(&rows).expect("a picture");
         for x in [1, 40, 158] {
-            let Point { position, right, down, pixel } = picture.point(x, 80).expect("the ground");
+            let Point { position, ray: _, right, down, pixel } = picture.point(x, 80).expect("the ground");
             assert!((position.y + 2.0).abs() < 1e-3, "{position}");
             assert!(right.y.abs() < 1e-3 && down.y.abs() < 1e-3, "{right} {down}");
             assert!(checks::length(down) > pixel && pixel > 0.0, "a slanted surface needs longer steps");

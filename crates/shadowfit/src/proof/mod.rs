@@ -71,7 +71,7 @@ pub enum CoverageProof {
 }
 
 impl CoverageProof {
-    /// Whether the map has no holes.
+    /// Whether the map has no holes, and its bias covers the rounding of its depths.
     pub const fn is_proven(&self) -> bool {
         matches!(self, Self::Proven(_))
     }
@@ -89,7 +89,7 @@ pub struct Margins {
     pub casters: f32,
 }
 
-/// Proves that a map has no holes, or finds one.
+/// Proves that a map has no holes, or finds one, and that its bias covers the rounding of its depths.
 ///
 /// - **Receivers** are `input.receivers` clipped to the views' slices between `query.near` and
 ///   `query.far`; the slices themselves where the boxes are not known. Boxes whose

@@ -20,6 +20,7 @@ use crate::base::{DepthConvention, FitError, checks};
 /// assert_eq!(frustum.corners[1], Vec3::new(6.0, -1.0, -4.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
     /// Position of the eye in world space, in metres.
     pub eye: DVec3,
@@ -31,7 +32,7 @@ pub struct Camera {
     pub lens: Lens,
     /// Width of the picture divided by its height.
     pub aspect: f32,
-    /// View depth of the near plane, in metres.
+    /// View depth of the near plane, in metres. An orthographic view may begin at the eye or behind it.
     pub near: f32,
     /// View depth of the far plane, in metres.
     pub far: f32,
@@ -39,6 +40,7 @@ pub struct Camera {
 
 /// Lens of a [`Camera`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Lens {
     /// All lines of sight meet in the eye.
     Perspective {
@@ -114,9 +116,11 @@ impl Camera {
             Lens::Perspective { fov_y } => return self.with_angle(fov_y).frustum(),
             Lens::Orthographic { half_height } => f64::from(half_height),
         };
-        // Checks all but the lens.
-        let axes = self.with_angle(1.0);
+        // Checks the eye, the directions and the aspect.
+        let axes = PerspectiveCamera { near: 1.0, far: 2.0, ..self.with_angle(1.0) };
         axes.frustum()?;
+        checks::within("the camera's near distance", f64::from(self.near), -MAX_LENGTH, MAX_LENGTH)?;
+        checks::within("the camera's far distance", f64::from(self.far), -MAX_LENGTH, MAX_LENGTH)?;
         checks::within("the camera's half height", half_height, MIN_LENGTH, MAX_LENGTH)?;
         let [right, up, back] = {
             let rows = axes.view_from_world().transpose();

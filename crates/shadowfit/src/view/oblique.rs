@@ -25,7 +25,7 @@ use crate::base::{DepthConvention, FitError, checks};
 const PARALLEL: f64 = 1e-3;
 
 /// The same as a share of the w at the nearer plane: what is left of a zero where a matrix was inverted in f32.
-const INVERTED: f64 = 1.0 / 524_288.0;
+const INVERTED: f64 = 1.0 / 65_536.0;
 
 /// Sine of the angle between the axis of an orthographic picture and the normal of its planes up to which they count as
 /// perpendicular to it.
@@ -76,7 +76,8 @@ impl Unprojection {
         let cube = self.cube()?;
         let limit = f64::from(max_distance);
         let Some(seen) = cube.within(limit) else {
-            let near = cube.within(f64::MAX).map_or(limit, |all| all.depths.0);
+            // Where the plane hides the whole picture, the view is empty at any depth.
+            let near = cube.within(f64::MAX).map_or(limit.min(1.0), |all| all.depths.0);
             checks::may_begin_beyond(near as f32, max_distance)?;
             return cube.frustum(self.eye, WHOLE, (near, near));
         };
@@ -91,8 +92,9 @@ impl Unprojection {
     /// The clip cube in the world, with the direction of view.
     fn cube(&self) -> Result<Cube, FitError> {
         let cube = Cube::new(self, 1.0)?;
-        // A negated matrix is the same projection.
-        if cube.greatest_w() > 0.0 { Ok(cube) } else { Cube::new(self, -1.0) }
+        // A negated matrix is the same projection. All of the cube lies behind the eye, too, where the plane hides the
+        // whole picture.
+        if cube.greatest_w() > 0.0 || cube.is_ahead { Ok(cube) } else { Cube::new(self, -1.0) }
     }
 }
 
@@ -111,6 +113,8 @@ struct Cube {
     forward: DVec3,
     /// Whether view rays meet in the eye.
     is_perspective: bool,
+    /// Whether they do, and w falls along them as it does from the eye on.
+    is_ahead: bool,
 }
 
 /// The part of a clip cube that lies before a view depth.
@@ -162,7 +166,7 @@ impl Cube {
         for corner in &mut corners {
             corner.h = corner.position.dot(forward);
         }
-        Ok(Self { corners, forward, is_perspective })
+        Ok(Self { corners, forward, is_perspective, is_ahead: is_perspective && along.w < 0.0 })
     }
 
     fn greatest_w(&self) -> f64 {

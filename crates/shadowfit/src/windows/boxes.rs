@@ -82,8 +82,8 @@ struct Picture<'a> {
     positions: Positions,
     right: DVec3,
     down: DVec3,
-    /// Width of a pixel at a view depth of one metre, in metres.
-    pixel: f64,
+    /// Width of a pixel at the near and the far rectangle, in metres.
+    pixels: [f64; 2],
 }
 
 impl<'a> Picture<'a> {
@@ -91,9 +91,10 @@ impl<'a> Picture<'a> {
         let whole = view.slice(view.near, view.far);
         let c = whole.corners;
         let (right, down) = (c[5] - c[4], c[7] - c[4]);
-        let height = checks::length(down);
-        let (right, down) = (right / checks::length(right), down / height);
-        Self { plane, whole, positions: view.picture(), right, down, pixel: height / (f64::from(PIXELS) * view.far) }
+        let heights = [checks::length(c[3] - c[0]), checks::length(down)];
+        let (right, down) = (right / checks::length(right), down / heights[1]);
+        let pixels = heights.map(|height| height / f64::from(PIXELS));
+        Self { plane, whole, positions: view.picture(), right, down, pixels }
     }
 
     /// Start and end of a ray.
@@ -153,7 +154,7 @@ impl<'a> Picture<'a> {
     ) -> f32 {
         let along = end - start;
         let (enter, leave) = (f64::from(layer.enter), f64::from(layer.leave));
-        let pixel = |t: f64| (self.whole.near + (self.whole.far - self.whole.near) * t) * self.pixel;
+        let pixel = |t: f64| self.pixels[0] + (self.pixels[1] - self.pixels[0]) * t;
         if cone.cos_half_angle <= FLAT {
             for share in SAMPLES {
                 let t = enter + (leave - enter) * share;

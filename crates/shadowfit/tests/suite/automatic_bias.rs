@@ -227,7 +227,7 @@ fn any_case() -> impl Strategy<Value = Case> {
 fn has_bands(fit: &LightProjection, format: MapFormat, depth_steps: f32) -> bool {
     let settings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps };
     let bias = f64::from(Bias::from_texels(&settings, format, fit).constant_depth);
-    // The rounding of a 32-bit float, which the constant in texels covers.
+    // The rounding of a 32-bit float, which the steps cover as part of the rounding of positions.
     let float = f64::from(f32::EPSILON) * 0.5;
     let is_reversed = fit.depth == DepthConvention::Reversed;
     (0..1000).map(|i| (f64::from(i) + 0.377) / 1000.0).any(|depth| {

@@ -228,3 +228,14 @@ fn epsilon_over_acos_is_largest_head_on_and_least_at_grazing_light() {
     assert_eq!(acos_epsilon(FilterKind::Hardware2x2), 0.0005);
     assert_eq!(acos_bias(0.0, 1.0).unwrap(), 0.0);
 }
+
+/// A negative constant asks for less than the rounding needs, as in a comparison without bias.
+#[test]
+fn a_negative_constant_stays_as_it_is_on_large_grounds() {
+    let settings = BiasSettings { constant: -1.0 / 32.0, ..BiasSettings::automatic(FilterKind::Point) };
+    let fit = LightProjection { vertex_distance: 5e4, ..fitted(&camera(), DIRECTION, &exact(FitKind::Focused)) };
+    let bias = Bias::from_texels(&BiasSettings { depth_steps: 1.0, ..settings }, MapFormat::Depth32Float, &fit);
+    let metres = bias.constant_depth * fit.depth_range;
+    let expected = -fit.texel_size.max_element() / 32.0;
+    assert!(metres >= expected && metres < expected * 0.5, "{metres} for {expected}");
+}

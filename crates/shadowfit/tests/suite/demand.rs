@@ -246,12 +246,41 @@ fn the_sides_of_a_wide_picture_count_by_their_own_octave_or_the_next() {
 }
 
 #[test]
-fn cells_of_a_long_lens_are_a_quarter_as_wide() {
+fn cells_of_a_long_lens_are_finer() {
     let [usual, long] = [0.9_f32, 0.0175].map(|fov| {
         let space = space_of(fov, 45.0);
         // The view depth at which a pixel is as wide as the finest texel.
         let depth = space.texel * shadowfit::demand::PIXELS / (2.0 * (fov * 0.5).tan());
         space.cell / depth
     });
-    assert!((usual - 0.25).abs() < 1e-3 && (long - 0.0625).abs() < 1e-3, "{usual} {long}");
+    assert!((usual - 0.25).abs() < 1e-3 && (0.0625..0.126).contains(&long), "{usual} {long}");
+}
+
+#[test]
+fn every_lit_point_in_view_has_a_cell() {
+    for (fov_y, far) in [0.0035_f32, 0.0175, 0.1, 0.9, 2.0, 2.97]
+        .into_iter()
+        .flat_map(|fov| [300.0, 480.0, 512.0, 520.0].map(|far| (fov, far)))
+    {
+        for (elevation, forward) in
+            [(3.0_f32, Vec3::Z), (20.0, Vec3::X), (45.0, Vec3::NEG_Z), (85.0, Vec3::new(0.3, -0.9, 0.2))]
+        {
+            let (sin, cos) = elevation.to_radians().sin_cos();
+            let direction = Vec3::new(0.6 * cos, -sin, 0.8 * cos);
+            let camera =
+                PerspectiveCamera { eye: DVec3::ZERO, forward, up: Vec3::Y, fov_y, aspect: 2.4, near: 0.1, far };
+            let view = camera.frustum().unwrap();
+            let space = DemandSpace::new(&view, direction, Vec3::Y, far * 0.8).unwrap();
+            for corner in view.corners[4..].iter().map(|corner| *corner * 0.7999) {
+                for share in [1.0, 0.1, 0.001] {
+                    let point = corner * share;
+                    let pixel = (fov_y * 0.5).tan() * 2.0 * point.dot(view.forward) / shadowfit::demand::PIXELS;
+                    let side = direction.any_orthonormal_vector();
+                    let (right, down) = (side * pixel, direction.cross(side) * pixel);
+                    let found = space.index(point, -direction, right, down);
+                    assert!(found.is_some(), "{fov_y} {far} {elevation}: {point}");
+                }
+            }
+        }
+    }
 }

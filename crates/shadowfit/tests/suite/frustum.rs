@@ -51,7 +51,7 @@ proptest! {
                 prop_assert!(off < tolerance, "corner {i}: {found}");
             }
             let inverse = flat.clip_from_world(depth).as_dmat4().inverse();
-            let Ok(other) = ViewFrustum::from_eye_from_clip(&inverse.as_mat4(), flat.eye, depth, f32::MAX) else { continue };
+            let other = ViewFrustum::from_eye_from_clip(&inverse.as_mat4(), flat.eye, depth, f32::MAX).unwrap();
             for (found, expected) in frustum.corners.into_iter().zip(other.corners) {
                 let scale = expected.length().max(flat.far);
                 prop_assert!((found - expected).length() <= 1e-4 * scale, "{found} for {expected}");

@@ -42,9 +42,7 @@ impl Oblique {
         let matrix = self.view.clip_from_eye();
         let depth = self.view.lens.depth;
         let plane = self.plane.normal.extend(-self.plane.distance);
-        let clip_plane = matrix.inverse().transpose() * plane;
-        let corner = DVec4::new(clip_plane.x.signum(), clip_plane.y.signum(), f64::from(depth.far()), 1.0);
-        let plane = plane * (self.plane.scale / plane.dot(matrix.inverse() * corner));
+        let plane = plane * (self.plane.scale / plane.dot(self.farthest_corner()));
         let mut rows = matrix.transpose();
         rows.z_axis = match depth {
             DepthConvention::ZeroToOne => plane,
@@ -52,6 +50,19 @@ impl Oblique {
             DepthConvention::NegativeOneToOne => plane * 2.0 - rows.w_axis,
         };
         rows.transpose()
+    }
+
+    /// The corner of the far plane that lies farthest beyond the tilted plane; homogeneous.
+    fn farthest_corner(&self) -> DVec4 {
+        let eye_from_clip = self.view.clip_from_eye().inverse();
+        let clip_plane = eye_from_clip.transpose() * self.plane.normal.extend(-self.plane.distance);
+        let far = f64::from(self.view.lens.depth.far());
+        eye_from_clip * DVec4::new(clip_plane.x.signum(), clip_plane.y.signum(), far, 1.0)
+    }
+
+    /// Whether the matrix turns the plane around, since no corner of the far plane lies beyond it.
+    fn is_turned(&self) -> bool {
+        self.plane.normal.extend(-self.plane.distance).dot(self.farthest_corner()) <= 0.0
     }
 
     fn frustum(&self) -> Result<ViewFrustum, FitError> {
@@ -100,7 +111,7 @@ fn any_oblique() -> impl Strategy<Value = Oblique> {
         .prop_filter("the plane must leave some of the picture", |oblique| {
             // What an orthographic view shows before a plane that faces it lies behind the camera.
             let is_ahead = view_is_ahead(oblique);
-            is_ahead && oblique.points(&grid(9)).len() > 12 && oblique.frustum().is_ok()
+            is_ahead && !oblique.is_turned() && oblique.points(&grid(9)).len() > 12
         })
 }
 
@@ -412,7 +423,28 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
         let (tilted, plain) = (counted(oblique.clip_from_eye()), counted(oblique.view.clip_from_eye()));
         assert!(plain.1 > 500, "{depth:?}: {}", plain.1);
         assert!(tilted.1.abs_diff(plain.1) * 20 < plain.1, "{depth:?}: {} and {}", tilted.1, plain.1);
+        assert!(tilted.0.abs_diff(plain.0) * 20 < plain.0, "{depth:?}: {} and {} in the grid", tilted.0, plain.0);
         let moved: u32 = tilted.2.iter().zip(&plain.2).map(|(a, b)| a.abs_diff(*b)).sum();
         assert!(moved * 10 < plain.1, "{depth:?}: {moved} of {} points are elsewhere", plain.1);
+    }
+}
+
+/// A camera below the water's surface that looks down, drawn with the surface as the near plane for what lies above.
+#[test]
+fn a_plane_that_hides_the_whole_picture_leaves_an_empty_view() {
+    let (tangent, pitch) = (DVec2::new(0.8, 0.5), 0.8_f64);
+    let forward = DVec3::new(0.0, -pitch.sin(), -pitch.cos());
+    let up = DVec3::new(0.0, pitch.cos(), -pitch.sin());
+    let rows = [
+        (DVec3::X / tangent.x).extend(0.0),
+        (up / tangent.y).extend(0.0),
+        DVec4::new(0.0, 1.0, 0.0, -2.0),
+        forward.extend(0.0),
+    ];
+    let clip_from_eye = DMat4::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose();
+    for distance in [50.0, f32::MAX] {
+        let matrix = clip_from_eye.inverse();
+        let view = ViewFrustum::from_world_from_clip_f64(&matrix, DVec3::ZERO, DepthConvention::ZeroToOne, distance);
+        assert!(view.unwrap().is_empty(), "{view:?}");
     }
 }

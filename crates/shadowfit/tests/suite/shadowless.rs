@@ -126,7 +126,8 @@ fn a_view_beyond_the_distance_adds_nothing_to_the_maps_of_others() {
                 maps[2]
             };
             let alone = fitted(&[near]);
-            for views in [[near, empty], [empty, near]] {
+            let far = beyond().frustum().unwrap();
+            for views in [[near, empty], [empty, near], [near, far], [far, near]] {
                 let both = fitted(&views);
                 assert_eq!(both.len(), alone.len(), "{name}");
                 for (both, alone) in both.iter().zip(alone.iter()) {

@@ -113,8 +113,8 @@ fn pixels_per_texel(maps: &FittedMaps, technique: &Technique, view: &SceneView, 
     Some(greatest / a.perp_dot(b).abs())
 }
 
-/// The 95% quantile over what is seen and turned to the light.
-fn quantile(maps: &FittedMaps, technique: &Technique, world: &World, view: &SceneView, light: Vec3) -> f64 {
+/// The 95% quantile over what is seen and turned to the light; `None` where nothing is.
+fn quantile(maps: &FittedMaps, technique: &Technique, world: &World, view: &SceneView, light: Vec3) -> Option<f64> {
     let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::demand::MIN_FACING);
     let seen = hits(view, world.origin, &world.boxes, f64::from(technique.fit.max_distance));
     let mut all: Vec<f64> = seen
@@ -123,7 +123,7 @@ fn quantile(maps: &FittedMaps, technique: &Technique, world: &World, view: &Scen
         .map(|hit| pixels_per_texel(maps, technique, view, hit).expect("covered"))
         .collect();
     all.sort_by(f64::total_cmp);
-    all[all.len() * 19 / 20]
+    all.get(all.len() * 19 / 20).copied()
 }
 
 /// A demand grid and its counts.

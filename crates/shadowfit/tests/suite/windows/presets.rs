@@ -127,8 +127,10 @@ fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov
         if let Some(cell) = space.demand.index(point, normal, right, down) {
             seen.count_cell(cell);
         }
-        let depth = hit.point.dot(view.axes()[2]) as f32;
-        seen.count_depth(depth, (depth * pixel / needed_texel(right, down, light)).log2());
+        if normal.dot(light) < 0.0 {
+            let depth = hit.point.dot(view.axes()[2]) as f32;
+            seen.count_depth(depth, (depth * pixel / needed_texel(right, down, light)).log2());
+        }
     }
     seen
 }
@@ -145,20 +147,20 @@ fn of_path(preset: &str, scene: &Scene, path: u8, light: Vec3, fov: f32) -> f64 
         let input: FitInput = scene.world.input(&views, light, &[]);
         let maps = fitter.fit(&input).unwrap();
         if frame >= 2 {
-            logs.push(quantile(maps, &technique, &scene.world, &view, light).ln());
+            logs.extend(quantile(maps, &technique, &scene.world, &view, light).map(f64::ln));
         }
         fitter.see(seen(&view, &scene.world, light, &technique, fov));
     }
     (logs.iter().sum::<f64>() / logs.len() as f64).exp()
 }
 
-/// Windows over the best of other presets: for each path of a scene.
+/// Windows over the best of other presets: for each path of a scene that shows something lit.
 fn ratios(scene: &Scene, paths: u8, light: Vec3, fov: f32, others: &[&str]) -> Vec<f64> {
     let ratio = |path: u8| {
         let of = |preset: &str| of_path(preset, scene, path, light, fov);
         of("windows-4") / others.iter().map(|preset| of(preset)).fold(f64::INFINITY, f64::min)
     };
-    (0..paths).map(ratio).collect()
+    (0..paths).map(ratio).filter(|ratio| ratio.is_finite()).collect()
 }
 
 fn geometric_mean(values: &[f64]) -> f64 {
@@ -169,13 +171,16 @@ fn greatest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |greatest, value| value.max(greatest))
 }
 
-/// Most pixels per texel under a high sun, over those of `histogram-4`.
+/// `focused-4` with a depth histogram: what reports call `histogram-4`.
+const HISTOGRAM: [&str; 1] = ["focused-4"];
+
+/// Most pixels per texel under a high sun, over those of slices that a histogram chooses.
 const HIGH_SUN_LIMIT: f64 = 1.8;
 
 #[test]
 fn windows_are_nearly_as_fine_as_slices_under_high_suns() {
     for scene in scenes() {
-        let found = ratios(&scene, 3, sun(80.0), 52.0, &["histogram-4"]);
+        let found = ratios(&scene, 3, sun(80.0), 52.0, &HISTOGRAM);
         assert!(greatest(&found) <= HIGH_SUN_LIMIT, "{}: {found:.2?}", scene.name);
     }
 }
@@ -184,7 +189,7 @@ fn windows_are_nearly_as_fine_as_slices_under_high_suns() {
 const LENS_LIMIT: f64 = 1.5;
 
 /// The presets that may be finer through some lens.
-const OF_SLICES: [&str; 3] = ["histogram-4", "calm-4", "focused-4"];
+const OF_SLICES: [&str; 2] = ["focused-4", "calm-4"];
 
 #[test]
 fn windows_are_nearly_as_fine_as_the_best_preset_through_usual_and_wide_lenses() {
@@ -201,7 +206,7 @@ fn table_of_high_suns_and_lenses() {
     for elevation in [15.0, 45.0, 65.0, 80.0, 88.0] {
         write!(table, "| {elevation}° |").unwrap();
         for scene in scenes() {
-            let found = ratios(&scene, 8, sun(elevation), 52.0, &["histogram-4"]);
+            let found = ratios(&scene, 8, sun(elevation), 52.0, &HISTOGRAM);
             write!(table, " {:.2}, {:.2} |", geometric_mean(&found), greatest(&found)).unwrap();
         }
         table.push('\n');

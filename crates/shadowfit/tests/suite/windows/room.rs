@@ -75,11 +75,11 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
             }
             let mut anew = Run::new(room_on_a_plain(), &run.technique);
             let fresh = (0..ANEW).map(|_| anew.frame(&to, light)).last().unwrap();
-            let fresh = quantile(&fresh, &run.technique, &run.world, &to, light);
+            let fresh = quantile(&fresh, &run.technique, &run.world, &to, light).unwrap();
             let arrived = run.frame(&to, light);
-            let first = quantile(&arrived, &run.technique, &run.world, &to, light) / fresh;
+            let first = quantile(&arrived, &run.technique, &run.world, &to, light).unwrap() / fresh;
             let settled = (1..STAY).map(|_| run.frame(&to, light)).last().unwrap();
-            let last = quantile(&settled, &run.technique, &run.world, &to, light) / fresh;
+            let last = quantile(&settled, &run.technique, &run.world, &to, light).unwrap() / fresh;
             let line =
                 format!("{count} windows, {name}: {first:.2} on arrival, {last:.2} after {STAY} frames, of {fresh:.2}");
             println!("{line}");
