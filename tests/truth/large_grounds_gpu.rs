@@ -1,7 +1,8 @@
-//! Grounds of 10 m to 100 km in one box: a plane never shadows itself, under any sun, with any preset and in any format
-//! of its maps.
+//! Grounds of 10 m to 100 km in one box, and casters as far away: a plane never shadows itself, under any sun, with any
+//! preset and in any format of its maps.
 
 use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 use shadowfit::glam::Vec3;
 use shadowfit::settings::{MapFormat, MapSettings};
@@ -84,18 +85,65 @@ fn no_plane_shadows_itself_in_the_full_product_of_grounds_walls_suns_presets_and
 
 /// Asserts that the pictures of cells have no false shadow away from edges, and prints the most by preset and ground.
 fn assert_no_false_shadow(rows: &[Vec<usize>]) {
-    let mut most = BTreeMap::<_, (f64, usize)>::new();
-    for cell in rows.iter().map(|row| Cell::of(row)) {
+    let most = Mutex::new(BTreeMap::<_, BTreeMap<u32, (f64, usize)>>::new());
+    let judge = |row: &Vec<usize>| {
+        let cell = Cell::of(row);
         let tally = cell.arrangement().judged(&cell.technique());
         assert!(tally.all.facing > 10_000, "{}: {} pixels face the sun", cell.name(), tally.all.facing);
         let false_shadow = tally.all.false_shadow.saturating_sub(UNSEEN_EDGES);
         let share = 100.0 * false_shadow as f64 / tally.all.facing as f64;
-        let (worst, count) = most.entry((cell.preset.name, cell.ground as u32)).or_default();
+        let mut most = most.lock().expect("no other thread panics");
+        let (worst, count) = most.entry(cell.preset.name).or_default().entry(cell.ground as u32).or_default();
         (*worst, *count) = (worst.max(share), *count + 1);
         if share > 0.0 {
             println!("{}: {share:.3}% in false shadow", cell.name());
         }
+    };
+    // Each thread has a device of its own.
+    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get()).min(rows.len());
+    std::thread::scope(|scope| {
+        for thread in 0..threads {
+            scope.spawn(move || rows.iter().skip(thread).step_by(threads).for_each(judge));
+        }
+    });
+    let most = most.into_inner().expect("no thread panics");
+    for (preset, grounds) in &most {
+        let line = grounds.iter().map(|(ground, (share, count))| format!("{share:.3}% of {count} at {ground} m"));
+        println!("{preset}: {}", line.collect::<Vec<_>>().join(", "));
     }
-    println!("{most:?}");
-    assert!(most.values().all(|(share, _)| *share == 0.0), "{most:?}");
+    assert!(most.values().flat_map(BTreeMap::values).all(|(share, _)| *share == 0.0), "{most:?}");
+}
+
+/// Each preset once, and each format.
+#[test]
+fn a_far_mountain_shadows_half_of_the_ground_and_the_ground_does_not_shadow_itself() {
+    assert_right_beside_a_mountain(PRESETS.iter().zip(MapFormat::ALL.into_iter().cycle()));
+}
+
+#[test]
+#[ignore = "all presets with all formats: cargo xtask test --all"]
+fn a_far_mountain_shadows_half_of_the_ground_with_all_presets_and_formats() {
+    assert_right_beside_a_mountain(PRESETS.iter().flat_map(|preset| MapFormat::ALL.map(|format| (preset, format))));
+}
+
+/// Asserts that pictures of a ground are right. A mountain stands 20 km toward the sun, and its shadow ends along a line
+/// through the picture. The depth ranges of all maps are as long, so that the bias must be large.
+fn assert_right_beside_a_mountain(techniques: impl Iterator<Item = (&'static Preset, MapFormat)>) {
+    let (away, height) = (20e3, 3e3);
+    let mountain = solid(Vec3::new(-8e3, 0.0, away), Vec3::new(0.0, height, away + 1e3));
+    let (sin, cos) = 4.0_f32.to_radians().sin_cos();
+    let direction = Vec3::new(0.0, -sin, -cos);
+    let mut seen = Arrangement::new(vec![floor(40e3), mountain], Vec3::new(0.0, 1.7, 4.0), Vec3::ZERO, direction);
+    (seen.camera.near, seen.camera.far) = (0.02, 400.0);
+    for (preset, format) in techniques {
+        let technique = preset.technique().with_format(format);
+        let fit = MapSettings { max_distance: 400.0, ..technique.fit };
+        let tally = seen.judged(&technique.with_fit(fit).with_resolution(1024, 1024));
+        let name = format!("{}, {format:?}", preset.name);
+        assert!(tally.all.facing > 10_000 && tally.edge_zone > 100, "{name}: the shadow's end is in view: {tally:?}");
+        assert!(tally.all.false_shadow <= UNSEEN_EDGES, "{name}: {tally:?}");
+        // The XNA sample's fit has no casters beyond the view.
+        let missing = tally.all.false_light + tally.all.hole;
+        assert!(missing <= UNSEEN_EDGES || preset.name == "xna-1", "{name}: {tally:?}");
+    }
 }
