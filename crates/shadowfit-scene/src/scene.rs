@@ -113,6 +113,13 @@ pub struct Mesh {
     pub morph_weights: Vec<f32>,
 }
 
+impl Mesh {
+    /// Returns the number of morph targets that its nodes have weights for.
+    pub(crate) fn targets(&self) -> usize {
+        self.primitives.iter().map(|primitive| primitive.morphs.len()).max().unwrap_or(0)
+    }
+}
+
 /// Triangles with one material. It reads and writes like its [`Geometry`].
 #[derive(Clone, Debug, Default)]
 pub struct Primitive {

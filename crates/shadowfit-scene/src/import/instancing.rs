@@ -9,6 +9,7 @@ use gltf::json::scene::Node as JsonNode;
 use gltf::json::{Index, Root, Value};
 
 use super::accessor::{Integers, Reader};
+use super::drawn::Drawn;
 use super::nodes::Tree;
 use super::notes::Notes;
 use super::transforms::rotation;
@@ -35,13 +36,14 @@ pub(super) fn expand(
     (root, reader): (&Root, &Reader),
     tree: &mut Tree,
     scene: &mut Scene,
+    drawn: &mut Drawn,
     notes: &mut Notes,
 ) -> Result<(), Problem> {
     let nodes = &mut scene.nodes;
     let mut left = MAX_INSTANCES;
     for node in 0..tree.file_index.len() {
         let index = tree.file_index[node];
-        let Some(table) = table(&root.nodes[index]).filter(|_| nodes[node].mesh.is_some()) else { continue };
+        let (Some(table), Some(mesh)) = (table(&root.nodes[index]), nodes[node].mesh) else { continue };
         let element = format!("nodes[{index}].extensions.EXT_mesh_gpu_instancing.attributes");
         if nodes[node].skin.is_some() {
             // Joints place a skinned mesh, so that all instances would coincide.
@@ -51,6 +53,8 @@ pub(super) fn expand(
         let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;
         // Instances without transforms of their own coincide.
         let Some(transforms) = transforms else { continue };
+        // The node itself is counted already.
+        drawn.add(&scene.meshes[mesh], transforms.len().saturating_sub(1), &element)?;
         let first = nodes.len();
         let mesh = nodes[node].mesh.take();
         let instance = |rest: Transform| Node {

@@ -9,6 +9,7 @@ mod animation;
 mod container;
 #[cfg(not(target_family = "wasm"))]
 mod decode;
+mod drawn;
 mod extensions;
 mod image;
 mod influence;
@@ -29,6 +30,7 @@ mod view;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 use gltf::json::Root;
@@ -39,6 +41,7 @@ use self::animation::Animations;
 use self::container::Source;
 #[cfg(not(target_family = "wasm"))]
 pub use self::decode::decode_image;
+use self::drawn::Drawn;
 use self::image::Images;
 pub use self::image::{DecodeImage, DecodedImage};
 use self::material::Materials;
@@ -51,11 +54,7 @@ use self::uri::Folder;
 #[cfg(not(target_family = "wasm"))]
 use self::uri::{file_size, read_file};
 use crate::error::{Problem, entry};
-use crate::{Mesh, Node, Primitive, Scene, SceneError, Skin};
-
-/// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
-/// number of them.
-const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
+use crate::{Mesh, Node, Scene, SceneError, Skin};
 
 /// Greatest coordinate of the middle of a scene that stays where its file has it, in metres. Up to twice as far, f32
 /// positions are exact to half a millimetre.
@@ -198,16 +197,23 @@ fn import<'a>(
     source.notes.iter().for_each(|note| notes.add(note));
     let mut nodes = std::mem::take(&mut tree.nodes);
     let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, images, &mut notes)?;
+    let mut drawn = Drawn::new(reader);
+    for (node, index) in nodes.iter().zip(&tree.file_index) {
+        if let Some(mesh) = node.mesh {
+            drawn.add(&meshes[mesh], 1, &format!("nodes[{index}]"))?;
+        }
+    }
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
     tree.nodes = nodes;
-    let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
+    let targets: Vec<usize> = meshes.iter().map(Mesh::targets).collect();
+    let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, targets: &targets };
     let animations = animations.load(&mut notes)?;
     let cameras = view::cameras(root, &tree, &mut notes)?;
     let suns = view::suns(root, &tree, &mut notes)?;
     let (materials, images) = materials.finish(&mut notes);
     let nodes = std::mem::take(&mut tree.nodes);
     let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, suns, ..Scene::default() };
-    instancing::expand((root, reader), &mut tree, &mut scene, &mut notes)?;
+    instancing::expand((root, reader), &mut tree, &mut scene, &mut drawn, &mut notes)?;
     move_near_origin(&mut scene, &tree, &mut notes)?;
     let rest = scene.pose(None, 0.0);
     scene.sun = scene.sun_of(&rest);
@@ -304,21 +310,14 @@ fn move_near_origin(scene: &mut Scene, tree: &Tree, notes: &mut Notes) -> Result
 /// a mesh stays cheap. Refuses what f32 cannot compute with.
 fn extent(scene: &Scene, tree: &Tree) -> Result<Option<Aabb>, Problem> {
     let rest = scene.pose(None, 0.0);
-    let boxes: Vec<Vec<Option<Aabb>>> = scene
-        .meshes
-        .iter()
-        .map(|mesh| mesh.primitives.iter().map(|p| Aabb::from_points(p.positions.iter().copied())).collect())
-        .collect();
-    let (mut triangles, mut all) = (0, None::<Aabb>);
-    for instance in scene.instances() {
+    let mut boxes = HashMap::new();
+    let mut all = None::<Aabb>;
+    for instance in scene.each_instance() {
         let element = || format!("nodes[{}]", tree.file_index[instance.node]);
-        let primitive: &Primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-        triangles += primitive.indices.len() / 3;
-        if triangles > MAX_DRAWN_TRIANGLES {
-            let reason = format!("with it the scene draws more than {MAX_DRAWN_TRIANGLES} triangles");
-            return Err(Problem::new(element(), reason).hint("Split or simplify the scene"));
-        }
-        let Some(bounds) = boxes[instance.mesh][instance.primitive] else { continue };
+        let geometry = &scene.meshes[instance.mesh].primitives[instance.primitive].geometry;
+        let bounds = boxes.entry(Arc::as_ptr(geometry));
+        let bounds = *bounds.or_insert_with(|| Aabb::from_points(geometry.positions.iter().copied()));
+        let Some(bounds) = bounds else { continue };
         let matrices = match scene.instance_skin(&instance) {
             Some(skin) => rest.world_from_mesh_by_joint(skin),
             None => vec![rest.world_from(instance.node)],

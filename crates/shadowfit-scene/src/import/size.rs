@@ -2,7 +2,7 @@
 
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
-use gltf::json::{Index, Root, image, mesh};
+use gltf::json::{Index, Mesh, Root, image, mesh};
 
 use super::instancing;
 use super::nodes::Tree;
@@ -34,16 +34,17 @@ impl SceneSize {
 
     /// The same with what the JSON says about a scene.
     pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: Folder<'_>) -> Self {
-        let mut is_counted = vec![false; root.meshes.len()];
+        let triangles = |mesh: &Mesh| mesh.primitives.iter().map(|primitive| triangles(root, primitive)).sum();
+        // Each with whether a node before drew it.
+        let mut meshes: Vec<(u64, bool)> = root.meshes.iter().map(|mesh| (triangles(mesh), false)).collect();
         let (mut all, mut drawn) = (0, 0);
         for (node, _) in tree.file_index.iter().zip(&tree.hidden).filter(|(_, hidden)| !**hidden) {
             let node = &root.nodes[*node];
             let Some(index) = node.mesh else { continue };
-            let Some(mesh) = root.meshes.get(index.value()) else { continue };
-            let triangles: u64 = mesh.primitives.iter().map(|primitive| triangles(root, primitive)).sum();
+            let Some((triangles, is_counted)) = meshes.get_mut(index.value()) else { continue };
             drawn += triangles.saturating_mul(instancing::declared(root, node));
-            if !std::mem::replace(&mut is_counted[index.value()], true) {
-                all += triangles;
+            if !std::mem::replace(is_counted, true) {
+                all += *triangles;
             }
         }
         let images = root.images.iter().map(|image| encoded(root, image, folder)).sum();

@@ -219,6 +219,14 @@ fn a_small_file_cannot_ask_for_endless_geometry() {
     build.members(&format!(r#""nodes":[{nodes}],"meshes":[{{"primitives":[{primitive}]}}]"#));
     let message = refusal(build.load("endless"));
     assert!(message.contains("draws more than"), "{message}");
+    // A thousand nodes draw the same three thousand primitives without triangles.
+    let mut build = Build::default();
+    let none = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":0}}"#));
+    let primitives = vec![format!(r#"{{"attributes":{{"POSITION":{none}}}}}"#); 3000].join(",");
+    let nodes = vec![r#"{"mesh":0}"#; 1000].join(",");
+    build.members(&format!(r#""nodes":[{nodes}],"meshes":[{{"primitives":[{primitives}]}}]"#));
+    let message = refusal(build.load("primitives"));
+    assert!(message.contains("nodes[699]") && message.contains("more than 2097152 primitives"), "{message}");
 }
 
 proptest! {

@@ -122,6 +122,16 @@ fn broken_tables_are_refused_by_node_and_attribute() {
         assert!(message.contains("nodes[1].extensions.EXT_mesh_gpu_instancing"), "{message}");
         assert!(message.contains(words), "{words} is missing in {message}");
     }
+    // Rows that are all zero need no data, and primitives without triangles need no limit of triangles.
+    let mut build = Build::default();
+    let none = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":0}}"#));
+    let table = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":1048576}}"#));
+    let primitives = vec![format!(r#"{{"attributes":{{"POSITION":{none}}}}}"#); 10_000].join(",");
+    let node =
+        format!(r#"{{"mesh":0,"extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{"SCALE":{table}}}}}}}}}"#);
+    build.members(&format!(r#""nodes":[{node}],"meshes":[{{"primitives":[{primitives}]}}]"#));
+    let message = refusal(build.load("primitives"));
+    assert!(message.contains("nodes[0]") && message.contains("more than 2097152 primitives"), "{message}");
     // Nodes together may not have more either.
     let mut build = Build::default();
     let table = build.push_accessor(&many);
