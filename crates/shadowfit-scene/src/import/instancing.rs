@@ -3,6 +3,9 @@
 //! Each instance becomes a child of the node, so that all follow its animation. The children stand behind all other
 //! nodes.
 
+use std::collections::HashMap;
+use std::ops::Range;
+
 use glam::{Quat, Vec3};
 use gltf::json::accessor::Accessor;
 use gltf::json::scene::Node as JsonNode;
@@ -14,10 +17,16 @@ use super::nodes::Tree;
 use super::notes::Notes;
 use super::transforms::rotation;
 use crate::error::Problem;
-use crate::{Animation, Channel, ChannelValues, Node, Scene, Transform};
+use crate::{Animation, Channel, ChannelValues, Mesh, Node, Scene, Transform};
 
 /// Instances that a scene may have in tables. Each takes a few hundred bytes in the scene and on the GPU.
 const MAX_INSTANCES: usize = 1 << 20;
+
+/// Primitives with morph targets that rows may draw. Each has vertices of its own, in GPU buffers of its own.
+const MAX_MORPHED: usize = 1 << 14;
+
+/// Elements of the budget that a channel takes beside its keys.
+const CHANNEL_ELEMENTS: usize = 8;
 
 /// Number of instances that a node's table declares; 1 where it has none, and where it is broken.
 pub(super) fn declared(root: &Root, json: &JsonNode) -> u64 {
@@ -40,7 +49,8 @@ pub(super) fn expand(
     notes: &mut Notes,
 ) -> Result<(), Problem> {
     let nodes = &mut scene.nodes;
-    let mut left = MAX_INSTANCES;
+    let (mut left, mut morphed_left) = (MAX_INSTANCES, MAX_MORPHED);
+    let mut rows = HashMap::new();
     for node in 0..tree.file_index.len() {
         let index = tree.file_index[node];
         let (Some(table), Some(mesh)) = (table(&root.nodes[index]), nodes[node].mesh) else { continue };
@@ -55,44 +65,58 @@ pub(super) fn expand(
         let Some(transforms) = transforms else { continue };
         // The node itself is counted already.
         drawn.add(&scene.meshes[mesh], transforms.len().saturating_sub(1), &element)?;
+        spend_morphed(reader, &scene.meshes[mesh], transforms.len(), &mut morphed_left, &element)?;
+        let mut morph_weights = nodes[node].morph_weights.clone();
+        morph_weights.truncate(scene.meshes[mesh].targets());
         let first = nodes.len();
         let mesh = nodes[node].mesh.take();
         let instance = |rest: Transform| Node {
             rest,
             mesh,
             parent: Some(node),
-            name: nodes[node].name.clone(),
-            morph_weights: nodes[node].morph_weights.clone(),
-            skin: None,
+            morph_weights: morph_weights.clone(),
+            // Rows have no name, so that a long one is not copied a million times. Their parent has it.
+            ..Node::default()
         };
         let instances: Vec<Node> = transforms.into_iter().map(instance).collect();
         tree.file_index.extend(instances.iter().map(|_| index));
         nodes.extend(instances);
-        for animation in &mut scene.animations {
-            move_weights(reader, animation, (node, first..nodes.len()), &element)?;
-        }
+        rows.insert(node, (first..nodes.len(), element));
     }
-    Ok(())
+    scene.animations.iter_mut().try_for_each(|animation| move_weights(reader, animation, &rows))
 }
 
-/// Gives each instance of a node the channels that animate the node's morph weights.
+/// Counts the morphed primitives that `rows` rows draw, and their vertices. Refuses more than `left` primitives.
+fn spend_morphed(reader: &Reader, mesh: &Mesh, rows: usize, left: &mut usize, element: &str) -> Result<(), Problem> {
+    let morphed = || mesh.primitives.iter().filter(|primitive| !primitive.morphs.is_empty());
+    *left = left.checked_sub(morphed().count().saturating_mul(rows)).ok_or_else(|| {
+        let reason =
+            format!("with its {rows} instances tables draw more than {MAX_MORPHED} primitives with morph targets");
+        Problem::new(element, reason).hint("Split the scene, or remove the morph targets")
+    })?;
+    let vertices = morphed().map(|primitive| primitive.positions.len()).fold(0, usize::saturating_add);
+    reader.spend(vertices.saturating_mul(rows), element)
+}
+
+/// Replaces the channels that animate the morph weights of nodes with tables by one for each of their rows. `rows` has,
+/// for each such node, the nodes of its rows and the element that is refused if they are too many.
 fn move_weights(
     reader: &Reader,
     animation: &mut Animation,
-    (node, instances): (usize, std::ops::Range<usize>),
-    element: &str,
+    rows: &HashMap<usize, (Range<usize>, String)>,
 ) -> Result<(), Problem> {
-    let weights = |channel: &Channel| match &channel.values {
-        ChannelValues::MorphWeights(values) if channel.node == node => Some(values.len() + channel.times.len()),
-        _ => None,
-    };
-    let (of_node, mut others): (Vec<Channel>, _) =
-        std::mem::take(&mut animation.channels).into_iter().partition(|channel| weights(channel).is_some());
-    for channel in of_node {
-        reader.spend(weights(&channel).unwrap_or(0).saturating_mul(instances.len()), element)?;
-        others.extend(instances.clone().map(|node| Channel { node, ..channel.clone() }));
+    let mut channels = Vec::with_capacity(animation.channels.len());
+    for channel in std::mem::take(&mut animation.channels) {
+        match (&channel.values, rows.get(&channel.node)) {
+            (ChannelValues::MorphWeights(values), Some((rows, element))) => {
+                let each = values.len() + channel.times.len() + CHANNEL_ELEMENTS;
+                reader.spend(each.saturating_mul(rows.len()), element)?;
+                channels.extend(rows.clone().map(|node| Channel { node, ..channel.clone() }));
+            }
+            _ => channels.push(channel),
+        }
     }
-    animation.channels = others;
+    animation.channels = channels;
     Ok(())
 }
 

@@ -55,7 +55,8 @@ fn sizes_that_sum_to_more_than_a_number_holds_are_the_greatest_number() {
     let mut build = Build::default();
     let most = format!(r#"{{"componentType":{F32},"type":"VEC3","count":{}}}"#, u64::MAX);
     let most = build.push_accessor(&most);
-    let mesh = format!(r#"{{"primitives":[{}]}}"#, vec![format!(r#"{{"attributes":{{"POSITION":{most}}}}}"#); 4].join(","));
+    let mesh =
+        format!(r#"{{"primitives":[{}]}}"#, vec![format!(r#"{{"attributes":{{"POSITION":{most}}}}}"#); 4].join(","));
     let table = format!(r#""extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{"SCALE":{most}}}}}}}"#);
     let image = r#"{"bufferView":0,"mimeType":"image/png"}"#;
     build.members(&format!(

@@ -88,6 +88,43 @@ fn instances_follow_the_animation_of_their_node_and_its_morph_weights() {
 }
 
 #[test]
+fn rows_have_no_name_and_the_weights_of_the_targets_that_there_are() {
+    let mut build = Build::default();
+    let translation = build.floats("VEC3", 3, &[0.0; 6]);
+    let node = r#","name":"long","weights":[0.5,0.25,0.125]"#;
+    let scene = with_table(&mut build, &format!(r#""TRANSLATION":{translation}"#), node, "").unwrap();
+    assert_eq!(scene.nodes[1].name, "long");
+    for row in &scene.nodes[2..] {
+        assert_eq!((row.name.as_str(), &row.morph_weights[..], row.parent), ("", &[0.5][..], Some(1)));
+    }
+    assert_eq!(scene.nodes.len(), 4);
+}
+
+#[test]
+fn rows_of_morphed_meshes_and_copies_of_their_channels_are_limited() {
+    let zeros = |count: usize| format!(r#"{{"componentType":{F32},"type":"VEC3","count":{count}}}"#);
+    for (count, is_sound) in [(16_384, true), (16_385, false)] {
+        let mut build = Build::default();
+        let table = build.push_accessor(&zeros(count));
+        let loaded = with_table(&mut build, &format!(r#""TRANSLATION":{table}"#), "", "");
+        match loaded {
+            Ok(scene) => assert!(is_sound && scene.instances().len() == count),
+            Err(error) => assert!(!is_sound && error.to_string().contains("morph targets"), "{error}"),
+        }
+    }
+    // Eight thousand keys for each of sixteen thousand rows.
+    let mut build = Build::default();
+    let table = build.push_accessor(&zeros(16_384));
+    let keys = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"SCALAR","count":8192}}"#));
+    let animation = format!(
+        r#","animations":[{{"samplers":[{{"input":{keys},"output":{keys}}}],
+        "channels":[{{"sampler":0,"target":{{"node":1,"path":"weights"}}}}]}}]"#
+    );
+    let message = refusal(with_table(&mut build, &format!(r#""TRANSLATION":{table}"#), "", &animation));
+    assert!(message.contains("nodes[1]") && message.contains("decodes to more than"), "{message}");
+}
+
+#[test]
 fn a_skinned_mesh_and_one_without_transforms_are_drawn_once() {
     let mut build = Build::default();
     let numbers = build.floats("SCALAR", 1, &[0.0; 5]);
