@@ -55,9 +55,14 @@ pub(super) fn expand(
         let index = tree.file_index[node];
         let (Some(table), Some(mesh)) = (table(&root.nodes[index]), nodes[node].mesh) else { continue };
         let element = format!("nodes[{index}].extensions.EXT_mesh_gpu_instancing.attributes");
-        if nodes[node].skin.is_some() {
+        let has_joints = || scene.meshes[mesh].primitives.iter().any(|primitive| !primitive.joints.is_empty());
+        if nodes[node].skin.is_some() && has_joints() {
             // Joints place a skinned mesh, so that all instances would coincide.
-            notes.add(format!("{element}: a skinned mesh is drawn once, where its joints are"));
+            let rows = declared(root, &root.nodes[index]);
+            notes.add(format!(
+                "{element}: ignored: joints place the mesh, which is drawn once instead of {rows} times, also its parts \
+                 without joints"
+            ));
             continue;
         }
         let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;

@@ -130,12 +130,22 @@ fn a_skinned_mesh_and_one_without_transforms_are_drawn_once() {
     let numbers = build.floats("SCALAR", 1, &[0.0; 5]);
     let scene = with_table(&mut build, &format!(r#""_ID":{numbers}"#), "", "").unwrap();
     assert_eq!(placed(&scene, 0.0), [[Vec3::Z * 100.0, Vec3::X]]);
-    let mut build = Build::default();
-    let translation = build.floats("VEC3", 3, &[0.0; 9]);
-    let skin = r#","skins":[{"joints":[0]}]"#;
-    let scene = with_table(&mut build, &format!(r#""TRANSLATION":{translation}"#), r#","skin":0"#, skin).unwrap();
-    assert_eq!(placed(&scene, 0.0).len(), 1);
-    assert!(scene.notes.iter().any(|note| note.contains("nodes[1]") && note.contains("once")), "{:?}", scene.notes);
+    for (is_skinned, drawn) in [(true, 2), (false, 6)] {
+        let mut build = Build::default();
+        let [positions, translation] = [TRIANGLE, [0.0; 9]].map(|values| build.floats("VEC3", 3, &values));
+        let joints = build.accessor(U8, "VEC4", 3, &[0; 12]);
+        let weights = build.floats("VEC4", 4, &[1.0, 0.0, 0.0, 0.0].repeat(3));
+        let joints = if is_skinned { format!(r#","JOINTS_0":{joints},"WEIGHTS_0":{weights}"#) } else { String::new() };
+        build.members(&format!(
+            r#""skins":[{{"joints":[0]}}],"nodes":[{{"mesh":0,"skin":0,"extensions":{{"EXT_mesh_gpu_instancing":
+            {{"attributes":{{"TRANSLATION":{translation}}}}}}}}}],"meshes":[{{"primitives":[
+            {{"attributes":{{"POSITION":{positions}{joints}}}}},{{"attributes":{{"POSITION":{positions}}}}}]}}]"#
+        ));
+        let scene = build.load("skinned").unwrap();
+        assert_eq!(placed(&scene, 0.0).len(), drawn);
+        let is_noted = |note: &String| note.contains("nodes[0]") && note.contains("once instead of 3 times");
+        assert_eq!(scene.notes.iter().any(is_noted), is_skinned, "{:?}", scene.notes);
+    }
 }
 
 #[test]
