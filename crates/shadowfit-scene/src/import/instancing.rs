@@ -25,6 +25,9 @@ const MAX_INSTANCES: usize = 1 << 20;
 /// Primitives with morph targets that rows may draw. Each has vertices of its own, in GPU buffers of its own.
 const MAX_MORPHED: usize = 1 << 14;
 
+/// Attributes of a table that place its instances.
+const TRANSFORMS: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
+
 /// Elements of the budget that a channel takes beside its keys.
 const CHANNEL_ELEMENTS: usize = 8;
 
@@ -64,6 +67,9 @@ pub(super) fn expand(
                  without joints"
             ));
             continue;
+        }
+        if table.as_object().is_some_and(|table| table.keys().any(|name| !TRANSFORMS.contains(&name.as_str()))) {
+            notes.add("EXT_mesh_gpu_instancing: attributes of instances other than their transforms are ignored");
         }
         let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;
         // Instances without transforms of their own coincide.
@@ -136,7 +142,7 @@ impl Table<'_> {
     /// Reads its transforms, at most `left`, and subtracts their number from it. `None` if it has no attribute of
     /// transforms.
     fn read(&self, left: &mut usize) -> Result<Option<Vec<Transform>>, Problem> {
-        let [translation, rotations, scale] = ["TRANSLATION", "ROTATION", "SCALE"].map(|name| self.find(name));
+        let [translation, rotations, scale] = TRANSFORMS.map(|name| self.find(name));
         let [translation, rotations, scale] = [translation?, rotations?, scale?];
         let given = [translation, rotations, scale].into_iter().flatten();
         let Some(count) = self.count(given)? else { return Ok(None) };

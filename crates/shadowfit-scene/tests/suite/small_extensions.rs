@@ -110,6 +110,36 @@ fn specular_glossiness_gives_base_colour_alpha_and_texture() {
 }
 
 #[test]
+fn specular_colours_make_black_materials_metals_and_are_noted_where_they_are_not_read() {
+    let table = [
+        (r#""diffuseFactor":[0,0,0,0.5],"specularFactor":[1,0.75,0.25]"#, Vec4::new(1.0, 0.75, 0.25, 0.5), 1.0, None),
+        (r#""diffuseFactor":[0,0,0,1]"#, Vec4::ONE, 1.0, None),
+        (r#""diffuseFactor":[0.5,0,0,1]"#, Vec4::new(0.5, 0.0, 0.0, 1.0), 0.0, None),
+        // Black plastic.
+        (
+            r#""diffuseFactor":[0,0,0,1],"specularFactor":[0.04,0.04,0.04]"#,
+            Vec4::new(0.0, 0.0, 0.0, 1.0),
+            0.0,
+            Some("specularFactor is read for black materials only"),
+        ),
+        (
+            r#""diffuseFactor":[0,0,0,1],"specularGlossinessTexture":{"index":0}"#,
+            Vec4::new(0.0, 0.0, 0.0, 1.0),
+            0.0,
+            Some("specularGlossinessTexture is not read"),
+        ),
+    ];
+    for (members, color, metallic, note) in table {
+        let material = format!(r#"{{"extensions":{{"KHR_materials_pbrSpecularGlossiness":{{{members}}}}}}}"#);
+        let scene = loaded(r#","material":0"#, &format!(r#""materials":[{material}]"#)).unwrap();
+        assert_eq!((scene.materials[1].base_color, scene.materials[1].metallic), (color, metallic), "{members}");
+        let found = scene.notes.iter().find(|note| note.contains("Glossiness"));
+        assert_eq!(found.is_some(), note.is_some(), "{members}: {found:?}");
+        assert!(found.is_none_or(|found| found.contains(note.unwrap_or_default())), "{found:?}");
+    }
+}
+
+#[test]
 fn textures_fall_back_to_plain_images_and_are_refused_without_one_with_the_command() {
     let members = |texture: &str| {
         format!(

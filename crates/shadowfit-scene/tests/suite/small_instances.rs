@@ -130,6 +130,8 @@ fn a_skinned_mesh_and_one_without_transforms_are_drawn_once() {
     let numbers = build.floats("SCALAR", 1, &[0.0; 5]);
     let scene = with_table(&mut build, &format!(r#""_ID":{numbers}"#), "", "").unwrap();
     assert_eq!(placed(&scene, 0.0), [[Vec3::Z * 100.0, Vec3::X]]);
+    let noted = |note: &String| note.contains("attributes of instances other than their transforms are ignored");
+    assert!(scene.notes.iter().any(noted), "{:?}", scene.notes);
     for (is_skinned, drawn) in [(true, 2), (false, 6)] {
         let mut build = Build::default();
         let [positions, translation] = [TRIANGLE, [0.0; 9]].map(|values| build.floats("VEC3", 3, &values));
