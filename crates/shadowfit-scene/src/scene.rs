@@ -228,11 +228,12 @@ const ALPHA_TOLERANCE: f32 = 0.25 / 255.0;
 
 impl AlphaMode {
     /// Least alpha that is opaque where a surface is cut out, in pictures and shadows of masked materials and in shadows
-    /// of blended ones. It is the cutoff less a tolerance for rounding. `None` for opaque materials.
+    /// of blended ones. It is the cutoff less a tolerance for rounding, at most half of the cutoff. `None` for opaque materials.
     pub fn least_opaque(self) -> Option<f32> {
         match self {
             Self::Opaque => None,
-            Self::Mask { cutoff } => Some(cutoff - ALPHA_TOLERANCE),
+            // Alpha 0 stays below every cutoff but 0.
+            Self::Mask { cutoff } => Some((cutoff - ALPHA_TOLERANCE).max(cutoff * 0.5)),
             Self::Blend => Some(BLENDED_CUTOFF - ALPHA_TOLERANCE),
         }
     }

@@ -247,7 +247,8 @@ impl SpecularGlossiness {
 
     fn of(json: &json::Material, element: &str) -> Result<Option<Self>, Problem> {
         let Some(value) = json.extensions.as_ref().and_then(|own| own.others.get(Self::NAME)) else { return Ok(None) };
-        let wrong = |error: gltf::json::Error| Problem::new(format!("{element}.extensions.{}", Self::NAME), error.to_string());
+        let wrong =
+            |error: gltf::json::Error| Problem::new(format!("{element}.extensions.{}", Self::NAME), error.to_string());
         deserialize::from_value(value.clone()).map(Some).map_err(wrong)
     }
 

@@ -188,6 +188,12 @@ fn a_cutoff_above_one_hides_a_primitive_and_blended_ones_cast_where_they_are_opa
         matches!(casting(&material(r#""alphaMode":"MASK","alphaCutoff":1"#)), Casting::CutOut(least) if least < 1.0)
     );
     assert_eq!(casting(&material(r#""alphaMode":"OPAQUE","alphaCutoff":7"#)), Casting::Whole);
+    // Transparent texels are holes at the smallest cutoffs, and opaque at 0 alone.
+    for cutoff in [1e-6, 1e-4, 9e-4, 2e-3_f32] {
+        let found = casting(&material(&format!(r#""alphaMode":"MASK","alphaCutoff":{cutoff}"#)));
+        assert!(matches!(found, Casting::CutOut(least) if least > 0.0 && least < cutoff), "{cutoff}: {found:?}");
+    }
+    assert_eq!(casting(&material(r#""alphaMode":"MASK","alphaCutoff":0"#)), Casting::CutOut(0.0));
     for (alpha, wanted) in [("1", Casting::Whole), ("0.5", Casting::Whole), ("0.498", Casting::Nothing)] {
         let scene =
             material(&format!(r#""alphaMode":"BLEND","pbrMetallicRoughness":{{"baseColorFactor":[1,1,1,{alpha}]}}"#));
