@@ -29,7 +29,7 @@ pub struct Scene {
     /// Directional lights of the file, in the order of their nodes; empty for built-in scenes.
     pub suns: Vec<SceneSun>,
     /// Position in the file's coordinates that the scene's world coordinates are relative to, in metres. It is zero,
-    /// unless the file's geometry lies far from its origin, where `f32` positions are coarse.
+    /// unless most of the file's triangles lie far from its origin, where `f32` positions are coarse.
     pub origin: DVec3,
     /// Whether blended surfaces cast shadows.
     pub blended_casters: BlendedCasters,

@@ -18,6 +18,7 @@ mod material;
 mod mesh;
 mod nodes;
 mod notes;
+mod origin;
 mod repair;
 mod size;
 mod skin;
@@ -30,11 +31,8 @@ mod view;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
-use std::sync::Arc;
 
-use glam::{Mat4, Vec3};
 use gltf::json::Root;
-use shadowfit::Aabb;
 
 use self::accessor::Reader;
 use self::animation::Animations;
@@ -55,10 +53,6 @@ use self::uri::Folder;
 use self::uri::{file_size, read_file};
 use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Scene, SceneError, Skin};
-
-/// Greatest coordinate of the middle of a scene that stays where its file has it, in metres. Up to twice as far, f32
-/// positions are exact to half a millimetre.
-const NEAR_ORIGIN: f64 = 4096.0;
 
 /// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
 ///
@@ -214,7 +208,7 @@ fn import<'a>(
     let nodes = std::mem::take(&mut tree.nodes);
     let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, suns, ..Scene::default() };
     instancing::expand((root, reader), &mut tree, &mut scene, &mut drawn, &mut notes)?;
-    move_near_origin(&mut scene, &tree, &mut notes)?;
+    origin::place(&mut scene, &tree, reader, &mut notes)?;
     let rest = scene.pose(None, 0.0);
     scene.sun = scene.sun_of(&rest);
     view::note_views(&scene, &rest, &mut notes);
@@ -288,54 +282,4 @@ fn skins(root: &Root, reader: &Reader, tree: &Tree, nodes: &mut [Node], meshes: 
         skin::check_joints(&meshes[mesh], &skins[own], &format!("nodes[{index}].skin"))?;
     }
     Ok(skins)
-}
-
-/// Sets the origin of a scene that lies far from that of its file, where f32 positions are coarse, to its middle. Scenes
-/// that are larger than they are far away stay.
-fn move_near_origin(scene: &mut Scene, tree: &Tree, notes: &mut Notes) -> Result<(), Problem> {
-    let Some(bounds) = extent(scene, tree)? else { return Ok(()) };
-    let middle = bounds.min.as_dvec3().midpoint(bounds.max.as_dvec3());
-    let distance = middle.abs().max_element();
-    if distance > NEAR_ORIGIN && distance > f64::from(bounds.size().max_element()) {
-        scene.origin = middle.round();
-        let [x, y, z] = scene.origin.to_array();
-        notes.add(format!(
-            "moved near the origin, where positions are exact: world positions are relative to ({x}, {y}, {z}) m of the file"
-        ));
-    }
-    Ok(())
-}
-
-/// World bounds of the scene at rest, from the corners of its primitives: no vertex is visited per node, so that sharing
-/// a mesh stays cheap. Refuses what f32 cannot compute with.
-fn extent(scene: &Scene, tree: &Tree) -> Result<Option<Aabb>, Problem> {
-    let rest = scene.pose(None, 0.0);
-    let mut boxes = HashMap::new();
-    let mut all = None::<Aabb>;
-    for instance in scene.each_instance() {
-        let element = || format!("nodes[{}]", tree.file_index[instance.node]);
-        let geometry = &scene.meshes[instance.mesh].primitives[instance.primitive].geometry;
-        let bounds = boxes.entry(Arc::as_ptr(geometry));
-        let bounds = *bounds.or_insert_with(|| Aabb::from_points(geometry.positions.iter().copied()));
-        let Some(bounds) = bounds else { continue };
-        let matrices = match scene.instance_skin(&instance) {
-            Some(skin) => rest.world_from_mesh_by_joint(skin),
-            None => vec![rest.world_from(instance.node)],
-        };
-        for matrix in matrices {
-            let Some(world) = world_bounds(bounds, matrix) else {
-                let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
-                return Err(Problem::new(element(), reason).hint("Scale the scene down"));
-            };
-            all = Some(all.map_or(world, |all| all.union(world)));
-        }
-    }
-    Ok(all)
-}
-
-/// World bounds of a box; `None` where they reach beyond what f32 can compute with.
-fn world_bounds(bounds: Aabb, world_from_local: Mat4) -> Option<Aabb> {
-    let corners = bounds.corners().map(|corner| world_from_local.transform_point3(corner));
-    let is_near = |corner: &Vec3| corner.is_finite() && corner.abs().max_element() <= MAX_COORDINATE;
-    Aabb::from_points(corners).filter(|_| corners.iter().all(is_near))
 }
