@@ -168,6 +168,28 @@ impl<'a> Materials<'a> {
     }
 }
 
+/// Returns the textures that import reads of a material: base or diffuse colour and normal map.
+pub(super) fn textures(json: &json::Material) -> impl Iterator<Item = Index<texture::Texture>> {
+    let base = match SpecularGlossiness::of(json, "") {
+        Ok(Some(gloss)) => gloss.diffuse_texture.map(|info| info.index),
+        _ => json.pbr_metallic_roughness.base_color_texture.as_ref().map(|info| info.index),
+    };
+    base.into_iter().chain(json.normal_texture.as_ref().map(|info| info.index))
+}
+
+/// Whether one of a texture's images is not declared as a format that import cannot decode.
+pub(super) fn has_plain_image(root: &Root, texture: &texture::Texture) -> bool {
+    // Names of the types in `mimeType` and data URIs, and ends of file names.
+    const UNREAD: [&str; 3] = ["ktx2", "avif", "dds"];
+    let is_plain = |image: &gltf::json::Image| {
+        let kind = image.mime_type.as_ref().map(|kind| kind.0.as_str());
+        let kind = kind.or_else(|| image.uri.as_ref()?.strip_prefix("data:")?.split([';', ',']).next());
+        let kind = kind.or_else(|| image.uri.as_ref()?.rsplit('.').next()).unwrap_or_default().to_ascii_lowercase();
+        !UNREAD.iter().any(|unread| kind.ends_with(unread))
+    };
+    sources(texture, root.images.len(), "").is_ok_and(|all| all.iter().any(|&source| is_plain(&root.images[source])))
+}
+
 /// Images of a texture, the preferred one first: that of `EXT_texture_webp`, then the one for readers without it. All
 /// are below `count`, the number of images in the file.
 fn sources(texture: &texture::Texture, count: usize, element: &str) -> Result<Vec<usize>, Problem> {

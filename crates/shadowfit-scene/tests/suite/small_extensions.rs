@@ -157,6 +157,36 @@ fn textures_fall_back_to_plain_images_and_are_refused_without_one_with_the_comma
 }
 
 #[test]
+fn only_textures_that_are_read_need_a_plain_image_and_a_compressed_one_is_none() {
+    let members = |material: &str, texture: &str| {
+        format!(
+            r#""materials":[{{{material}}}],"textures":[{{"source":0}},{texture}],"extensionsRequired":["KHR_texture_basisu"],
+            "images":[{{"uri":"{PIXEL}"}},{{"uri":"a.KTX2"}},{{"bufferView":0,"mimeType":"image/ktx2"}},
+            {{"uri":"data:image/ktx2;base64,AAAA"}}]"#
+        )
+    };
+    let basisu = r#"{"extensions":{"KHR_texture_basisu":{"source":1}}}"#;
+    let base = r#""pbrMetallicRoughness":{"baseColorTexture":{"index":1}}"#;
+    let gloss = r#""extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseTexture":{"index":1}}}"#;
+    let unread = [
+        r#""occlusionTexture":{"index":1},"emissiveTexture":{"index":1}"#.to_owned(),
+        r#""pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":1}}"#.to_owned(),
+        format!("{},{base}", gloss.replace(r#""index":1"#, r#""index":0"#)),
+    ];
+    for material in unread {
+        let scene = loaded(r#","material":0"#, &members(&material, basisu)).unwrap();
+        assert!(!scene.notes.iter().any(|note| note.contains("replaced")), "{:?}", scene.notes);
+    }
+    let normal = r#""normalTexture":{"index":1}"#;
+    for material in [base, gloss, normal] {
+        for texture in [basisu, r#"{"source":1}"#, r#"{"source":2}"#, r#"{"source":3}"#] {
+            let message = refusal(loaded(r#","material":0"#, &members(material, texture)));
+            assert!(message.contains("gltf-transform ktxdecompress"), "{message}");
+        }
+    }
+}
+
+#[test]
 fn compressed_meshes_without_a_plain_copy_are_refused_with_the_command() {
     let draco = r#","extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}"#;
     let used = r#""extensionsUsed":["KHR_draco_mesh_compression"]"#;
