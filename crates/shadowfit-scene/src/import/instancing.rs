@@ -17,13 +17,7 @@ use super::nodes::Tree;
 use super::notes::Notes;
 use super::transforms::rotation;
 use crate::error::Problem;
-use crate::{Animation, Channel, ChannelValues, Mesh, Node, Scene, Transform};
-
-/// Instances that a scene may have in tables. Each takes a few hundred bytes in the scene and on the GPU.
-const MAX_INSTANCES: usize = 1 << 20;
-
-/// Primitives with morph targets that rows may draw. Each has vertices of its own, in GPU buffers of its own.
-const MAX_MORPHED: usize = 1 << 14;
+use crate::{Animation, Channel, ChannelValues, Node, Scene, Transform};
 
 /// Attributes of a table that place its instances.
 const TRANSFORMS: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
@@ -52,7 +46,6 @@ pub(super) fn expand(
     notes: &mut Notes,
 ) -> Result<(), Problem> {
     let nodes = &mut scene.nodes;
-    let (mut left, mut morphed_left) = (MAX_INSTANCES, MAX_MORPHED);
     let mut rows = HashMap::new();
     for node in 0..tree.file_index.len() {
         let index = tree.file_index[node];
@@ -71,12 +64,10 @@ pub(super) fn expand(
         if table.as_object().is_some_and(|table| table.keys().any(|name| !TRANSFORMS.contains(&name.as_str()))) {
             notes.add("EXT_mesh_gpu_instancing: attributes of instances other than their transforms are ignored");
         }
-        let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;
-        // Instances without transforms of their own coincide.
+        let table = Table { reader, json: table, element: &element };
+        let transforms = table.read(|rows| drawn.add_rows(&scene.meshes[mesh], rows, &element))?;
+        // Without transforms, all instances coincide.
         let Some(transforms) = transforms else { continue };
-        // The node itself is counted already.
-        drawn.add(&scene.meshes[mesh], transforms.len().saturating_sub(1), &element)?;
-        spend_morphed(reader, &scene.meshes[mesh], transforms.len(), &mut morphed_left, &element)?;
         let mut morph_weights = nodes[node].morph_weights.clone();
         morph_weights.truncate(scene.meshes[mesh].targets());
         let first = nodes.len();
@@ -95,18 +86,6 @@ pub(super) fn expand(
         rows.insert(node, (first..nodes.len(), element));
     }
     scene.animations.iter_mut().try_for_each(|animation| move_weights(reader, animation, &rows))
-}
-
-/// Counts the morphed primitives that `rows` rows draw, and their vertices. Refuses more than `left` primitives.
-fn spend_morphed(reader: &Reader, mesh: &Mesh, rows: usize, left: &mut usize, element: &str) -> Result<(), Problem> {
-    let morphed = || mesh.primitives.iter().filter(|primitive| !primitive.morphs.is_empty());
-    *left = left.checked_sub(morphed().count().saturating_mul(rows)).ok_or_else(|| {
-        let reason =
-            format!("with its {rows} instances tables draw more than {MAX_MORPHED} primitives with morph targets");
-        Problem::new(element, reason).hint("Split the scene, or remove the morph targets")
-    })?;
-    let vertices = morphed().map(|primitive| primitive.positions.len()).fold(0, usize::saturating_add);
-    reader.spend(vertices.saturating_mul(rows), element)
 }
 
 /// Replaces the channels that animate the morph weights of nodes with tables by one for each of their rows. `rows` has,
@@ -139,17 +118,13 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Reads its transforms, at most `left`, and subtracts their number from it. `None` if it has no attribute of
-    /// transforms.
-    fn read(&self, left: &mut usize) -> Result<Option<Vec<Transform>>, Problem> {
+    /// Reads its transforms once `accept` accepts their number. `None` if no attribute is a transform.
+    fn read(&self, accept: impl FnOnce(usize) -> Result<(), Problem>) -> Result<Option<Vec<Transform>>, Problem> {
         let [translation, rotations, scale] = TRANSFORMS.map(|name| self.find(name));
         let [translation, rotations, scale] = [translation?, rotations?, scale?];
         let given = [translation, rotations, scale].into_iter().flatten();
         let Some(count) = self.count(given)? else { return Ok(None) };
-        *left = left.checked_sub(count).ok_or_else(|| {
-            let reason = format!("with its {count} instances the scene has more than {MAX_INSTANCES} in tables");
-            Problem::new(self.element, reason).hint("Split or simplify the scene")
-        })?;
+        accept(count)?;
         let translations = self.values::<3>(translation, Integers::AsDeclared)?;
         let rotations = self.values::<4>(rotations, Integers::Normalized)?;
         let scales = self.values::<3>(scale, Integers::AsDeclared)?;
