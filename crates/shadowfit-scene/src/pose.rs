@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, Mat4, Vec3};
 
 use crate::import::MAX_COORDINATE;
 use crate::sample::{Sample, sample};
-use crate::{Node, Scene, Transform};
+use crate::{Mesh, Node, Scene, Transform};
 
 /// Greatest weight of a morph target. With it, displacements that are as long as files may have them, moved by matrices
 /// as large as poses have them, stay far from the end of f32.
@@ -44,15 +44,17 @@ pub struct Triangle {
 impl Scene {
     /// Everything drawn, ordered by node, then by primitive; the same for every pose.
     pub fn instances(&self) -> Vec<Instance> {
-        let mut instances = Vec::new();
-        for (node, data) in self.nodes.iter().enumerate() {
-            let Some((mesh, drawn)) = data.mesh.and_then(|m| Some((m, self.meshes.get(m)?))) else {
-                continue;
-            };
-            let primitives = 0..drawn.primitives.len();
-            instances.extend(primitives.map(|primitive| Instance { node, mesh, primitive }));
-        }
-        instances
+        self.each_instance().collect()
+    }
+
+    /// Yields [`Scene::instances`] one at a time.
+    pub(crate) fn each_instance(&self) -> impl Iterator<Item = Instance> {
+        let drawn = |node: &Node| node.mesh.and_then(|mesh| Some((mesh, self.meshes.get(mesh)?)));
+        self.nodes.iter().enumerate().filter_map(move |(node, data)| Some((node, drawn(data)?))).flat_map(
+            |(node, (mesh, drawn))| {
+                (0..drawn.primitives.len()).map(move |primitive| Instance { node, mesh, primitive })
+            },
+        )
     }
 
     /// The scene at a time of an animation (an index into [`Scene::animations`]), in seconds, which is wrapped to the
@@ -60,7 +62,8 @@ impl Scene {
     /// farther than f32 can compute with. A time that is not finite counts as 0.
     pub fn pose(&self, animation: Option<usize>, seconds: f32) -> Pose {
         let mut locals: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
-        let mut morph_weights: Vec<_> = self.nodes.iter().map(|n| self.rest_weights(n)).collect();
+        let targets: Vec<usize> = self.meshes.iter().map(Mesh::targets).collect();
+        let mut morph_weights: Vec<_> = self.nodes.iter().map(|node| self.rest_weights(node, &targets)).collect();
         if let Some(animation) = animation.and_then(|index| self.animations.get(index)) {
             let time = looped(seconds, animation.duration);
             for channel in &animation.channels {
@@ -98,12 +101,12 @@ impl Scene {
             .any(|ancestor| ancestor == root)
     }
 
-    /// One weight for each morph target of the node's mesh: the node's, else the mesh's, else 0.
-    fn rest_weights(&self, node: &Node) -> Vec<f32> {
-        let Some(mesh) = node.mesh.and_then(|index| self.meshes.get(index)) else {
+    /// Returns one weight for each morph target of the node's mesh: the node's, else the mesh's, else 0. `targets` has
+    /// the number of targets of each mesh.
+    fn rest_weights(&self, node: &Node, targets: &[usize]) -> Vec<f32> {
+        let Some((mesh, &targets)) = node.mesh.and_then(|index| self.meshes.get(index).zip(targets.get(index))) else {
             return Vec::new();
         };
-        let targets = mesh.primitives.iter().map(|p| p.morphs.len()).max().unwrap_or(0);
         let own = !node.morph_weights.is_empty();
         let mut weights = vec![0.0; targets];
         overwrite(&mut weights, if own { &node.morph_weights } else { &mesh.morph_weights });

@@ -29,7 +29,7 @@ pub struct Scene {
     /// Directional lights of the file, in the order of their nodes; empty for built-in scenes.
     pub suns: Vec<SceneSun>,
     /// Position in the file's coordinates that the scene's world coordinates are relative to, in metres. It is zero,
-    /// unless the file's geometry lies far from its origin, where `f32` positions are coarse.
+    /// unless most of the file's triangles lie far from its origin, where `f32` positions are coarse.
     pub origin: DVec3,
     /// Whether blended surfaces cast shadows.
     pub blended_casters: BlendedCasters,
@@ -111,6 +111,13 @@ pub struct Mesh {
     pub primitives: Vec<Primitive>,
     /// Morph weights at rest.
     pub morph_weights: Vec<f32>,
+}
+
+impl Mesh {
+    /// Returns the number of morph targets that its nodes have weights for.
+    pub(crate) fn targets(&self) -> usize {
+        self.primitives.iter().map(|primitive| primitive.morphs.len()).max().unwrap_or(0)
+    }
 }
 
 /// Triangles with one material. It reads and writes like its [`Geometry`].
@@ -221,11 +228,12 @@ const ALPHA_TOLERANCE: f32 = 0.25 / 255.0;
 
 impl AlphaMode {
     /// Least alpha that is opaque where a surface is cut out, in pictures and shadows of masked materials and in shadows
-    /// of blended ones. It is the cutoff less a tolerance for rounding. `None` for opaque materials.
+    /// of blended ones. It is the cutoff less a tolerance for rounding, at most half of the cutoff. `None` for opaque materials.
     pub fn least_opaque(self) -> Option<f32> {
         match self {
             Self::Opaque => None,
-            Self::Mask { cutoff } => Some(cutoff - ALPHA_TOLERANCE),
+            // Alpha 0 stays below every cutoff but 0.
+            Self::Mask { cutoff } => Some((cutoff - ALPHA_TOLERANCE).max(cutoff * 0.5)),
             Self::Blend => Some(BLENDED_CUTOFF - ALPHA_TOLERANCE),
         }
     }

@@ -46,17 +46,38 @@ impl SceneSun {
     }
 }
 
+impl SceneSun {
+    /// Returns why the light does not shine in a pose. `None` if it shines.
+    pub(crate) fn fault(&self, pose: &Pose) -> Option<&'static str> {
+        if self.strength() <= 0.0 {
+            Some("it is without intensity")
+        } else if !(self.color * self.intensity).is_finite() {
+            Some("it is brighter than a number holds")
+        } else if self.direction(pose).is_none() {
+            Some("its node has no size")
+        } else {
+            None
+        }
+    }
+}
+
 impl Scene {
-    /// Returns the index of the strongest of [`Self::suns`], the first of equals. `None` if none of them shines.
+    /// Returns the index of the strongest of [`Self::suns`] at rest, the first of equals. `None` if none of them shines:
+    /// each has no intensity, an infinite one, or a node that scales its direction to nothing.
     pub fn strongest_sun(&self) -> Option<usize> {
-        let shining = self.suns.iter().enumerate().filter(|(_, sun)| sun.strength() > 0.0);
+        self.strongest_sun_in(&self.pose(None, 0.0))
+    }
+
+    /// Returns the index of the strongest of [`Self::suns`] that shine in a pose.
+    pub(crate) fn strongest_sun_in(&self, pose: &Pose) -> Option<usize> {
+        let shining = self.suns.iter().enumerate().filter(|(_, sun)| sun.fault(pose).is_none());
         // `max_by` takes the last of equals.
         shining.rev().max_by(|(_, a), (_, b)| a.strength().total_cmp(&b.strength())).map(|(index, _)| index)
     }
 
     /// Returns the strongest of [`Self::suns`] in a pose.
     pub(crate) fn sun_of(&self, pose: &Pose) -> Option<Sun> {
-        let sun = &self.suns[self.strongest_sun()?];
+        let sun = &self.suns[self.strongest_sun_in(pose)?];
         Some(Sun { direction: sun.direction(pose)?, color: sun.color, intensity: sun.intensity })
     }
 }

@@ -36,7 +36,9 @@ pub(crate) struct Reader<'a> {
     root: &'a Root,
     buffers: Vec<Result<Vec<u8>, Problem>>,
     elements_left: Cell<u64>,
-    /// Data of the sparse accessors that were read, by their index, with the elements that they replace.
+    /// Whether primitives refer to an accessor more than once.
+    shared: Vec<bool>,
+    /// Data of the shared sparse accessors that were read, by their index, with the elements that they replace.
     dense: RefCell<HashMap<usize, Rc<[u8]>>>,
 }
 
@@ -88,7 +90,8 @@ impl<'a> Reader<'a> {
             bytes_left -= loaded.as_ref().map_or(0, |bytes| bytes.len() as u64).min(bytes_left);
             buffers.push(loaded);
         }
-        Self { root, buffers, elements_left: Cell::new(MAX_ELEMENTS), dense: RefCell::default() }
+        let elements_left = Cell::new(MAX_ELEMENTS);
+        Self { root, buffers, elements_left, shared: shared(root), dense: RefCell::default() }
     }
 
     /// Number of elements of an accessor of `components` each, whose data is there.
@@ -208,7 +211,9 @@ impl<'a> Reader<'a> {
             Elements::All => layout.count,
             Elements::Listed(list) => list.len(),
         };
-        self.spend(count, &name)?;
+        // A sparse accessor is put together as a whole, also where few of its elements are read.
+        let is_made = accessor.sparse.is_some() && !self.dense.borrow().contains_key(&index.value());
+        self.spend(if is_made { layout.count.max(count) } else { count }, &name)?;
         let size = layout.component.size();
         let data = self.data(accessor, index, &layout, size * N, &name)?;
         let Some((bytes, stride)) = data else { return Ok(vec![[T::default(); N]; count]) };
@@ -223,7 +228,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The bytes of all elements, each of `size`, and the distance from one to the next; `None` where all are zero. The
-    /// elements of a sparse accessor are put together once, however often it is read.
+    /// elements of a sparse accessor that primitives share are put together once, however often it is read.
     fn data<'b>(
         &self,
         accessor: &Accessor,
@@ -238,7 +243,6 @@ impl<'a> Reader<'a> {
         if let Some(dense) = self.dense.borrow().get(&index.value()) {
             return Ok(Some((Bytes::Dense(Rc::clone(dense)), size)));
         }
-        self.spend(layout.count, name)?;
         let mut dense = vec![0; layout.count * size];
         if let Some(bytes) = layout.bytes {
             for (element, at) in dense.chunks_exact_mut(size).zip((0..).step_by(layout.stride)) {
@@ -247,7 +251,9 @@ impl<'a> Reader<'a> {
         }
         self.overlay(sparse, &mut dense, size, name)?;
         let dense: Rc<[u8]> = dense.into();
-        self.dense.borrow_mut().insert(index.value(), Rc::clone(&dense));
+        if self.shared[index.value()] {
+            self.dense.borrow_mut().insert(index.value(), Rc::clone(&dense));
+        }
         Ok(Some((Bytes::Dense(dense), size)))
     }
 
@@ -331,6 +337,21 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Returns whether primitives refer to each accessor more than once.
+fn shared(root: &Root) -> Vec<bool> {
+    let mut uses = vec![0_u32; root.accessors.len()];
+    for primitive in root.meshes.iter().flat_map(|mesh| &mesh.primitives) {
+        let targets = primitive.targets.iter().flatten();
+        let targets = targets.flat_map(|target| [target.positions, target.normals]).flatten();
+        for index in primitive.attributes.values().copied().chain(primitive.indices).chain(targets) {
+            if let Some(uses) = uses.get_mut(index.value()) {
+                *uses += 1;
+            }
+        }
+    }
+    uses.into_iter().map(|uses| uses > 1).collect()
+}
+
 fn load_buffer(
     index: usize,
     buffer: &buffer::Buffer,
@@ -385,5 +406,36 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> u32 {
         1 => u32::from(bytes[0]),
         2 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
         _ => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use gltf::json::deserialize;
+
+    use super::*;
+
+    #[test]
+    fn a_sparse_accessor_counts_once_and_is_kept_only_where_primitives_share_it() {
+        let sparse = r#"{"componentType":5126,"type":"VEC3","count":100,"sparse":{"count":0,
+            "indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}}}"#;
+        let json = format!(
+            r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":4,"uri":"data:;base64,AAAAAA=="}}],
+            "bufferViews":[{{"buffer":0,"byteLength":4}}],"accessors":[{sparse},{sparse}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1}}}},{{"attributes":{{"POSITION":1}}}}]}}]}}"#
+        );
+        let root: Root = deserialize::from_str(&json).unwrap();
+        let files = BTreeMap::new();
+        for (accessor, costs) in [(0, [100, 100, 100]), (1, [100, 1, 100])] {
+            let reader = Reader::new(&root, None, Folder::Memory(&files));
+            for (elements, cost) in [Elements::All, Elements::Listed(&[7]), Elements::All].into_iter().zip(costs) {
+                let before = reader.elements_left.get();
+                reader.some_floats::<3>(Index::new(accessor), "a", Integers::AsDeclared, elements).unwrap();
+                assert_eq!(before - reader.elements_left.get(), cost, "accessor {accessor}");
+            }
+            assert_eq!(reader.dense.borrow().len(), accessor as usize);
+        }
     }
 }

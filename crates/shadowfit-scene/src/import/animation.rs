@@ -10,7 +10,7 @@ use super::accessor::{Integers, Reader};
 use super::nodes::Tree;
 use super::notes::Notes;
 use crate::error::{Problem, entry};
-use crate::{Animation, Channel, ChannelValues, Interpolation, Mesh, Node};
+use crate::{Animation, Channel, ChannelValues, Interpolation, Node};
 
 /// Loads the animations of a scene.
 pub(crate) struct Animations<'a> {
@@ -19,7 +19,8 @@ pub(crate) struct Animations<'a> {
     pub(crate) tree: &'a Tree,
     /// Nodes with their meshes filled in.
     pub(crate) nodes: &'a [Node],
-    pub(crate) meshes: &'a [Mesh],
+    /// Number of morph targets of each mesh.
+    pub(crate) targets: &'a [usize],
 }
 
 impl Animations<'_> {
@@ -75,8 +76,7 @@ impl Animations<'_> {
 
     /// Number of morph targets of a node's mesh.
     fn targets(&self, node: usize) -> usize {
-        let primitives = self.nodes[node].mesh.map_or(&[][..], |mesh| &self.meshes[mesh].primitives);
-        primitives.iter().map(|primitive| primitive.morphs.len()).max().unwrap_or(0)
+        self.nodes[node].mesh.map_or(0, |mesh| self.targets[mesh])
     }
 
     fn channel(

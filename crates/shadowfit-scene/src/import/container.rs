@@ -7,7 +7,7 @@ use std::path::Path;
 
 use gltf::json::{Root, Value, deserialize, serialize};
 
-use super::{extensions, repair, transforms};
+use super::{extensions, material, repair, transforms};
 use crate::{SceneError, Transform};
 
 /// Largest file read, glTF and buffers alike: what a GLB can hold at most.
@@ -60,9 +60,13 @@ fn readable<'a>(path: &Path, json: &'a [u8]) -> Result<(Cow<'a, [u8]>, Root), Sc
     Ok((Cow::Owned(json), root))
 }
 
-/// Whether each texture has an image that needs no extension.
+/// Whether each texture that import reads has an image that needs no extension.
 fn has_plain_textures(root: &Root) -> bool {
-    root.textures.iter().all(|texture| texture.source.value() < root.images.len())
+    let textures = root.materials.iter().flat_map(material::textures);
+    // The material's loader refuses a texture that is not there.
+    textures
+        .filter_map(|index| root.textures.get(index.value()))
+        .all(|texture| material::has_plain_image(root, texture))
 }
 
 fn malformed(path: &Path, element: &str, reason: String) -> SceneError {

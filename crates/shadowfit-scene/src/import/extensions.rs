@@ -35,7 +35,11 @@ const HARMLESS: [(&str, &str); 35] = [
     ("EXT_mesh_manifold", "its topology data has no effect"),
     ("EXT_structural_metadata", "its metadata has no effect"),
     ("EXT_texture_avif", "textures show their PNG, JPEG or WebP image, or none"),
-    ("KHR_animation_pointer", "animations of materials, lights, cameras and visibility stand still"),
+    (
+        "KHR_animation_pointer",
+        "animations of materials, lights, cameras, visibility, weights of meshes and single weights stand still, while nodes \
+         move",
+    ),
     ("KHR_audio_emitter", "nothing is heard"),
     ("KHR_interactivity", "the scene does not react"),
     ("KHR_materials_anisotropy", "brushed surfaces are drawn with round highlights"),

@@ -3,20 +3,27 @@
 //! Each instance becomes a child of the node, so that all follow its animation. The children stand behind all other
 //! nodes.
 
+use std::collections::HashMap;
+use std::ops::Range;
+
 use glam::{Quat, Vec3};
 use gltf::json::accessor::Accessor;
 use gltf::json::scene::Node as JsonNode;
 use gltf::json::{Index, Root, Value};
 
 use super::accessor::{Integers, Reader};
+use super::drawn::Drawn;
 use super::nodes::Tree;
 use super::notes::Notes;
 use super::transforms::rotation;
 use crate::error::Problem;
 use crate::{Animation, Channel, ChannelValues, Node, Scene, Transform};
 
-/// Instances that a scene may have in tables. Each takes a few hundred bytes in the scene and on the GPU.
-const MAX_INSTANCES: usize = 1 << 20;
+/// Attributes of a table that place its instances.
+const TRANSFORMS: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
+
+/// Elements of the budget that a channel takes beside its keys.
+const CHANNEL_ELEMENTS: usize = 8;
 
 /// Number of instances that a node's table declares; 1 where it has none, and where it is broken.
 pub(super) fn declared(root: &Root, json: &JsonNode) -> u64 {
@@ -35,60 +42,71 @@ pub(super) fn expand(
     (root, reader): (&Root, &Reader),
     tree: &mut Tree,
     scene: &mut Scene,
+    drawn: &mut Drawn,
     notes: &mut Notes,
 ) -> Result<(), Problem> {
     let nodes = &mut scene.nodes;
-    let mut left = MAX_INSTANCES;
+    let mut rows = HashMap::new();
     for node in 0..tree.file_index.len() {
         let index = tree.file_index[node];
-        let Some(table) = table(&root.nodes[index]).filter(|_| nodes[node].mesh.is_some()) else { continue };
+        let (Some(table), Some(mesh)) = (table(&root.nodes[index]), nodes[node].mesh) else { continue };
         let element = format!("nodes[{index}].extensions.EXT_mesh_gpu_instancing.attributes");
-        if nodes[node].skin.is_some() {
+        let has_joints = || scene.meshes[mesh].primitives.iter().any(|primitive| !primitive.joints.is_empty());
+        if nodes[node].skin.is_some() && has_joints() {
             // Joints place a skinned mesh, so that all instances would coincide.
-            notes.add(format!("{element}: a skinned mesh is drawn once, where its joints are"));
+            let rows = declared(root, &root.nodes[index]);
+            notes.add(format!(
+                "{element}: ignored: joints place the mesh, which is drawn once instead of {rows} times, also its parts \
+                 without joints"
+            ));
             continue;
         }
-        let transforms = Table { reader, json: table, element: &element }.read(&mut left)?;
-        // Instances without transforms of their own coincide.
+        if table.as_object().is_some_and(|table| table.keys().any(|name| !TRANSFORMS.contains(&name.as_str()))) {
+            notes.add("EXT_mesh_gpu_instancing: attributes of instances other than their transforms are ignored");
+        }
+        let table = Table { reader, json: table, element: &element };
+        let transforms = table.read(|rows| drawn.add_rows(&scene.meshes[mesh], rows, &element))?;
+        // Without transforms, all instances coincide.
         let Some(transforms) = transforms else { continue };
+        let mut morph_weights = nodes[node].morph_weights.clone();
+        morph_weights.truncate(scene.meshes[mesh].targets());
         let first = nodes.len();
         let mesh = nodes[node].mesh.take();
         let instance = |rest: Transform| Node {
             rest,
             mesh,
             parent: Some(node),
-            name: nodes[node].name.clone(),
-            morph_weights: nodes[node].morph_weights.clone(),
-            skin: None,
+            morph_weights: morph_weights.clone(),
+            // Rows have no name, so that a long one is not copied a million times. Their parent has it.
+            ..Node::default()
         };
         let instances: Vec<Node> = transforms.into_iter().map(instance).collect();
         tree.file_index.extend(instances.iter().map(|_| index));
         nodes.extend(instances);
-        for animation in &mut scene.animations {
-            move_weights(reader, animation, (node, first..nodes.len()), &element)?;
-        }
+        rows.insert(node, (first..nodes.len(), element));
     }
-    Ok(())
+    scene.animations.iter_mut().try_for_each(|animation| move_weights(reader, animation, &rows))
 }
 
-/// Gives each instance of a node the channels that animate the node's morph weights.
+/// Replaces the channels that animate the morph weights of nodes with tables by one for each of their rows. `rows` has,
+/// for each such node, the nodes of its rows and the element that is refused if they are too many.
 fn move_weights(
     reader: &Reader,
     animation: &mut Animation,
-    (node, instances): (usize, std::ops::Range<usize>),
-    element: &str,
+    rows: &HashMap<usize, (Range<usize>, String)>,
 ) -> Result<(), Problem> {
-    let weights = |channel: &Channel| match &channel.values {
-        ChannelValues::MorphWeights(values) if channel.node == node => Some(values.len() + channel.times.len()),
-        _ => None,
-    };
-    let (of_node, mut others): (Vec<Channel>, _) =
-        std::mem::take(&mut animation.channels).into_iter().partition(|channel| weights(channel).is_some());
-    for channel in of_node {
-        reader.spend(weights(&channel).unwrap_or(0).saturating_mul(instances.len()), element)?;
-        others.extend(instances.clone().map(|node| Channel { node, ..channel.clone() }));
+    let mut channels = Vec::with_capacity(animation.channels.len());
+    for channel in std::mem::take(&mut animation.channels) {
+        match (&channel.values, rows.get(&channel.node)) {
+            (ChannelValues::MorphWeights(values), Some((rows, element))) => {
+                let each = values.len() + channel.times.len() + CHANNEL_ELEMENTS;
+                reader.spend(each.saturating_mul(rows.len()), element)?;
+                channels.extend(rows.clone().map(|node| Channel { node, ..channel.clone() }));
+            }
+            _ => channels.push(channel),
+        }
     }
-    animation.channels = others;
+    animation.channels = channels;
     Ok(())
 }
 
@@ -100,17 +118,13 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Reads its transforms, at most `left`, and subtracts their number from it. `None` if it has no attribute of
-    /// transforms.
-    fn read(&self, left: &mut usize) -> Result<Option<Vec<Transform>>, Problem> {
-        let [translation, rotations, scale] = ["TRANSLATION", "ROTATION", "SCALE"].map(|name| self.find(name));
+    /// Reads its transforms once `accept` accepts their number. `None` if no attribute is a transform.
+    fn read(&self, accept: impl FnOnce(usize) -> Result<(), Problem>) -> Result<Option<Vec<Transform>>, Problem> {
+        let [translation, rotations, scale] = TRANSFORMS.map(|name| self.find(name));
         let [translation, rotations, scale] = [translation?, rotations?, scale?];
         let given = [translation, rotations, scale].into_iter().flatten();
         let Some(count) = self.count(given)? else { return Ok(None) };
-        *left = left.checked_sub(count).ok_or_else(|| {
-            let reason = format!("with its {count} instances the scene has more than {MAX_INSTANCES} in tables");
-            Problem::new(self.element, reason).hint("Split or simplify the scene")
-        })?;
+        accept(count)?;
         let translations = self.values::<3>(translation, Integers::AsDeclared)?;
         let rotations = self.values::<4>(rotations, Integers::Normalized)?;
         let scales = self.values::<3>(scale, Integers::AsDeclared)?;

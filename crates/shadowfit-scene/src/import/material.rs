@@ -114,7 +114,7 @@ impl<'a> Materials<'a> {
         }
         let mut material = plain(json, element, notes);
         if let Some(gloss) = &gloss {
-            gloss.apply(&mut material);
+            gloss.apply(&mut material, notes);
         }
         material.base_color_texture = base_color_texture;
         material.normal_texture = normal_texture;
@@ -168,6 +168,28 @@ impl<'a> Materials<'a> {
     }
 }
 
+/// Returns the textures that import reads of a material: base or diffuse colour and normal map.
+pub(super) fn textures(json: &json::Material) -> impl Iterator<Item = Index<texture::Texture>> {
+    let base = match SpecularGlossiness::of(json, "") {
+        Ok(Some(gloss)) => gloss.diffuse_texture.map(|info| info.index),
+        _ => json.pbr_metallic_roughness.base_color_texture.as_ref().map(|info| info.index),
+    };
+    base.into_iter().chain(json.normal_texture.as_ref().map(|info| info.index))
+}
+
+/// Whether one of a texture's images is not declared as a format that import cannot decode.
+pub(super) fn has_plain_image(root: &Root, texture: &texture::Texture) -> bool {
+    // Names of the types in `mimeType` and data URIs, and ends of file names.
+    const UNREAD: [&str; 3] = ["ktx2", "avif", "dds"];
+    let is_plain = |image: &gltf::json::Image| {
+        let kind = image.mime_type.as_ref().map(|kind| kind.0.as_str());
+        let kind = kind.or_else(|| image.uri.as_ref()?.strip_prefix("data:")?.split([';', ',']).next());
+        let kind = kind.or_else(|| image.uri.as_ref()?.rsplit('.').next()).unwrap_or_default().to_ascii_lowercase();
+        !UNREAD.iter().any(|unread| kind.ends_with(unread))
+    };
+    sources(texture, root.images.len(), "").is_ok_and(|all| all.iter().any(|&source| is_plain(&root.images[source])))
+}
+
 /// Images of a texture, the preferred one first: that of `EXT_texture_webp`, then the one for readers without it. All
 /// are below `count`, the number of images in the file.
 fn sources(texture: &texture::Texture, count: usize, element: &str) -> Result<Vec<usize>, Problem> {
@@ -211,39 +233,78 @@ fn is_hidden(json: &json::Material) -> bool {
     is_masked && json.alpha_cutoff.is_some_and(|cutoff| cutoff.0 > 1.0)
 }
 
-/// `KHR_materials_pbrSpecularGlossiness`: base colour and alpha of materials from before metallic-roughness. Its
-/// reflections are those of a non-metal.
+/// Greatest component of a diffuse colour that counts as black. Metals have no diffuse colour.
+const BLACK_DIFFUSE: f32 = 0.04;
+
+/// Least component of a specular colour that makes a black surface a metal. Gems, the brightest non-metals, reflect 0.17.
+const METAL_SPECULAR: f32 = 0.25;
+
+/// `KHR_materials_pbrSpecularGlossiness`: base colour and alpha of materials from before metallic-roughness. It reflects
+/// like a metal where it is black with a bright specular colour, and like a non-metal elsewhere.
 #[derive(serde::Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 struct SpecularGlossiness {
     diffuse_factor: [f32; 4],
     diffuse_texture: Option<texture::Info>,
+    specular_factor: Option<[f32; 3]>,
     glossiness_factor: f32,
+    #[serde(rename = "specularGlossinessTexture")]
+    reflection_texture: Option<texture::Info>,
 }
 
 impl Default for SpecularGlossiness {
     fn default() -> Self {
-        Self { diffuse_factor: [1.0; 4], diffuse_texture: None, glossiness_factor: 1.0 }
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: None,
+            glossiness_factor: 1.0,
+            reflection_texture: None,
+        }
     }
 }
 
 impl SpecularGlossiness {
+    const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
+
     fn of(json: &json::Material, element: &str) -> Result<Option<Self>, Problem> {
-        const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
-        let Some(value) = json.extensions.as_ref().and_then(|own| own.others.get(NAME)) else { return Ok(None) };
-        let wrong = |error: gltf::json::Error| Problem::new(format!("{element}.extensions.{NAME}"), error.to_string());
+        let Some(value) = json.extensions.as_ref().and_then(|own| own.others.get(Self::NAME)) else { return Ok(None) };
+        let wrong =
+            |error: gltf::json::Error| Problem::new(format!("{element}.extensions.{}", Self::NAME), error.to_string());
         deserialize::from_value(value.clone()).map(Some).map_err(wrong)
     }
 
     fn texture(&self, element: &str) -> Option<Use<'_>> {
-        let name = format!("{element}.extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture");
+        let name = format!("{element}.extensions.{}.diffuseTexture", Self::NAME);
         self.diffuse_texture.as_ref().map(|info| texture_use(info, name))
     }
 
-    fn apply(&self, material: &mut Material) {
+    fn apply(&self, material: &mut Material, notes: &mut Notes) {
+        let name = Self::NAME;
         material.base_color = Vec4::from_array(self.diffuse_factor.map(unit));
         material.metallic = 0.0;
         material.roughness = 1.0 - unit(self.glossiness_factor);
+        if self.reflection_texture.is_some() {
+            notes.add(format!(
+                "{name}: specularGlossinessTexture is not read: glossiness is uniform, and no surface a metal"
+            ));
+        } else if let Some(metal) = self.metal() {
+            material.base_color = metal.extend(material.base_color.w);
+            material.metallic = 1.0;
+        } else if self.specular_factor.is_some() {
+            notes.add(format!(
+                "{name}: specularFactor is read for black materials only: others reflect like non-metals"
+            ));
+        }
+    }
+
+    /// Returns the base colour of a metal. The extension's usual conversion gives metalness 1 and the specular colour
+    /// where the diffuse colour is black.
+    fn metal(&self) -> Option<Vec3> {
+        let specular = Vec3::from_array(self.specular_factor.unwrap_or([1.0; 3]).map(unit));
+        let diffuse = Vec4::from_array(self.diffuse_factor.map(unit)).truncate();
+        let is_metal = diffuse.max_element() <= BLACK_DIFFUSE && specular.max_element() >= METAL_SPECULAR;
+        (is_metal && self.diffuse_texture.is_none()).then_some(specular)
     }
 }
 

@@ -23,6 +23,9 @@ use crate::{Geometry, MorphTarget, Primitive};
 /// three coordinates, as in a volume, is still finite in f32.
 pub(crate) const MAX_COORDINATE: f32 = 1e12;
 
+/// Indices in the memory of one element of the budget.
+const INDICES_PER_ELEMENT: usize = 4;
+
 /// Loads geometry once, however many primitives share it.
 pub(crate) struct Geometries<'a> {
     reader: &'a Reader<'a>,
@@ -120,6 +123,11 @@ impl<'a> Geometries<'a> {
             ..Geometry::default()
         };
         (geometry.joints, geometry.weights) = influence::load(reader, json, element, (count, vertices))?;
+        if geometry.normals.is_empty() {
+            // Flat normals give each target a position and a normal at each corner.
+            let copied = geometry.indices.len().saturating_mul(2).saturating_mul(geometry.morphs.len());
+            reader.spend(copied, &format!("{element}.targets"))?;
+        }
         complete(&mut geometry, mode, look, notes);
         Ok(geometry)
     }
@@ -146,16 +154,25 @@ fn indices(
     element: &str,
     (mode, count): (Mode, usize),
 ) -> Result<Vec<u32>, Problem> {
+    // Strips and fans have up to three indices for each corner.
+    let spend = |corners: usize| {
+        let made = if mode == Mode::Triangles { corners } else { corners.saturating_mul(3) };
+        reader.spend(made / INDICES_PER_ELEMENT, element)
+    };
     let Some(index) = json.indices else {
+        spend(count)?;
         let all: Vec<u32> = (0..count as u32).collect();
         return Ok(triangle_list(mode, &all));
     };
-    let element = format!("{element}.indices");
-    let corners = reader.integers::<1>(index, &element, Elements::All)?;
+    let name = format!("{element}.indices");
+    let corners = reader.integers::<1>(index, &name, Elements::All)?;
     let corners: Vec<u32> = corners.into_iter().map(|[corner]| corner).collect();
     if let Some(at) = corners.iter().position(|&corner| corner as usize >= count) {
         let reason = format!("index {at} is {}, there are {count} vertices", corners[at]);
-        return Err(Problem::new(format!("{element}, accessor {index}"), reason));
+        return Err(Problem::new(format!("{name}, accessor {index}"), reason));
+    }
+    if mode != Mode::Triangles {
+        spend(corners.len())?;
     }
     Ok(triangle_list(mode, &corners))
 }
@@ -268,8 +285,20 @@ impl Attributes<'_> {
         Ok(colors)
     }
 
+    /// Number of vertices that its triangles use.
+    fn used(&self) -> usize {
+        match self.vertices {
+            Elements::All => self.count,
+            Elements::Listed(list) => list.len(),
+        }
+    }
+
     fn morphs(&self) -> Result<Vec<MorphTarget>, Problem> {
-        let targets = self.json.targets.iter().flatten().enumerate();
+        let targets = || self.json.targets.iter().flatten();
+        // Targets without positions get zeros.
+        let absent = targets().filter(|target| target.positions.is_none()).count();
+        self.reader.spend(absent.saturating_mul(self.used()), &format!("{}.targets", self.element))?;
+        let targets = targets().enumerate();
         targets.map(|(i, target)| self.morph(&format!("{}.targets[{i}]", self.element), target)).collect()
     }
 
@@ -279,11 +308,7 @@ impl Attributes<'_> {
             None => Ok(Vec::new()),
         };
         let mut positions = read(target.positions, "POSITION")?;
-        let vertices = match self.vertices {
-            Elements::All => self.count,
-            Elements::Listed(list) => list.len(),
-        };
-        positions.resize(vertices, Vec3::ZERO);
+        positions.resize(self.used(), Vec3::ZERO);
         Ok(MorphTarget { positions, normals: read(target.normals, "NORMAL")? })
     }
 }

@@ -9,6 +9,7 @@ mod animation;
 mod container;
 #[cfg(not(target_family = "wasm"))]
 mod decode;
+mod drawn;
 mod extensions;
 mod image;
 mod influence;
@@ -17,6 +18,7 @@ mod material;
 mod mesh;
 mod nodes;
 mod notes;
+mod origin;
 mod repair;
 mod size;
 mod skin;
@@ -30,15 +32,14 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use glam::{Mat4, Vec3};
 use gltf::json::Root;
-use shadowfit::Aabb;
 
 use self::accessor::Reader;
 use self::animation::Animations;
 use self::container::Source;
 #[cfg(not(target_family = "wasm"))]
 pub use self::decode::decode_image;
+use self::drawn::Drawn;
 use self::image::Images;
 pub use self::image::{DecodeImage, DecodedImage};
 use self::material::Materials;
@@ -51,15 +52,7 @@ use self::uri::Folder;
 #[cfg(not(target_family = "wasm"))]
 use self::uri::{file_size, read_file};
 use crate::error::{Problem, entry};
-use crate::{Mesh, Node, Primitive, Scene, SceneError, Skin};
-
-/// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
-/// number of them.
-const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
-
-/// Greatest coordinate of the middle of a scene that stays where its file has it, in metres. Up to twice as far, f32
-/// positions are exact to half a millimetre.
-const NEAR_ORIGIN: f64 = 4096.0;
+use crate::{Mesh, Node, Scene, SceneError, Skin};
 
 /// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
 ///
@@ -198,17 +191,24 @@ fn import<'a>(
     source.notes.iter().for_each(|note| notes.add(note));
     let mut nodes = std::mem::take(&mut tree.nodes);
     let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, images, &mut notes)?;
+    let mut drawn = Drawn::new(reader);
+    for (node, index) in nodes.iter().zip(&tree.file_index) {
+        if let Some(mesh) = node.mesh {
+            drawn.add(&meshes[mesh], 1, &format!("nodes[{index}]"))?;
+        }
+    }
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
     tree.nodes = nodes;
-    let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
+    let targets: Vec<usize> = meshes.iter().map(Mesh::targets).collect();
+    let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, targets: &targets };
     let animations = animations.load(&mut notes)?;
     let cameras = view::cameras(root, &tree, &mut notes)?;
     let suns = view::suns(root, &tree, &mut notes)?;
     let (materials, images) = materials.finish(&mut notes);
     let nodes = std::mem::take(&mut tree.nodes);
     let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, suns, ..Scene::default() };
-    instancing::expand((root, reader), &mut tree, &mut scene, &mut notes)?;
-    move_near_origin(&mut scene, &tree, &mut notes)?;
+    instancing::expand((root, reader), &mut tree, &mut scene, &mut drawn, &mut notes)?;
+    origin::place(&mut scene, &tree, reader, &mut notes)?;
     let rest = scene.pose(None, 0.0);
     scene.sun = scene.sun_of(&rest);
     view::note_views(&scene, &rest, &mut notes);
@@ -282,61 +282,4 @@ fn skins(root: &Root, reader: &Reader, tree: &Tree, nodes: &mut [Node], meshes: 
         skin::check_joints(&meshes[mesh], &skins[own], &format!("nodes[{index}].skin"))?;
     }
     Ok(skins)
-}
-
-/// Sets the origin of a scene that lies far from that of its file, where f32 positions are coarse, to its middle. Scenes
-/// that are larger than they are far away stay.
-fn move_near_origin(scene: &mut Scene, tree: &Tree, notes: &mut Notes) -> Result<(), Problem> {
-    let Some(bounds) = extent(scene, tree)? else { return Ok(()) };
-    let middle = bounds.min.as_dvec3().midpoint(bounds.max.as_dvec3());
-    let distance = middle.abs().max_element();
-    if distance > NEAR_ORIGIN && distance > f64::from(bounds.size().max_element()) {
-        scene.origin = middle.round();
-        let [x, y, z] = scene.origin.to_array();
-        notes.add(format!(
-            "moved near the origin, where positions are exact: world positions are relative to ({x}, {y}, {z}) m of the file"
-        ));
-    }
-    Ok(())
-}
-
-/// World bounds of the scene at rest, from the corners of its primitives: no vertex is visited per node, so that sharing
-/// a mesh stays cheap. Refuses what f32 cannot compute with.
-fn extent(scene: &Scene, tree: &Tree) -> Result<Option<Aabb>, Problem> {
-    let rest = scene.pose(None, 0.0);
-    let boxes: Vec<Vec<Option<Aabb>>> = scene
-        .meshes
-        .iter()
-        .map(|mesh| mesh.primitives.iter().map(|p| Aabb::from_points(p.positions.iter().copied())).collect())
-        .collect();
-    let (mut triangles, mut all) = (0, None::<Aabb>);
-    for instance in scene.instances() {
-        let element = || format!("nodes[{}]", tree.file_index[instance.node]);
-        let primitive: &Primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-        triangles += primitive.indices.len() / 3;
-        if triangles > MAX_DRAWN_TRIANGLES {
-            let reason = format!("with it the scene draws more than {MAX_DRAWN_TRIANGLES} triangles");
-            return Err(Problem::new(element(), reason).hint("Split or simplify the scene"));
-        }
-        let Some(bounds) = boxes[instance.mesh][instance.primitive] else { continue };
-        let matrices = match scene.instance_skin(&instance) {
-            Some(skin) => rest.world_from_mesh_by_joint(skin),
-            None => vec![rest.world_from(instance.node)],
-        };
-        for matrix in matrices {
-            let Some(world) = world_bounds(bounds, matrix) else {
-                let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
-                return Err(Problem::new(element(), reason).hint("Scale the scene down"));
-            };
-            all = Some(all.map_or(world, |all| all.union(world)));
-        }
-    }
-    Ok(all)
-}
-
-/// World bounds of a box; `None` where they reach beyond what f32 can compute with.
-fn world_bounds(bounds: Aabb, world_from_local: Mat4) -> Option<Aabb> {
-    let corners = bounds.corners().map(|corner| world_from_local.transform_point3(corner));
-    let is_near = |corner: &Vec3| corner.is_finite() && corner.abs().max_element() <= MAX_COORDINATE;
-    Aabb::from_points(corners).filter(|_| corners.iter().all(is_near))
 }

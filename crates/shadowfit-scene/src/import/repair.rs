@@ -9,7 +9,8 @@ const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
 ///
 /// - whole numbers that are written with a fraction, such as `24.0`, become integers,
 /// - scenes without nodes get an empty list of them,
-/// - animation channels without a target node, which extensions define, are removed.
+/// - animation channels that `KHR_animation_pointer` points at a node's transform or morph weights name that node instead,
+/// - other animation channels without a target node, which extensions define, are removed.
 pub(super) fn complete(json: &mut Value) {
     make_whole(json);
     for scene in items(json, "scenes") {
@@ -17,11 +18,27 @@ pub(super) fn complete(json: &mut Value) {
             scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
         }
     }
+    let nodes = items(json, "nodes").count();
     for animation in items(json, "animations") {
         if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            for channel in &mut *channels {
+                if let Some((node, path)) = pointed_at(channel).filter(|(node, _)| *node < nodes) {
+                    channel["target"]["node"] = node.into();
+                    channel["target"]["path"] = path.into();
+                }
+            }
             channels.retain(|channel| channel["target"].get("node").is_some());
         }
     }
+}
+
+/// Returns the node and property that a channel points at, such as 3 and `scale` for `/nodes/3/scale`. `None` for pointers
+/// to anything else.
+fn pointed_at(channel: &Value) -> Option<(usize, &'static str)> {
+    let pointer = channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"].as_str()?;
+    let (node, property) = pointer.strip_prefix("/nodes/")?.split_once('/')?;
+    let property = ["translation", "rotation", "scale", "weights"].into_iter().find(|known| *known == property)?;
+    Some((node.parse().ok()?, property))
 }
 
 fn items<'a>(json: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Value> {

@@ -2,7 +2,7 @@
 
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
-use gltf::json::{Index, Root, image, mesh};
+use gltf::json::{Index, Mesh, Root, image, mesh};
 
 use super::instancing;
 use super::nodes::Tree;
@@ -34,19 +34,22 @@ impl SceneSize {
 
     /// The same with what the JSON says about a scene.
     pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: Folder<'_>) -> Self {
-        let mut is_counted = vec![false; root.meshes.len()];
-        let (mut all, mut drawn) = (0, 0);
+        // The counts are claims, so that their sums may be too large for a number.
+        let sum = u64::saturating_add;
+        let triangles = |mesh: &Mesh| mesh.primitives.iter().map(|primitive| triangles(root, primitive)).fold(0, sum);
+        // Each with whether a node before drew it.
+        let mut meshes: Vec<(u64, bool)> = root.meshes.iter().map(|mesh| (triangles(mesh), false)).collect();
+        let (mut all, mut drawn) = (0_u64, 0_u64);
         for (node, _) in tree.file_index.iter().zip(&tree.hidden).filter(|(_, hidden)| !**hidden) {
             let node = &root.nodes[*node];
             let Some(index) = node.mesh else { continue };
-            let Some(mesh) = root.meshes.get(index.value()) else { continue };
-            let triangles: u64 = mesh.primitives.iter().map(|primitive| triangles(root, primitive)).sum();
-            drawn += triangles.saturating_mul(instancing::declared(root, node));
-            if !std::mem::replace(&mut is_counted[index.value()], true) {
-                all += triangles;
+            let Some((triangles, is_counted)) = meshes.get_mut(index.value()) else { continue };
+            drawn = drawn.saturating_add(triangles.saturating_mul(instancing::declared(root, node)));
+            if !std::mem::replace(is_counted, true) {
+                all = all.saturating_add(*triangles);
             }
         }
-        let images = root.images.iter().map(|image| encoded(root, image, folder)).sum();
+        let images = root.images.iter().map(|image| encoded(root, image, folder)).fold(0, sum);
         Self { nodes: tree.nodes.len() as u64, triangles: all, drawn, images, ..self }
     }
 }

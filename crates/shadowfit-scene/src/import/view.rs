@@ -97,15 +97,13 @@ pub(crate) fn note_views(scene: &Scene, rest: &Pose, notes: &mut Notes) {
             notes.add(format!("camera {number} ignored: its node has no size"));
         }
     }
+    for (sun, number) in scene.suns.iter().zip(1..) {
+        if let Some(fault) = sun.fault(rest) {
+            notes.add(format!("directional light {number} ignored: {fault}"));
+        }
+    }
     let count = scene.suns.len();
-    match scene.strongest_sun() {
-        None if count > 0 => notes.add(format!("{count} directional lights without intensity ignored")),
-        Some(taken) if scene.suns[taken].direction(rest).is_none() => {
-            notes.add(format!("directional light {} ignored: its node has no size", taken + 1));
-        }
-        Some(taken) if count > 1 => {
-            notes.add(format!("the sun is directional light {} of {count}, the strongest", taken + 1));
-        }
-        _ => {}
+    if let Some(taken) = scene.strongest_sun_in(rest).filter(|_| count > 1) {
+        notes.add(format!("the sun is directional light {} of {count}, the strongest", taken + 1));
     }
 }

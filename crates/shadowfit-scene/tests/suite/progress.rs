@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use shadowfit_scene::{LoadStep, Scene, SceneError, SceneSize, load_gltf, load_gltf_with_progress};
 
-use crate::build::{Build, TRIANGLE, write};
+use crate::build::{Build, F32, TRIANGLE, write};
 
 /// A file of five nodes, of which three draw a mesh; the last of these the one of the given number, of two.
 fn file(mesh: usize) -> String {
@@ -48,4 +48,24 @@ fn the_size_of_a_file_that_cannot_be_loaded_is_what_it_claims() {
     let (step, size) = *told.last().expect("it was read");
     assert!(scene.is_err());
     assert_eq!((step, size.nodes, size.triangles, size.drawn), (LoadStep::Decode, 5, 2, 2));
+}
+
+#[test]
+fn sizes_that_sum_to_more_than_a_number_holds_are_the_greatest_number() {
+    let mut build = Build::default();
+    let most = format!(r#"{{"componentType":{F32},"type":"VEC3","count":{}}}"#, u64::MAX);
+    let most = build.push_accessor(&most);
+    let mesh =
+        format!(r#"{{"primitives":[{}]}}"#, vec![format!(r#"{{"attributes":{{"POSITION":{most}}}}}"#); 4].join(","));
+    let table = format!(r#""extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{"SCALE":{most}}}}}}}"#);
+    let image = r#"{"bufferView":0,"mimeType":"image/png"}"#;
+    build.members(&format!(
+        r#""nodes":[{{"mesh":0}},{{"mesh":1,{table}}},{{"mesh":1}}],"meshes":[{mesh},{mesh}],"images":[{image},{image}]"#
+    ));
+    build.view(&[0]);
+    let text = build.json().replace(r#""byteLength":1}]"#, &format!(r#""byteLength":{}}}]"#, u64::MAX));
+    let (scene, told) = load(&write("most", "most.gltf", text.as_bytes()));
+    assert!(scene.is_err());
+    let size = told.last().expect("it was read").1;
+    assert_eq!((size.triangles, size.drawn, size.images), (u64::MAX, u64::MAX, u64::MAX));
 }

@@ -219,6 +219,30 @@ fn a_small_file_cannot_ask_for_endless_geometry() {
     build.members(&format!(r#""nodes":[{nodes}],"meshes":[{{"primitives":[{primitive}]}}]"#));
     let message = refusal(build.load("endless"));
     assert!(message.contains("draws more than"), "{message}");
+    // A thousand nodes draw the same three thousand primitives without triangles.
+    let mut build = Build::default();
+    let none = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":0}}"#));
+    let primitives = vec![format!(r#"{{"attributes":{{"POSITION":{none}}}}}"#); 3000].join(",");
+    let nodes = vec![r#"{"mesh":0}"#; 1000].join(",");
+    build.members(&format!(r#""nodes":[{nodes}],"meshes":[{{"primitives":[{primitives}]}}]"#));
+    let message = refusal(build.load("primitives"));
+    assert!(message.contains("nodes[699]") && message.contains("more than 2097152 primitives"), "{message}");
+}
+
+#[test]
+fn morph_targets_cannot_ask_for_endless_copies() {
+    // A million vertices and a hundred and thirty targets without positions, or one vertex and a million corners.
+    let million = 1_048_575;
+    for (vertices, corners, targets) in [(million, 0, 130), (1, million, 65)] {
+        let mut build = Build::default();
+        let positions = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":{vertices}}}"#));
+        let indices = build.push_accessor(&format!(r#"{{"componentType":{U8},"type":"SCALAR","count":{corners}}}"#));
+        let indices = if corners > 0 { format!(r#","indices":{indices}"#) } else { String::new() };
+        let targets = vec!["{}"; targets].join(",");
+        build.one_primitive(&format!(r#"{{"attributes":{{"POSITION":{positions}}}{indices},"targets":[{targets}]}}"#));
+        let message = refusal(build.load("targets"));
+        assert!(message.contains("primitives[0].targets: the file decodes to more than"), "{message}");
+    }
 }
 
 proptest! {

@@ -110,6 +110,36 @@ fn specular_glossiness_gives_base_colour_alpha_and_texture() {
 }
 
 #[test]
+fn specular_colours_make_black_materials_metals_and_are_noted_where_they_are_not_read() {
+    let table = [
+        (r#""diffuseFactor":[0,0,0,0.5],"specularFactor":[1,0.75,0.25]"#, Vec4::new(1.0, 0.75, 0.25, 0.5), 1.0, None),
+        (r#""diffuseFactor":[0,0,0,1]"#, Vec4::ONE, 1.0, None),
+        (r#""diffuseFactor":[0.5,0,0,1]"#, Vec4::new(0.5, 0.0, 0.0, 1.0), 0.0, None),
+        // Black plastic.
+        (
+            r#""diffuseFactor":[0,0,0,1],"specularFactor":[0.04,0.04,0.04]"#,
+            Vec4::new(0.0, 0.0, 0.0, 1.0),
+            0.0,
+            Some("specularFactor is read for black materials only"),
+        ),
+        (
+            r#""diffuseFactor":[0,0,0,1],"specularGlossinessTexture":{"index":0}"#,
+            Vec4::new(0.0, 0.0, 0.0, 1.0),
+            0.0,
+            Some("specularGlossinessTexture is not read"),
+        ),
+    ];
+    for (members, color, metallic, note) in table {
+        let material = format!(r#"{{"extensions":{{"KHR_materials_pbrSpecularGlossiness":{{{members}}}}}}}"#);
+        let scene = loaded(r#","material":0"#, &format!(r#""materials":[{material}]"#)).unwrap();
+        assert_eq!((scene.materials[1].base_color, scene.materials[1].metallic), (color, metallic), "{members}");
+        let found = scene.notes.iter().find(|note| note.contains("Glossiness"));
+        assert_eq!(found.is_some(), note.is_some(), "{members}: {found:?}");
+        assert!(found.is_none_or(|found| found.contains(note.unwrap_or_default())), "{found:?}");
+    }
+}
+
+#[test]
 fn textures_fall_back_to_plain_images_and_are_refused_without_one_with_the_command() {
     let members = |texture: &str| {
         format!(
@@ -124,6 +154,36 @@ fn textures_fall_back_to_plain_images_and_are_refused_without_one_with_the_comma
     assert!(!scene.notes.iter().any(|note| note.contains("replaced")), "{:?}", scene.notes);
     let message = refusal(loaded(r#","material":0"#, &members(&format!("{{{basisu}}}"))));
     assert!(message.contains("gltf-transform ktxdecompress"), "{message}");
+}
+
+#[test]
+fn only_textures_that_are_read_need_a_plain_image_and_a_compressed_one_is_none() {
+    let members = |material: &str, texture: &str| {
+        format!(
+            r#""materials":[{{{material}}}],"textures":[{{"source":0}},{texture}],"extensionsRequired":["KHR_texture_basisu"],
+            "images":[{{"uri":"{PIXEL}"}},{{"uri":"a.KTX2"}},{{"bufferView":0,"mimeType":"image/ktx2"}},
+            {{"uri":"data:image/ktx2;base64,AAAA"}}]"#
+        )
+    };
+    let basisu = r#"{"extensions":{"KHR_texture_basisu":{"source":1}}}"#;
+    let base = r#""pbrMetallicRoughness":{"baseColorTexture":{"index":1}}"#;
+    let gloss = r#""extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseTexture":{"index":1}}}"#;
+    let unread = [
+        r#""occlusionTexture":{"index":1},"emissiveTexture":{"index":1}"#.to_owned(),
+        r#""pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":1}}"#.to_owned(),
+        format!("{},{base}", gloss.replace(r#""index":1"#, r#""index":0"#)),
+    ];
+    for material in unread {
+        let scene = loaded(r#","material":0"#, &members(&material, basisu)).unwrap();
+        assert!(!scene.notes.iter().any(|note| note.contains("replaced")), "{:?}", scene.notes);
+    }
+    let normal = r#""normalTexture":{"index":1}"#;
+    for material in [base, gloss, normal] {
+        for texture in [basisu, r#"{"source":1}"#, r#"{"source":2}"#, r#"{"source":3}"#] {
+            let message = refusal(loaded(r#","material":0"#, &members(material, texture)));
+            assert!(message.contains("gltf-transform ktxdecompress"), "{message}");
+        }
+    }
 }
 
 #[test]
@@ -158,6 +218,12 @@ fn a_cutoff_above_one_hides_a_primitive_and_blended_ones_cast_where_they_are_opa
         matches!(casting(&material(r#""alphaMode":"MASK","alphaCutoff":1"#)), Casting::CutOut(least) if least < 1.0)
     );
     assert_eq!(casting(&material(r#""alphaMode":"OPAQUE","alphaCutoff":7"#)), Casting::Whole);
+    // Transparent texels are holes at the smallest cutoffs, and opaque at 0 alone.
+    for cutoff in [1e-6, 1e-4, 9e-4, 2e-3_f32] {
+        let found = casting(&material(&format!(r#""alphaMode":"MASK","alphaCutoff":{cutoff}"#)));
+        assert!(matches!(found, Casting::CutOut(least) if least > 0.0 && least < cutoff), "{cutoff}: {found:?}");
+    }
+    assert_eq!(casting(&material(r#""alphaMode":"MASK","alphaCutoff":0"#)), Casting::CutOut(0.0));
     for (alpha, wanted) in [("1", Casting::Whole), ("0.5", Casting::Whole), ("0.498", Casting::Nothing)] {
         let scene =
             material(&format!(r#""alphaMode":"BLEND","pbrMetallicRoughness":{{"baseColorFactor":[1,1,1,{alpha}]}}"#));

@@ -3,7 +3,7 @@
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use shadowfit_scene::Scene;
 
-use crate::build::{Build, TRIANGLE};
+use crate::build::{Build, TRIANGLE, U8};
 
 /// A place on the globe and the turn of its ground, as files of surveys have them.
 const PLACE: DVec3 = DVec3::new(-2_694_044.411_163, 4_266_352.873_251, 3_888_310.602_734);
@@ -76,6 +76,30 @@ fn what_moves_below_a_root_on_the_globe_moves_exactly() {
         let exact = PLACE + turn() * DVec3::Y * moved;
         assert!((at - exact).length() < 1e-3, "{} m", (at - exact).length());
     }
+}
+
+#[test]
+fn a_stray_part_does_not_keep_a_place_on_the_globe_coarse_and_is_noted() {
+    let place = format!(r#"{{"mesh":0,"translation":{}}}"#, json(&PLACE.to_array()));
+    let scene = file(&[place.as_str(), r#"{"mesh":0}"#, &place].join(","), "");
+    assert!((scene.origin - PLACE).abs().max_element() < 2.0, "{}", scene.origin);
+    let note = "parts that lie up to 4266353 m from the origin, where positions are 0.500 m apart: 1 of 3";
+    assert!(scene.notes.iter().any(|found| found == note), "{:?}", scene.notes);
+    let near = file(&[place.as_str(), "{}", "{}"].join(","), "");
+    assert!(!near.notes.iter().any(|found| found.contains("apart")), "{:?}", near.notes);
+}
+
+#[test]
+fn joints_without_weights_have_no_part_in_the_origin() {
+    let mut build = Build::default();
+    let positions = build.floats("VEC3", 3, &TRIANGLE);
+    let joints = build.accessor(U8, "VEC4", 3, &[0, 1, 1, 1].repeat(3));
+    let weights = build.floats("VEC4", 4, &[1.0, 0.0, 0.0, 0.0].repeat(3));
+    build.members(&format!(
+        r#""nodes":[{{"mesh":0,"skin":0}},{{}},{{"translation":[1e13,0,0]}}],"skins":[{{"joints":[1,2]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":{positions},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}]}}]"#
+    ));
+    assert_eq!(build.load("joints").unwrap().origin, DVec3::ZERO);
 }
 
 #[test]

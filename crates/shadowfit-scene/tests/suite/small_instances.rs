@@ -88,17 +88,66 @@ fn instances_follow_the_animation_of_their_node_and_its_morph_weights() {
 }
 
 #[test]
+fn rows_have_no_name_and_the_weights_of_the_targets_that_there_are() {
+    let mut build = Build::default();
+    let translation = build.floats("VEC3", 3, &[0.0; 6]);
+    let node = r#","name":"long","weights":[0.5,0.25,0.125]"#;
+    let scene = with_table(&mut build, &format!(r#""TRANSLATION":{translation}"#), node, "").unwrap();
+    assert_eq!(scene.nodes[1].name, "long");
+    for row in &scene.nodes[2..] {
+        assert_eq!((row.name.as_str(), &row.morph_weights[..], row.parent), ("", &[0.5][..], Some(1)));
+    }
+    assert_eq!(scene.nodes.len(), 4);
+}
+
+#[test]
+fn rows_of_morphed_meshes_and_copies_of_their_channels_are_limited() {
+    let zeros = |count: usize| format!(r#"{{"componentType":{F32},"type":"VEC3","count":{count}}}"#);
+    for (count, is_sound) in [(16_384, true), (16_385, false)] {
+        let mut build = Build::default();
+        let table = build.push_accessor(&zeros(count));
+        let loaded = with_table(&mut build, &format!(r#""TRANSLATION":{table}"#), "", "");
+        match loaded {
+            Ok(scene) => assert!(is_sound && scene.instances().len() == count),
+            Err(error) => assert!(!is_sound && error.to_string().contains("morph targets"), "{error}"),
+        }
+    }
+    // Eight thousand keys for each of sixteen thousand rows.
+    let mut build = Build::default();
+    let table = build.push_accessor(&zeros(16_384));
+    let keys = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"SCALAR","count":8192}}"#));
+    let animation = format!(
+        r#","animations":[{{"samplers":[{{"input":{keys},"output":{keys}}}],
+        "channels":[{{"sampler":0,"target":{{"node":1,"path":"weights"}}}}]}}]"#
+    );
+    let message = refusal(with_table(&mut build, &format!(r#""TRANSLATION":{table}"#), "", &animation));
+    assert!(message.contains("nodes[1]") && message.contains("decodes to more than"), "{message}");
+}
+
+#[test]
 fn a_skinned_mesh_and_one_without_transforms_are_drawn_once() {
     let mut build = Build::default();
     let numbers = build.floats("SCALAR", 1, &[0.0; 5]);
     let scene = with_table(&mut build, &format!(r#""_ID":{numbers}"#), "", "").unwrap();
     assert_eq!(placed(&scene, 0.0), [[Vec3::Z * 100.0, Vec3::X]]);
-    let mut build = Build::default();
-    let translation = build.floats("VEC3", 3, &[0.0; 9]);
-    let skin = r#","skins":[{"joints":[0]}]"#;
-    let scene = with_table(&mut build, &format!(r#""TRANSLATION":{translation}"#), r#","skin":0"#, skin).unwrap();
-    assert_eq!(placed(&scene, 0.0).len(), 1);
-    assert!(scene.notes.iter().any(|note| note.contains("nodes[1]") && note.contains("once")), "{:?}", scene.notes);
+    let noted = |note: &String| note.contains("attributes of instances other than their transforms are ignored");
+    assert!(scene.notes.iter().any(noted), "{:?}", scene.notes);
+    for (is_skinned, drawn) in [(true, 2), (false, 6)] {
+        let mut build = Build::default();
+        let [positions, translation] = [TRIANGLE, [0.0; 9]].map(|values| build.floats("VEC3", 3, &values));
+        let joints = build.accessor(U8, "VEC4", 3, &[0; 12]);
+        let weights = build.floats("VEC4", 4, &[1.0, 0.0, 0.0, 0.0].repeat(3));
+        let joints = if is_skinned { format!(r#","JOINTS_0":{joints},"WEIGHTS_0":{weights}"#) } else { String::new() };
+        build.members(&format!(
+            r#""skins":[{{"joints":[0]}}],"nodes":[{{"mesh":0,"skin":0,"extensions":{{"EXT_mesh_gpu_instancing":
+            {{"attributes":{{"TRANSLATION":{translation}}}}}}}}}],"meshes":[{{"primitives":[
+            {{"attributes":{{"POSITION":{positions}{joints}}}}},{{"attributes":{{"POSITION":{positions}}}}}]}}]"#
+        ));
+        let scene = build.load("skinned").unwrap();
+        assert_eq!(placed(&scene, 0.0).len(), drawn);
+        let is_noted = |note: &String| note.contains("nodes[0]") && note.contains("once instead of 3 times");
+        assert_eq!(scene.notes.iter().any(is_noted), is_skinned, "{:?}", scene.notes);
+    }
 }
 
 #[test]
@@ -122,6 +171,16 @@ fn broken_tables_are_refused_by_node_and_attribute() {
         assert!(message.contains("nodes[1].extensions.EXT_mesh_gpu_instancing"), "{message}");
         assert!(message.contains(words), "{words} is missing in {message}");
     }
+    // Rows that are all zero need no data, and primitives without triangles need no limit of triangles.
+    let mut build = Build::default();
+    let none = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":0}}"#));
+    let table = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":1048576}}"#));
+    let primitives = vec![format!(r#"{{"attributes":{{"POSITION":{none}}}}}"#); 10_000].join(",");
+    let node =
+        format!(r#"{{"mesh":0,"extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{"SCALE":{table}}}}}}}}}"#);
+    build.members(&format!(r#""nodes":[{node}],"meshes":[{{"primitives":[{primitives}]}}]"#));
+    let message = refusal(build.load("primitives"));
+    assert!(message.contains("nodes[0]") && message.contains("more than 2097152 primitives"), "{message}");
     // Nodes together may not have more either.
     let mut build = Build::default();
     let table = build.push_accessor(&many);

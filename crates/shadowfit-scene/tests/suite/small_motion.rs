@@ -44,6 +44,46 @@ fn channels_follow_their_node_to_its_new_index_and_others_are_left_out() {
 }
 
 #[test]
+fn pointers_to_transforms_and_weights_of_nodes_move_them_and_others_are_noted() {
+    let mut build = Build::default();
+    let positions = build.floats("VEC3", 3, &TRIANGLE);
+    let times = build.floats("SCALAR", 1, &[0.0, 1.0]);
+    let vectors = build.floats("VEC3", 3, &[0.0, 0.0, 0.0, 4.0, 4.0, 4.0]);
+    let turns = build.floats("VEC4", 4, &[0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0]);
+    let pointers = [
+        ("/nodes/0/translation", 0),
+        ("/nodes/0/scale", 0),
+        ("/nodes/0/rotation", 1),
+        ("/nodes/0/weights", 2),
+        ("/nodes/0/weights/0", 2),
+        ("/nodes/7/translation", 0),
+        ("/nodes/-1/translation", 0),
+        ("/meshes/0/weights", 2),
+        ("/materials/0/alphaCutoff", 2),
+    ];
+    let channel = |(pointer, sampler): (&str, usize)| {
+        let extension = format!(r#""extensions":{{"KHR_animation_pointer":{{"pointer":"{pointer}"}}}}"#);
+        format!(r#"{{"sampler":{sampler},"target":{{"path":"pointer",{extension}}}}}"#)
+    };
+    let sampler = |output: usize| format!(r#"{{"input":{times},"output":{output}}}"#);
+    build.members(&format!(
+        r#""nodes":[{{"mesh":0}}],"extensionsUsed":["KHR_animation_pointer"],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":{positions}}},"targets":[{{"POSITION":{positions}}}]}}]}}],
+        "animations":[{{"samplers":[{}],"channels":[{}]}}]"#,
+        [vectors, turns, times].map(sampler).join(","),
+        pointers.map(channel).join(",")
+    ));
+    let scene = build.load("pointers").unwrap();
+    assert_eq!(scene.animations[0].channels.len(), 4);
+    let pose = scene.pose(Some(0), 0.5);
+    assert_eq!((translation(&scene, 0.5), &pose.morph_weights[0][..]), (Vec3::splat(2.0), &[0.5][..]));
+    let turned = pose.world_from_node[0].transform_vector3(Vec3::X);
+    assert!(turned.abs_diff_eq(Vec3::NEG_Z * 2.0, 1e-5), "{turned}");
+    let is_noted = |note: &String| note.contains("weights of meshes and single weights stand still");
+    assert!(scene.notes.iter().any(is_noted), "{:?}", scene.notes);
+}
+
+#[test]
 fn linear_translation_interpolates_clamps_at_the_start_and_loops() {
     let scene = moving("translation", "LINEAR", "VEC3", 3, &[1.0, 2.0], &[0.0, 0.0, 0.0, 4.0, 0.0, 8.0]).unwrap();
     for (seconds, x) in [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (1.25, 1.0), (1.75, 3.0), (3.25, 1.0), (-0.75, 1.0)] {

@@ -113,6 +113,25 @@ fn scaled_mirrored_and_sizeless_nodes_keep_the_direction_of_their_light_or_are_n
 }
 
 #[test]
+fn a_strongest_light_that_cannot_be_used_leaves_the_sun_to_the_next_one() {
+    let flat = LIT.replace(r#""name":"a","#, r#""name":"a","scale":[0,0,0],"#);
+    let bright = r#""color":[1e20,1e20,1e20],"intensity":1e30"#;
+    for (nodes, first, fault) in
+        [(flat.as_str(), r#""intensity":9"#, "its node has no size"), (LIT, bright, "it is brighter")]
+    {
+        let json =
+            format!(r#"{{"type":"directional",{first}}},{{"type":"directional","intensity":2}},{{"type":"point"}}"#);
+        let scene = scene("unusable_sun", nodes, &lights(&json));
+        assert_eq!(scene.strongest_sun(), Some(1));
+        let sun = scene.sun.expect("the second one");
+        assert!((sun.direction - Vec3::NEG_Y).length() < 1e-6 && sun.intensity == 2.0, "{sun:?}");
+        for note in [&format!("directional light 1 ignored: {fault}"), "the sun is directional light 2 of 2"] {
+            assert!(scene.notes.iter().any(|line| line.contains(note)), "{note}: {:?}", scene.notes);
+        }
+    }
+}
+
+#[test]
 fn an_animated_node_moves_its_sun_and_its_camera() {
     let nodes = LIT.replace(r#""name":"a","#, r#""name":"a","camera":0,"#);
     let members = lights(r#"{"type":"directional"},{"type":"point"},{"type":"point"}"#)

@@ -1,0 +1,69 @@
+//! Limits on the amount that a scene draws. Nodes and rows of tables share meshes, so a small file can ask for any amount.
+
+use super::accessor::Reader;
+use crate::Mesh;
+use crate::error::Problem;
+
+/// Triangles that a scene may draw.
+const MAX_TRIANGLES: u64 = 1 << 26;
+
+/// Primitives that a scene may draw, counted at each node. Each takes a few hundred bytes in memory and on the GPU.
+const MAX_PRIMITIVES: u64 = 1 << 21;
+
+/// Rows that tables of instances may have in all. Each becomes a node.
+const MAX_ROWS: u64 = 1 << 20;
+
+/// Primitives with morph targets that rows may draw. Each has its own vertices, in its own GPU buffers.
+const MAX_MORPHED: u64 = 1 << 14;
+
+/// Counts the meshes that nodes draw, before anything is stored for them.
+pub(super) struct Drawn<'a> {
+    reader: &'a Reader<'a>,
+    triangles: u64,
+    primitives: u64,
+    rows: u64,
+    morphed: u64,
+}
+
+impl<'a> Drawn<'a> {
+    /// Counts nothing yet.
+    pub(super) fn new(reader: &'a Reader<'a>) -> Self {
+        Self { reader, triangles: 0, primitives: 0, rows: 0, morphed: 0 }
+    }
+
+    /// Counts a mesh that `element` draws `times` times. Refuses the mesh if the scene draws too much with it.
+    pub(super) fn add(&mut self, mesh: &Mesh, times: usize, element: &str) -> Result<(), Problem> {
+        let triangles = mesh.primitives.iter().map(|primitive| primitive.indices.len() as u64 / 3).sum();
+        // A mesh without primitives still takes a node each time.
+        let primitives = mesh.primitives.len().max(1) as u64;
+        count(&mut self.triangles, (triangles, times), (MAX_TRIANGLES, "triangles"), element)?;
+        count(&mut self.primitives, (primitives, times), (MAX_PRIMITIVES, "primitives"), element)?;
+        self.reader.spend(mesh.targets().saturating_mul(times), &format!("{element}, morph weights"))
+    }
+
+    /// Counts a mesh that `rows` rows of a table draw instead of their node, which is counted already.
+    pub(super) fn add_rows(&mut self, mesh: &Mesh, rows: usize, element: &str) -> Result<(), Problem> {
+        let morphed = || mesh.primitives.iter().filter(|primitive| !primitive.morphs.is_empty());
+        let primitives = morphed().count() as u64;
+        count(&mut self.rows, (1, rows), (MAX_ROWS, "rows of tables"), element)?;
+        count(
+            &mut self.morphed,
+            (primitives, rows),
+            (MAX_MORPHED, "primitives with morph targets by tables"),
+            element,
+        )?;
+        let vertices = morphed().map(|primitive| primitive.positions.len()).fold(0, usize::saturating_add);
+        self.reader.spend(vertices.saturating_mul(rows), element)?;
+        self.add(mesh, rows.saturating_sub(1), element)
+    }
+}
+
+/// Adds an amount, drawn `times` times, to a sum. Refuses a sum above `max`.
+fn count(sum: &mut u64, (amount, times): (u64, usize), (max, kind): (u64, &str), element: &str) -> Result<(), Problem> {
+    *sum = sum.saturating_add(amount.saturating_mul(times as u64));
+    if *sum <= max {
+        return Ok(());
+    }
+    let reason = format!("with it the scene draws more than {max} {kind}");
+    Err(Problem::new(element, reason).hint("Split or simplify the scene"))
+}
