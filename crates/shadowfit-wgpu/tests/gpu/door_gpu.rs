@@ -14,7 +14,7 @@ mod texture_gpu;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind};
 use shadowfit::{Aabb, Boxes, FitError, FittedMap, Technique, ViewFrustum};
-use shadowfit_wgpu::{Casters, ShadowMapError, SunFrame, SunShadows, SunShadowsError};
+use shadowfit_wgpu::{Casters, ShadowMapError, SunFrame, SunShadows, SunShadowsError, UpdateSchedule};
 
 use crate::engine::Engine;
 use ground::{BOXES, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
@@ -237,4 +237,28 @@ fn gpu_a_proof_fails_where_shaders_take_positions_from_too_far_away() {
         assert_eq!(proof.is_proven(), is_proven, "{proof:?}");
     }
     quiet.assert("proofs");
+}
+
+/// The bias of a map that waits must cover the rounding of positions relative to the new eye: a ground of 40 km makes that
+/// rounding larger than any other part of the bias.
+#[test]
+fn gpu_maps_that_wait_over_a_large_ground_stay_proven() {
+    let device = Engine::shared();
+    let mut boxes = BOXES;
+    (boxes[0].min.x, boxes[0].min.z, boxes[0].max.x, boxes[0].max.z) = (-2e4, -2e4, 2e4, 2e4);
+    let technique = technique().with_max_distance(200.0);
+    let mut sun = SunShadows::new(&device.device, &device.queue, &technique).expect("maps");
+    let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
+    sun.set_schedule(UpdateSchedule::Texels(1));
+    let mut waited = 0;
+    for step in 0..20_u16 {
+        let views = [camera(EYE + DVec3::X * 0.5 * f64::from(step)).frustum().expect("a camera")];
+        let frame = frame_of(&views, SUN, &boxes).with_origin(views[0].origin);
+        sun.update(&device.queue, &frame).expect("a good frame");
+        painter.draw(&device, &[(&sun, &boxes)]);
+        waited += sun.maps().iter().zip(sun.fitted().iter()).filter(|(shown, fitted)| shown != fitted).count();
+        let proof = sun.prove(&frame).expect("a good frame");
+        assert!(proof.is_proven(), "frame {step}: {proof:?}");
+    }
+    assert!(waited > 0, "no map waited");
 }
