@@ -97,13 +97,16 @@ pub fn renderer_gpu() -> shadowfit_render::Gpu {
     LENT.with(Lent::get)
 }
 
-/// Opens the software adapter again, as the renderer does.
+/// Opens the software adapter again, as the renderer does, or the fastest one if `SHADOWFIT_ADAPTER` is `any`: for single
+/// tests that are right on every GPU and slow on the software adapter.
 ///
 /// # Panics
 ///
-/// If the machine has no software adapter.
+/// If the machine has no such adapter.
 #[cfg(feature = "render")]
 pub fn open_renderer_gpu() -> shadowfit_render::Gpu {
-    pollster::block_on(shadowfit_render::Gpu::headless(shadowfit_render::AdapterChoice::Software))
-        .unwrap_or_else(|error| panic!("this test draws, and {error}"))
+    use shadowfit_render::{AdapterChoice, Gpu};
+    let is_any = std::env::var_os("SHADOWFIT_ADAPTER").is_some_and(|adapter| adapter == "any");
+    let choice = if is_any { AdapterChoice::Any } else { AdapterChoice::Software };
+    pollster::block_on(Gpu::headless(choice)).unwrap_or_else(|error| panic!("this test draws, and {error}"))
 }
