@@ -67,7 +67,7 @@ impl Cell {
 
 /// Pixels that may lie at an edge of a shadow that the picture does not show, so that the judge does not know them as
 /// pixels of an edge.
-const UNSEEN_EDGES: u64 = 4;
+const UNSEEN_EDGES: u64 = 6;
 
 /// Numbers of values of a cell's properties.
 const COUNTS: [usize; 5] = [GROUNDS.len(), WALLS.len(), SUNS.len(), PRESETS.len(), MapFormat::ALL.len()];

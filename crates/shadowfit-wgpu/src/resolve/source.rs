@@ -42,7 +42,7 @@ impl Source {
             eye: (view.eye - rays_origin).as_vec3().to_array(),
             far_depth: view.convention.far(),
             forward: forward.to_array(),
-            ray_offset: view.ray_offset,
+            ray_offset: view.ray_offset.max(VERTEX_ROUNDING * farthest_vertex(sun)),
             corner: [left, top],
             size: [width, height],
             depth_rounding: rounding(texture.format()),
@@ -58,6 +58,15 @@ impl Source {
         let from_eye = MapView { origin: view.eye, ..*map_view };
         Ok(Self { resolve, receiver: sun.map().receiver_bytes(&from_eye, sun.maps()) })
     }
+}
+
+/// Rounding of a point of a drawn triangle as a share of the distance of its farthest vertex: ten roundings of 2⁻²⁴, as for
+/// the bias of maps.
+const VERTEX_ROUNDING: f32 = 10.0 / 16_777_216.0;
+
+/// Distance of the farthest vertex of receivers, in metres.
+fn farthest_vertex(sun: &SunShadows) -> f32 {
+    sun.maps().iter().map(|map| map.projection.vertex_distance).fold(0.0, f32::max)
 }
 
 /// Positions relative to the eye from pixels, refused where it makes no sense.
