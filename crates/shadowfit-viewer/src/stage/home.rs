@@ -4,8 +4,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Camera, Lens};
 use shadowfit_params::tool::{CameraSettings, Settings};
 use shadowfit_render::FlyCamera;
-use shadowfit_scene::SceneCamera;
-use shadowfit_study::{PosedScene, file_camera};
+use shadowfit_study::PosedScene;
 
 use super::Stage;
 
@@ -26,14 +25,14 @@ pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
         settings.camera.far = radius * 20.0;
         settings.camera.speed = radius * 0.4;
     }
-    let own = scene.cameras.iter().enumerate().find_map(|(index, camera)| Some((index, seen_by(camera, prepared)?)));
-    let Some((index, camera)) = own else {
+    let own = (1..).zip(&scene.cameras).find_map(|(number, _)| Some((number, seen_by(prepared, Some(number))?)));
+    let Some((number, camera)) = own else {
         let camera = overview(&bounds, radius, &settings);
         return (settings, camera);
     };
     take_lens(&mut settings.camera, &camera);
     // Built-in scenes have a start view and no file.
-    settings.camera.file = scene.subject.is_none().then(|| number(index));
+    settings.camera.file = scene.subject.is_none().then_some(number);
     (settings, placed(&camera))
 }
 
@@ -62,10 +61,11 @@ fn take_lens(settings: &mut CameraSettings, camera: &Camera) {
     *settings = CameraSettings { fov_y, height, near: camera.near, far: camera.far, ..*settings };
 }
 
-/// A camera of the file in the present pose. `None` where its node has no size.
-fn seen_by(camera: &SceneCamera, scene: &PosedScene) -> Option<Camera> {
+/// Returns the camera of the file with a number, in the present pose. `None` without such a camera, or if its node has no
+/// size.
+fn seen_by(scene: &PosedScene, number: Option<u32>) -> Option<Camera> {
     // The settings have no aspect: the window has.
-    file_camera(camera, scene.pose(), &scene.bounds(), 1.0)
+    scene.file_camera((number? as usize).checked_sub(1)?, 1.0)
 }
 
 /// The place and direction of a camera of the file.
@@ -84,8 +84,7 @@ impl Stage {
             None => light.file = None,
         }
         let file = self.settings.camera.file;
-        let seen = numbered(&scene.cameras, file).and_then(|camera| seen_by(camera, &self.scene));
-        let Some(camera) = seen else {
+        let Some(camera) = seen_by(&self.scene, file) else {
             (self.settings.camera.file, self.followed) = (None, None);
             return;
         };
