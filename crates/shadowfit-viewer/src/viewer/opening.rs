@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
+use shadowfit_params::Group;
+use shadowfit_params::tool::Settings;
 use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 
 use super::Viewer;
+use super::start::of_scene;
 use crate::cli::check_animation;
 use crate::files::{self, settings_of_png};
 use crate::link::LinkedScene;
@@ -111,9 +114,8 @@ impl Viewer {
         self.searching = None;
         self.tuning.abandon();
         self.history = History::default();
-        let view = self.stage.settings.view;
+        let kept = self.stage.settings;
         let comparing = self.stage.other_technique();
-        let technique = self.stage.settings.technique;
         self.stage.set_prepared(prepared);
         let is_sample = match &self.source {
             SceneSource::Sample { sample, variant } => {
@@ -142,9 +144,8 @@ impl Viewer {
             self.message = None;
         } else {
             self.message = None;
-            // Another scene keeps the settings, except for lengths and light.
-            self.stage.settings.technique = technique.with_lengths_of(&self.own_settings.technique);
-            self.stage.settings.view = view;
+            let Settings { technique, view, .. } = of_scene(&kept, &self.own_settings);
+            (self.stage.settings.technique, self.stage.settings.view) = (technique, view);
             self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));
         }
         self.interface.scene_changed(&self.stage);

@@ -6,7 +6,7 @@ use anyhow::Context;
 use shadowfit_classics::SampleValues;
 use shadowfit_egui::Command;
 use shadowfit_params::Kind;
-use shadowfit_params::tool::Settings;
+use shadowfit_params::tool::{Settings, ViewSettings};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
 
@@ -189,7 +189,8 @@ fn with_own_near(mut kept: Settings, home: &Settings) -> Settings {
 }
 
 /// Settings of another scene, with the lengths and the light of this one.
-fn of_scene(kept: &Settings, home: &Settings) -> Settings {
+pub(super) fn of_scene(kept: &Settings, home: &Settings) -> Settings {
     let technique = kept.technique.with_lengths_of(&home.technique);
-    Settings { light: home.light, camera: home.camera, technique, ..*kept }
+    let view = ViewSettings { ray_offset: home.view.ray_offset, ..kept.view };
+    Settings { light: home.light, camera: home.camera, technique, view, ..*kept }
 }
