@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Camera, Lens};
+use shadowfit_params::set_from_str;
 use shadowfit_params::tool::{CameraSettings, Settings};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::PosedScene;
@@ -76,7 +77,7 @@ fn placed(camera: &Camera) -> FlyCamera {
 impl Stage {
     /// Moves sun and camera to the file's sun and camera that the settings name, in the present pose. A number that the
     /// file lacks counts as none. The lens is taken once, when a camera is chosen.
-    pub(super) fn follow_file(&mut self) {
+    pub(crate) fn follow_file(&mut self) {
         let (scene, pose) = (self.scene.scene(), self.scene.pose());
         let light = &mut self.settings.light;
         match numbered(&scene.suns, light.file) {
@@ -96,9 +97,27 @@ impl Stage {
         self.camera = placed(&camera);
     }
 
-    /// Takes kept settings. Their lens belongs to the file's camera of this number, and may have been changed since.
-    pub(crate) fn restore_settings(&mut self, settings: &Settings, lens_of: Option<u32>) {
-        (self.settings, self.followed) = (*settings, lens_of);
+    /// Takes settings whose lens is already the one for their camera of the file.
+    pub(crate) fn restore_settings(&mut self, settings: &Settings) {
+        if settings.camera.file != self.settings.camera.file {
+            self.set_camera(self.camera);
+        }
+        (self.settings, self.followed) = (*settings, settings.camera.file);
+    }
+
+    /// Chooses the camera of the file that parameters name, if they name one, and gives the settings its lens. Set the other
+    /// parameters afterwards, since they may change the lens. A value that makes no sense changes nothing.
+    pub(crate) fn choose_camera<'a>(
+        &self,
+        parameters: impl IntoIterator<Item = (&'a str, &'a str)>,
+        settings: &mut Settings,
+    ) {
+        let Some((id, value)) = parameters.into_iter().filter(|(id, _)| *id == "camera.file").last() else { return };
+        if set_from_str(settings, id, value).is_ok()
+            && let Some(camera) = seen_by(&self.scene, settings.camera.file)
+        {
+            take_lens(&mut settings.camera, &camera);
+        }
     }
 
     /// Distance above the surface at which shadow rays start, in metres.

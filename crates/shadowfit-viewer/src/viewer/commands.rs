@@ -236,7 +236,7 @@ impl Viewer {
     }
 
     pub(super) fn restore_state(&mut self, state: State) {
-        self.stage.settings = state.settings;
+        self.stage.restore_settings(&state.settings);
         if let Some(values) = state.sample {
             self.stage.set_sample_values(values);
         }
@@ -307,6 +307,8 @@ impl Viewer {
             params::set_technique_from_str(self.edited(), id, value)?;
         } else {
             params::set_from_str(&mut self.stage.settings, id, value)?;
+            // The next action may change the lens of the camera that this one chooses.
+            self.stage.follow_file();
         }
         Ok(format!("{id} = {value}"))
     }
@@ -380,7 +382,7 @@ impl Viewer {
         command_line(
             &self.source,
             self.stage.animation,
-            (&self.stage.settings, &self.own_settings),
+            (&self.stage.settings, &self.own_with_lens()),
             self.stage.sample().map(|show| (show.sample, show.variant, &show.values)),
         )
     }
