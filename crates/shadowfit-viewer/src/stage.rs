@@ -36,6 +36,7 @@ use shadowfit_study::{PrepareError, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapError;
 
 use compare::Other;
+pub(crate) use home::near_of;
 pub(crate) use live::judged_figures;
 pub(crate) use sample::SampleShow;
 use shot::Shot;
@@ -337,8 +338,8 @@ impl Stage {
 
     /// Makes the present settings and view those to go back to, with the camera and the sun of the file that they name.
     pub fn set_home(&mut self) {
-        self.home = (self.settings, self.camera);
         self.follow_file();
+        self.home = (self.settings, self.camera);
     }
 
     /// The camera with its lens, for a picture of the given size.

@@ -22,7 +22,7 @@ pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
         // A scene of unknown units: all lengths follow from its size. Shadows reach as far as the camera sees, since
         // maps are placed by content and not by distance.
         settings.technique.fit.caster_extension = radius * 2.0;
-        settings.camera.near = radius * 0.005;
+        settings.camera.near = near_of(&bounds);
         settings.camera.far = radius * 20.0;
         settings.camera.speed = radius * 0.4;
     }
@@ -43,7 +43,12 @@ fn radius(bounds: &Aabb) -> f32 {
     if radius > 0.0 { radius } else { 1e-3 }
 }
 
-/// The number of a camera or sun of a file by its index.
+/// Returns the near distance of a perspective lens that suits a scene's bounds, in metres.
+pub(crate) fn near_of(bounds: &Aabb) -> f32 {
+    radius(bounds) * 0.005
+}
+
+/// The number of a sun of a file by its index.
 fn number(index: usize) -> u32 {
     u32::try_from(index + 1).unwrap_or(u32::MAX)
 }
