@@ -84,6 +84,7 @@ enum Sunlight {
 pub(crate) struct Prepared {
     pub(crate) comparison: Comparison,
     pub(crate) judging: Judging,
+    /// In the coordinates of the scene's file, as it is written.
     pub(crate) path: CameraPath,
     pub(crate) light: LightSettings,
     pub(crate) frames: Vec<JobFrame>,
@@ -119,12 +120,10 @@ impl Job {
         }
         let judging = comparison.judging;
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
+        // Files of paths have the coordinates of the scene's file.
+        let file_origin = comparison.scene().scene().origin;
         let path = if let Some(file) = &self.path {
-            let mut path = CameraPath::read(file, aspect)?;
-            // A path has the coordinates of its scene's file.
-            let origin = comparison.scene().scene().origin;
-            path.frames.iter_mut().for_each(|frame| frame.camera.eye -= origin);
-            path
+            CameraPath::read(file, aspect)?.moved(-file_origin)
         } else if let Some(camera) = self.camera {
             follow(comparison.scene().scene(), camera, self.play, aspect)?
         } else {
@@ -132,10 +131,9 @@ impl Job {
             let origin = rays.origin;
             let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
             let bounds = Aabb::new(relative(bounds.min), relative(bounds.max));
-            let mut found = find(&rays.tracer, bounds, aspect).with_context(|| self.title())?;
-            found.path.frames.iter_mut().for_each(|frame| frame.camera.eye += origin);
+            let found = find(&rays.tracer, bounds, aspect).with_context(|| self.title())?;
             notes.extend(found.notes);
-            found.path
+            found.path.moved(origin)
         };
         let fixed = if self.sun.is_some() { None } else { self.light.or(path.light) };
         let sun = sun.filter(|_| fixed.is_none());
@@ -151,6 +149,7 @@ impl Job {
         let first = frames.first().and_then(|frame| LightSettings::from_direction(frame.view.direction));
         let light = fixed.or(first).unwrap_or_default();
         notes.extend(ray_offset_note(comparison.scene().bounds().size(), judging.ray_offset));
+        let path = path.moved(file_origin);
         Ok(Prepared { comparison, judging, path, light, frames, notes, scene_notes })
     }
 
@@ -252,4 +251,50 @@ fn light(text: &str) -> Result<LightSettings> {
     let (azimuth, elevation) = (degrees(azimuth)?, degrees(elevation)?);
     ensure!(elevation > 0.0, "the sun's elevation is not above 0");
     Ok(LightSettings { azimuth, elevation, ..LightSettings::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        job: Job,
+    }
+
+    /// A triangle and a camera before it, 1000 km from the file's origin.
+    const FAR_AWAY: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+        "nodes":[{"mesh":0,"translation":[1e6,0,0]},{"camera":0,"translation":[1000000.5,0.5,3]}],
+        "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.01}}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,0,1]}]}"#;
+
+    #[test]
+    fn gpu_a_written_path_gives_the_same_views_of_a_scene_that_is_far_from_its_origin() {
+        let folder = std::env::temp_dir().join(format!("shadowfit-job-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let [scene, path] = ["far.gltf", "path.toml"].map(|name| folder.join(name));
+        fs::write(&scene, FAR_AWAY).expect("written");
+        let prepare = |option: &str, value: &str| {
+            let scene = scene.to_str().expect("text");
+            let line = Line::parse_from(["report", scene, "--software", "--size", "96x54", option, value]);
+            line.job.prepare().expect("a job")
+        };
+        let first = prepare("--camera", "1");
+        assert!(first.comparison.scene().scene().origin.x > 9e5);
+        assert!((first.path.frames[0].camera.eye.x - 1_000_000.5).abs() < 1e-3, "{:?}", first.path);
+        fs::write(&path, first.path.to_text(Path::new("path.toml")).expect("text")).expect("written");
+        let second = prepare("--path", path.to_str().expect("text"));
+        fs::remove_dir_all(&folder).expect("removed");
+        let eyes = [&first, &second].map(|job| job.frames[0].view.camera.eye);
+        assert!(eyes[0].distance(eyes[1]) < 1e-6, "{eyes:?}");
+    }
 }

@@ -11,6 +11,7 @@ mod route;
 #[cfg(test)]
 mod scenes;
 
+use glam::DVec3;
 use shadowfit::Camera;
 use shadowfit_params::tool::LightSettings;
 
@@ -36,6 +37,12 @@ pub(crate) struct PathFrame {
 }
 
 impl CameraPath {
+    /// Returns the path moved by an offset, in metres.
+    pub(crate) fn moved(mut self, offset: DVec3) -> Self {
+        self.frames.iter_mut().for_each(|frame| frame.camera.eye += offset);
+        self
+    }
+
     /// Names of the frames: the group and the place in it, such as `orbit/3`.
     pub(crate) fn names(&self) -> Vec<String> {
         let mut place = 0;

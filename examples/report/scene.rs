@@ -1,6 +1,6 @@
 //! `report SCENE`: techniques over a camera path through a scene, as tables, plots, pictures and a page.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use image::RgbaImage;
@@ -17,7 +17,7 @@ use crate::heat::heat;
 use crate::interrupt::Interrupt;
 use crate::job::{Job, JobFrame, Prepared};
 use crate::overlay::overlay;
-use crate::write::Output;
+use crate::write::{Output, PATH};
 
 /// Techniques that are compared when none is named: the sample's, this project's own stable and sharp slices, and the
 /// recommended one.
@@ -70,6 +70,8 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
         job.comparison.add(technique.clone())?;
     }
     let asked = frames_named(&args.pictures, &job.frames)?;
+    // A path that cannot be written would leave hours of measurements without a report.
+    job.path.to_text(Path::new(PATH))?;
     // Nothing is written before all input has been read.
     let output = Output::create(&args.out)?;
     let mut measured: Vec<Measured> = techniques.iter().map(|_| Measured::default()).collect();

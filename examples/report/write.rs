@@ -19,6 +19,8 @@ use crate::tables::{to_json, to_markdown};
 
 const PICTURES: &str = "pictures";
 const PLOTS: &str = "plots";
+/// The camera path.
+pub(crate) const PATH: &str = "path.toml";
 /// The page, which a reader opens first.
 pub(crate) const PAGE: &str = "index.html";
 
@@ -66,7 +68,7 @@ impl Output {
     ///
     /// When a file cannot be written, or a picture cannot be read back for the page.
     pub(crate) fn write_report(&self, run: &Run, path: &CameraPath) -> Result<()> {
-        let file = Path::new("path.toml");
+        let file = Path::new(PATH);
         self.write(file, path.to_text(file)?.as_bytes())?;
         self.write(Path::new("report.json"), to_json(run)?.as_bytes())?;
         self.write(Path::new("report.md"), to_markdown(run).as_bytes())?;

@@ -15,6 +15,9 @@ use label::{RESET_WIDTH, label, reset_button};
 /// Width of the number field with its unit, in points.
 const VALUE_WIDTH: f32 = 92.0;
 
+/// Decimals to which edits of a logarithmic number are rounded.
+const MOST_DECIMALS: usize = 8;
+
 /// Id of the parameter that is shown as a row of buttons, one for each map.
 const INSET_MAP: &str = "view.inset_map";
 
@@ -182,13 +185,31 @@ fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Number, mut value: f64, la
         .logarithmic(scale.logarithmic)
         // A typed number counts when it is complete: 1024 passes through 1, 10 and 102.
         .update_while_editing(false);
-    slider = if scale.decimals == 0 { slider.integer() } else { slider.fixed_decimals(scale.decimals) };
+    slider = match scale.decimals {
+        0 => slider.integer(),
+        // An edit may change the magnitude, so that the text alone is rounded to it.
+        _ if scale.logarithmic => slider.max_decimals(MOST_DECIMALS).custom_formatter(|value, _| text(scale, value)),
+        decimals => slider.fixed_decimals(decimals),
+    };
     if !row.parameter.unit.is_empty() {
         slider = slider.suffix(format!(" {}", row.parameter.unit));
     }
     let response = row.explain(ui.add(slider).labelled_by(label.id));
     let chosen = if is_side { side::list(ui, row.parameter.label, value, scale.min..=scale.max) } else { None };
     chosen.or_else(|| response.changed().then_some(value))
+}
+
+/// Returns a number as text: with its decimals, and on a logarithmic scale with as many more as a small value needs.
+fn text(number: &Number, value: f64) -> String {
+    /// Share of the value by which its text may differ.
+    const ROUNDING: f64 = 0.05;
+    let is_close = |decimals: &usize| {
+        let text = format!("{value:.decimals$}");
+        text.parse().is_ok_and(|rounded: f64| (rounded - value).abs() <= value.abs() * ROUNDING)
+    };
+    let most = if number.logarithmic && number.decimals > 0 { MOST_DECIMALS } else { number.decimals };
+    let decimals = (number.decimals..most).find(is_close).unwrap_or(most);
+    format!("{value:.decimals$}")
 }
 
 /// List of options; returns the index of another one.
@@ -234,9 +255,9 @@ fn help(parameter: &Parameter, defaults: &Settings) -> String {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
     let default = parameter.get(defaults);
     let facts = match &parameter.kind {
-        Kind::Number(Number { min, max, decimals, unset, .. }) => {
+        Kind::Number(number @ Number { min, max, unset, .. }) => {
             let default = match (default, unset) {
-                (Some(Value::Number(value)), _) => format!(", default {value:.decimals$}{unit}"),
+                (Some(Value::Number(value)), _) => format!(", default {}{unit}", text(number, value)),
                 (Some(_), Some(unset)) => format!(", default {}", unset.option.label),
                 _ => String::new(),
             };
@@ -249,4 +270,17 @@ fn help(parameter: &Parameter, defaults: &Settings) -> String {
         Kind::Toggle => format!("Default {}", if default == Some(Value::Toggle(true)) { "on" } else { "off" }),
     };
     format!("{}\n\n{facts}.", parameter.help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_numbers_on_a_logarithmic_scale_have_the_decimals_that_they_need() {
+        let near = shadowfit_params::parameter("camera.near").expect("a parameter");
+        let Kind::Number(number) = &near.kind else { panic!("{:?}", near.kind) };
+        let texts = [0.0, 1.23e-6, 0.000_1, 0.05, 12.345_6].map(|value| text(number, value));
+        assert_eq!(texts, ["0.000", "0.0000012", "0.0001", "0.050", "12.346"]);
+    }
 }

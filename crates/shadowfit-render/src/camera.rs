@@ -139,7 +139,7 @@ impl FlyCamera {
         if let Some(height) = &mut settings.height {
             let ahead = speed * (input.movement.z.clamp(-1.0, 1.0) * seconds + input.pinch * PINCH_SECONDS);
             let (least, most) = HEIGHTS;
-            *height = (*height * (-ahead / *height).clamp(-1.0, 1.0).exp()).clamp(least, most);
+            *height = (*height - ahead).clamp(least, most);
             (input.movement.z, input.pinch) = (0.0, 0.0);
         }
         let along = (self.right() * -input.pan.x + Vec3::Y * input.pan.y) * PAN_SECONDS_PER_POINT;
@@ -333,6 +333,20 @@ mod tests {
         let mut flown = straight_down;
         flown.update(&mut CameraSettings::default(), &FlyInput { movement: Vec3::X, ..Default::default() }, 0.1);
         assert_eq!(flown.pitch, straight_down.pitch, "only turning limits the pitch");
+    }
+
+    #[test]
+    fn the_height_of_an_orthographic_picture_does_not_depend_on_the_frame_rate() {
+        let fly = |frames: u32| {
+            let mut settings = CameraSettings { height: Some(3.0), ..Default::default() };
+            let mut camera = FlyCamera { position: DVec3::ZERO, yaw: 0.0, pitch: 0.0, roll: 0.0 };
+            let input = FlyInput { movement: Vec3::Z, ..Default::default() };
+            (0..frames).for_each(|_| camera.update(&mut settings, &input, 0.5 / frames as f32));
+            settings.height.expect("it stays orthographic")
+        };
+        for frames in [4, 37, 120] {
+            assert!((fly(frames) - fly(2)).abs() < 1e-4, "{frames}: {} for {}", fly(frames), fly(2));
+        }
     }
 
     #[test]

@@ -12,6 +12,7 @@ use shadowfit_scene::{BlendedCasters, Casting, Instance, Pose, Primitive, Scene}
 
 use crate::SceneRays;
 use crate::boxes::SceneBoxes;
+use crate::file_camera::{camera_reaches, file_camera};
 use crate::posed_rays::{Posed, PosedRays};
 
 /// Greatest coordinate of a scene's middle, in metres, up to which its rays are relative to the world's own origin: f32
@@ -102,6 +103,8 @@ pub struct PosedScene {
     objects: SceneBoxes,
     origin: DVec3,
     ray_offset: f64,
+    /// Distance that each camera of the file sees.
+    reaches: Vec<f32>,
     rays: PosedRays,
 }
 
@@ -129,6 +132,7 @@ impl PreparedScene {
         for boxes in [&mut clusters, &mut objects] {
             boxes.set_pose(|index| gpu_scene.instance_bounds(index));
         }
+        let reaches = camera_reaches(&scene, &bounds);
         let posed = PosedScene {
             scene: Arc::new(scene),
             pose,
@@ -137,6 +141,7 @@ impl PreparedScene {
             objects,
             origin: origin_of(&bounds),
             ray_offset: ray_offset(&bounds, origin_of(&bounds)),
+            reaches,
             rays: PosedRays::default(),
         };
         Ok(Self { gpu_scene, no_gpu_rays: None, posed })
@@ -241,6 +246,7 @@ impl PosedScene {
             objects: self.objects.clone(),
             origin: self.origin,
             ray_offset: self.ray_offset,
+            reaches: self.reaches.clone(),
             rays: self.rays.snapshot(),
         }
     }
@@ -275,6 +281,12 @@ impl PosedScene {
     /// than 2 m, more where coordinates exceed 1 km. It stays while the scene moves.
     pub fn ray_offset(&self) -> f64 {
         self.ray_offset
+    }
+
+    /// Returns a camera of the file by its index, in the present pose, as [`file_camera`] does. Near and far plane stay while
+    /// the scene moves. `None` without such a camera, or if its node has no size.
+    pub fn file_camera(&self, index: usize, aspect: f32) -> Option<Camera> {
+        file_camera(self.scene.cameras.get(index)?, &self.pose, *self.reaches.get(index)?, aspect)
     }
 
     /// World position that [`Self::rays`] are relative to, in metres.

@@ -70,7 +70,9 @@ fn within_ranges(settings: &Settings) -> Settings {
     for parameter in PARAMETERS {
         let Kind::Number(range) = &parameter.kind else { continue };
         let is_out = |number: &f64| number.is_finite() && !(range.min..=range.max).contains(number);
-        if parameter.number(settings).is_some_and(|number| is_out(&number)) {
+        // Setting an angle takes the sun from the file, and this parameter, which comes after the angles, gives it back.
+        let follows = parameter.id == "light.file";
+        if follows || parameter.number(settings).is_some_and(|number| is_out(&number)) {
             parameter.copy(&mut within, settings);
         }
     }
@@ -182,6 +184,17 @@ mod tests {
         let mut read = Settings::default();
         settings_from_toml(&file, &mut read).expect("it can be read");
         assert_eq!(read.camera.near, 1e-6);
+    }
+
+    #[test]
+    fn a_sun_of_the_file_overhead_or_below_the_horizon_is_still_followed_when_it_is_read_back() {
+        for elevation in [90.000_01_f32.to_radians(), -0.5] {
+            let mut settings = Settings::default();
+            (settings.light.file, settings.light.elevation) = (Some(2), elevation);
+            let mut read = Settings::default();
+            settings_from_toml(&table(&settings_to_toml(&settings, "")), &mut read).expect("it can be read");
+            assert_eq!(read.light.file, Some(2), "{elevation}");
+        }
     }
 
     #[test]

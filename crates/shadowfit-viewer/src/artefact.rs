@@ -18,6 +18,7 @@ use shadowfit_render::FlyCamera;
 use shadowfit_study::PosedScene;
 
 use crate::narration;
+use crate::stage::near_of;
 use crate::view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 
 /// Height of a shadow texel on screen when acne is shown, as a share of the picture's height: a few
@@ -80,7 +81,11 @@ impl Search {
         let view = &mut self.settings.view;
         (view.mode, view.play, view.freeze_fit, view.shadows) = (ViewMode::Final, false, false, true);
         self.settings.light.animate = false;
-        self.settings.camera.height = None;
+        if self.settings.camera.height.take().is_some() {
+            // The near plane of an orthographic lens may lie far from its eye.
+            self.lens.near = near_of(&self.scene.bounds());
+            self.settings.camera.near = self.lens.near;
+        }
         let light = self.settings.light.direction();
         let scene = &self.scene;
         let origin = scene.origin();

@@ -147,6 +147,11 @@ impl Arguments {
         named.unwrap_or_default().with_index(self.scene_index).map(Some)
     }
 
+    /// Returns the parameters that are set, by id, with their values as text.
+    pub(crate) fn settings(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.set.iter().filter_map(|assignment| assignment.split_once('=')).map(|(id, value)| (id.trim(), value.trim()))
+    }
+
     /// The options of a sample that are set, by name.
     pub(crate) fn sample_options(&self) -> impl Iterator<Item = (&str, &str)> {
         let options = self.set.iter().filter_map(|assignment| assignment.trim().strip_prefix(OPTION_PREFIX));

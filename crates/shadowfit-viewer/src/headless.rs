@@ -53,8 +53,9 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
     let mut stage = Stage::new(gpu, scene, SAMPLES)?;
     let mut settings = stage.settings;
+    stage.choose_camera(arguments.settings(), &mut settings);
     arguments.apply(&mut settings)?;
-    stage.settings = settings;
+    stage.restore_settings(&settings);
     stage.animation = arguments.animation;
     stage.set_home();
     let mut progress = Progress::begin(PICTURES, &stage.scene().name, &stage, folder)?;

@@ -29,13 +29,14 @@ mod own_process_memory_tests;
 use core::fmt;
 
 use shadowfit::{Aabb, Camera, FittedMap};
-use shadowfit_params::tool::Settings;
+use shadowfit_params::tool::{CameraSettings, Settings};
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
 use shadowfit_scene::{BlendedCasters, Scene};
 use shadowfit_study::{PrepareError, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapError;
 
 use compare::Other;
+pub(crate) use home::near_of;
 pub(crate) use live::judged_figures;
 pub(crate) use sample::SampleShow;
 use shot::Shot;
@@ -306,12 +307,16 @@ impl Stage {
         }
     }
 
-    /// Back to the view that the scene was opened with, which follows the file's camera again; settings stay, except for the
-    /// height of an orthographic picture, which flying changes.
+    /// Puts the camera back to the view that the scene was opened with. Settings stay, except for the height of an
+    /// orthographic picture, which flying changes. Where that view follows a camera of the file, it takes the whole lens.
     pub fn reset_camera(&mut self) {
         self.set_camera(self.sample_reset().unwrap_or(self.home.1));
-        let home = self.home.0.camera;
-        (self.settings.camera.file, self.settings.camera.height) = (home.file, home.height);
+        let (home, now) = (self.home.0.camera, &mut self.settings.camera);
+        *now = match home.file {
+            Some(_) => CameraSettings { speed: now.speed, ..home },
+            None => CameraSettings { height: home.height, ..*now },
+        };
+        self.followed = home.file;
     }
 
     /// Levels the camera: takes its roll away. It follows no camera of the file any more.
@@ -331,8 +336,9 @@ impl Stage {
         }
     }
 
-    /// Makes the present settings and view those to go back to.
+    /// Makes the present settings and view those to go back to, with the camera and the sun of the file that they name.
     pub fn set_home(&mut self) {
+        self.follow_file();
         self.home = (self.settings, self.camera);
     }
 

@@ -274,6 +274,26 @@ mod tests {
     }
 
     #[test]
+    fn a_sun_of_the_file_that_moves_is_followed_after_two_viewers_have_saved() {
+        for number in [Some(2), None] {
+            let mut start = saved();
+            start.settings.light.file = Some(1);
+            let mut two = Two::new(Some(start));
+            two.states[0].settings.light.file = number;
+            two.states[0].settings.light.azimuth = 0.5;
+            two.save(0);
+            // The sun below the horizon moved on, and a person changed something else.
+            (two.states[1].settings.light.azimuth, two.states[1].settings.light.elevation) = (0.25, -0.5);
+            two.states[1].settings.technique.bias.slope = 2.5;
+            two.save(1);
+            let light = two.file().settings.light;
+            assert_eq!(light.file, number);
+            assert!((light.azimuth - 0.5).abs() < 1e-6, "{light:?}");
+            assert_eq!(two.file().settings.technique.bias.slope, 2.5);
+        }
+    }
+
+    #[test]
     fn two_viewers_keep_what_the_other_one_added_changed_and_deleted() {
         for start in [Some(saved()), None] {
             let mut two = Two::new(start.clone());

@@ -8,7 +8,7 @@ use shadowfit_params::tool::Settings;
 
 use crate::stage::ArtefactShow;
 
-/// Everything that undo restores. The camera is not part of it.
+/// Everything that undo restores: with the camera of the file that is followed, but not the place of a camera that is flown.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
     pub(crate) settings: Settings,
@@ -29,14 +29,18 @@ impl State {
         if settings.light.file.is_some() {
             (settings.light.azimuth, settings.light.elevation) = (0.0, 0.0);
         }
-        // The wheel, flights and the view search change them all the time.
-        let camera = &mut settings.camera;
-        (camera.speed, camera.file, camera.height) = (0.0, None, camera.height.map(|_| 1.0));
+        // The wheel changes the speed all the time, and flights the height. While a camera of the file is followed, only a
+        // person changes the height.
+        settings.camera.speed = 0.0;
+        if settings.camera.file.is_none() {
+            settings.camera.height = settings.camera.height.map(|_| 1.0);
+        }
         Self { settings, ..self.clone() }
     }
 
-    /// This state, with the values of `now` for those that change by themselves.
-    fn with_motion_of(mut self, now: &Self) -> Self {
+    /// This state, with the values of `now` for those that change by themselves. `height` is the last height of a flown
+    /// orthographic picture, in metres.
+    fn with_motion_of(mut self, now: &Self, height: Option<f32>) -> Self {
         let (light, last) = (&mut self.settings.light, &now.settings.light);
         if light.animate {
             light.azimuth = last.azimuth;
@@ -45,9 +49,11 @@ impl State {
         if light.file.is_some() {
             (light.azimuth, light.elevation) = (last.azimuth, last.elevation);
         }
-        let (camera, last) = (&mut self.settings.camera, &now.settings.camera);
-        (camera.speed, camera.file) = (last.speed, last.file);
-        camera.height = camera.height.map(|height| last.height.unwrap_or(height));
+        let camera = &mut self.settings.camera;
+        camera.speed = now.settings.camera.speed;
+        if camera.file.is_none() {
+            camera.height = camera.height.map(|masked| height.unwrap_or(masked));
+        }
         self
     }
 
@@ -83,12 +89,16 @@ pub(crate) struct History {
     undo: Option<String>,
     redo: Option<String>,
     last: Option<State>,
+    /// Last height of an orthographic picture without a camera of the file, in metres.
+    height: Option<f32>,
 }
 
 impl History {
     /// Notes the present state, at a time in seconds.
     pub(crate) fn feed(&mut self, seconds: f64, state: &State) {
         let still = state.still();
+        let camera = &state.settings.camera;
+        self.height = camera.height.filter(|_| camera.file.is_none()).or(self.height);
         self.undoer.feed_state(seconds, &still);
         if self.last.as_ref() != Some(&still) {
             self.name(&still);
@@ -102,7 +112,7 @@ impl History {
         let state = self.undoer.undo(&still).cloned()?;
         self.name(&state);
         self.last = Some(state.clone());
-        Some(state.with_motion_of(now))
+        Some(state.with_motion_of(now, self.height))
     }
 
     /// The state after the change that was undone.
@@ -111,7 +121,7 @@ impl History {
         let state = self.undoer.redo(&still).cloned()?;
         self.name(&state);
         self.last = Some(state.clone());
-        Some(state.with_motion_of(now))
+        Some(state.with_motion_of(now, self.height))
     }
 
     /// Name of the change that undo would take back.
@@ -160,6 +170,45 @@ mod tests {
         assert_eq!(history.undo(&three), Some(four.clone()));
         assert!(history.redo_name().is_some());
         assert_eq!(history.redo(&four), Some(three));
+    }
+
+    /// Feeds a state for 4 s.
+    fn rest(history: &mut History, seconds: &mut f64, state: &State) {
+        for _ in 0..40 {
+            *seconds += 0.1;
+            history.feed(*seconds, state);
+        }
+    }
+
+    #[test]
+    fn a_camera_of_the_file_is_taken_back_and_made_again_with_its_whole_lens() {
+        let (mut history, mut seconds) = (History::default(), 0.0);
+        let (mut one, mut two) = (state(4), state(4));
+        (one.settings.camera.file, one.settings.camera.fov_y) = (Some(1), 1.2);
+        let camera = &mut two.settings.camera;
+        (camera.file, camera.height, camera.near, camera.far) = (Some(2), Some(600.0), 3.0, 900.0);
+        for state in [&one, &two] {
+            rest(&mut history, &mut seconds, state);
+        }
+        assert_eq!(history.undo(&two).map(|state| state.settings.camera), Some(one.settings.camera));
+        rest(&mut history, &mut seconds, &one);
+        assert_eq!(history.redo(&one).map(|state| state.settings.camera), Some(two.settings.camera));
+    }
+
+    #[test]
+    fn a_flown_orthographic_picture_comes_back_with_its_last_height() {
+        let (mut history, mut seconds) = (History::default(), 0.0);
+        let mut flown = state(4);
+        for height in [900.0, 600.0] {
+            flown.settings.camera.height = Some(height);
+            rest(&mut history, &mut seconds, &flown);
+        }
+        assert_eq!(history.undo_name(), None, "a flight is no change");
+        let mut perspective = flown.clone();
+        perspective.settings.camera.height = None;
+        rest(&mut history, &mut seconds, &perspective);
+        let back = history.undo(&perspective).expect("a change");
+        assert_eq!(back.settings.camera.height, Some(600.0));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use shadowfit_scene::Scene;
-use shadowfit_study::file_camera;
+use shadowfit_study::{camera_reaches, file_camera};
 
 use super::{CameraPath, PathFrame};
 
@@ -10,8 +10,8 @@ use super::{CameraPath, PathFrame};
 const MAX_FRAMES: f32 = 100_000.0;
 
 /// Returns a frame of a camera, by its number from 1, for each step of the first animation at `play` frames a second; one
-/// frame where nothing plays. The picture keeps the height of the camera's, and its width follows from `aspect` (width
-/// divided by height).
+/// frame where nothing plays. All frames have one lens, near and far plane. The picture keeps the height of the camera's, and
+/// its width follows from `aspect` (width divided by height).
 ///
 /// # Errors
 ///
@@ -23,10 +23,11 @@ pub(crate) fn follow(scene: &Scene, number: u32, play: Option<f32>, aspect: f32)
     let duration = scene.animations.first().map_or(0.0, |animation| animation.duration);
     let frames = play.map_or(1.0, |fps| (duration * fps).round().max(1.0));
     ensure!(frames <= MAX_FRAMES, "--play: {frames} frames are more than the {MAX_FRAMES} that a path may have");
+    let bounds = scene.bounds(&scene.pose(None, 0.0)).context("the scene has no triangles")?;
+    let reach = camera_reaches(scene, &bounds)[index];
     let frames = (0..frames as usize).map(|frame| {
         let pose = scene.pose(play.map(|_| 0), play.map_or(0.0, |fps| frame as f32 / fps));
-        let bounds = scene.bounds(&pose).context("the scene has no triangles")?;
-        let camera = file_camera(&scene.cameras[index], &pose, &bounds, aspect);
+        let camera = file_camera(&scene.cameras[index], &pose, reach, aspect);
         let camera = camera.context("the node of the camera has no size")?;
         camera.frustum().with_context(|| format!("--camera {number}"))?;
         Ok(PathFrame { camera, group: "camera".to_owned() })
@@ -36,6 +37,8 @@ pub(crate) fn follow(scene: &Scene, number: u32, play: Option<f32>, aspect: f32)
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use glam::{Quat, Vec3};
     use shadowfit::Lens;
     use shadowfit_scene::{Animation, Channel, ChannelValues, Interpolation, Lens as FileLens, Node, SceneCamera};
@@ -62,6 +65,23 @@ mod tests {
         assert!((forward[2] - Vec3::new(-1.0, 0.0, -1.0).normalize()).length() < 1e-5, "{forward:?}");
         assert_eq!(path.frames[0].camera.lens, Lens::Perspective { fov_y: 0.003 });
         assert_eq!(follow(&scene, 1, None, 1.5).expect("a path").frames.len(), 1);
+    }
+
+    #[test]
+    fn the_path_of_a_camera_that_flies_away_can_be_written_and_sees_the_scene_in_each_frame() {
+        for lens in [
+            FileLens::Perspective { fov_y: 1.0, near: 0.1, far: None },
+            FileLens::Orthographic { half_height: 2.0, near: 0.0, far: 1e9 },
+        ] {
+            let mut scene = scene(lens);
+            let values = ChannelValues::Translation(vec![Vec3::ZERO, Vec3::Z * 1e3]);
+            let channel = Channel { node: 1, times: vec![0.0, 2.0], interpolation: Interpolation::Linear, values };
+            scene.animations[0].channels = vec![channel];
+            let path = follow(&scene, 1, Some(8.0), 1.5).expect("a path");
+            assert!(path.to_text(Path::new("path.toml")).is_ok_and(|text| text.contains("keys")), "{lens:?}");
+            let last = path.frames.last().expect("a frame").camera;
+            assert!(f64::from(last.far) > last.eye.z, "{lens:?}: {last:?}");
+        }
     }
 
     #[test]

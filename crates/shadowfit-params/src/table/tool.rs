@@ -82,7 +82,7 @@ pub(super) const ROWS: &[Parameter] = &[
             min: 1.0,
             max: MOST_OF_A_FILE,
             step: 1.0,
-            logarithmic: false,
+            logarithmic: true,
             decimals: 0,
             unset: Some(Unset {
                 option: ChoiceOption {
@@ -128,7 +128,7 @@ pub(super) const ROWS: &[Parameter] = &[
             min: 1.0,
             max: MOST_OF_A_FILE,
             step: 1.0,
-            logarithmic: false,
+            logarithmic: true,
             decimals: 0,
             unset: Some(Unset {
                 option: ChoiceOption { id: "free", label: "Free flight", help: "The camera goes where you fly it." },
@@ -482,8 +482,8 @@ pub(super) const ROWS: &[Parameter] = &[
     },
 ];
 
-/// Greatest number of a light or camera of a file that can be chosen.
-const MOST_OF_A_FILE: f64 = 64.0;
+/// Greatest number of a light or camera of a file that can be chosen: more than files have.
+const MOST_OF_A_FILE: f64 = 1e6;
 
 /// Why the angles have no effect, or `None` where they have one.
 fn by_angles(s: &Settings) -> Option<&'static str> {

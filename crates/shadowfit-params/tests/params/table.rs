@@ -235,6 +235,12 @@ fn defaults_and_steps_lie_within_the_ranges() {
 }
 
 #[test]
+fn any_camera_and_sun_of_a_file_can_be_chosen() {
+    let settings = with(&[("camera.file", "65"), ("light.file", "1000")]);
+    assert_eq!((settings.camera.file, settings.light.file), (Some(65), Some(1000)));
+}
+
+#[test]
 fn near_far_and_shadow_distance_move_each_other() {
     let mut settings = with(&[("fit.max_distance", "40"), ("camera.far", "20")]);
     let distances =

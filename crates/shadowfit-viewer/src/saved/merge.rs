@@ -44,10 +44,14 @@ impl Saved {
     }
 }
 
-/// In the order of the table, so that a choice comes before the parameters that exist only with it.
+/// In the order of the table, so that a choice comes before the parameters that exist only with it. The angles of a sun that
+/// the file moves are no change by a person.
 fn put_settings_over(merged: &mut Settings, known: &Settings, ours: &Settings) {
-    for parameter in PARAMETERS.iter().filter(|parameter| !parameter.is_equal(known, ours)) {
-        parameter.copy(merged, ours);
+    let is_moved = |id| ours.light.file.is_some() && ["light.azimuth", "light.elevation"].contains(&id);
+    for parameter in PARAMETERS {
+        if !parameter.is_equal(known, ours) && !is_moved(parameter.id) {
+            parameter.copy(merged, ours);
+        }
     }
 }
 

@@ -151,6 +151,56 @@ fn gpu_a_camera_of_the_file_moves_with_the_animation_until_it_is_flown() {
 }
 
 #[test]
+fn gpu_a_followed_camera_that_flies_away_sees_the_scene_all_the_way() {
+    for lens in [PERSPECTIVE, FileLens::Orthographic { half_height: 3.0, near: 0.1, far: 1e9 }] {
+        let mut scene = model(1.0);
+        let rest = Transform { translation: DVec3::new(0.0, 2.0, 9.0), ..Transform::default() };
+        add_camera(&mut scene, rest, lens);
+        let values = ChannelValues::Translation(vec![Vec3::new(0.0, 2.0, 9.0), Vec3::new(0.0, 2.0, 5e3)]);
+        let node = scene.cameras[0].node;
+        let channel = Channel { node, times: vec![0.0, 2.0], interpolation: Interpolation::Linear, values };
+        scene.animations.push(Animation { name: String::new(), duration: 2.0, channels: vec![channel] });
+        let mut stage = stage(scene);
+        let first = stage.settings.camera;
+        stage.update(&FlyInput::default(), 1.9);
+        let camera = stage.camera_of(SIZE);
+        assert!(camera.eye.z > 4e3 && f64::from(camera.far) > camera.eye.z, "{camera:?}");
+        assert_eq!(stage.settings.camera, first, "lens and planes stay");
+    }
+}
+
+#[test]
+fn gpu_a_chosen_camera_keeps_its_lens_after_a_reset_and_gives_it_back_to_the_first_view() {
+    let mut scene = model(1.0);
+    let rest = Transform { translation: DVec3::new(0.0, 2.0, 9.0), ..Transform::default() };
+    add_camera(&mut scene, rest, PERSPECTIVE);
+    add_camera(&mut scene, rest, FileLens::Orthographic { half_height: 3.0, near: 0.1, far: 40.0 });
+    let mut stage = stage(scene);
+    let first = stage.settings.camera;
+    // As the arguments of a start are taken.
+    let mut settings = stage.settings;
+    let parameters = [("camera.near", "0.5"), ("camera.file", "2")];
+    stage.choose_camera(parameters, &mut settings);
+    params::set_from_str(&mut settings, "camera.near", "0.5").expect("a parameter");
+    stage.restore_settings(&settings);
+    stage.set_home();
+    for _ in 0..2 {
+        stage.reset();
+        stage.update(&FlyInput::default(), 0.0);
+        let camera = stage.settings.camera;
+        assert_eq!((camera.file, camera.height, camera.near), (Some(2), Some(6.0), 0.5));
+        stage.update(&FlyInput { movement: Vec3::X, ..FlyInput::default() }, 0.1);
+        stage.settings.camera.far = 7.0;
+    }
+    stage.reset_camera();
+    stage.update(&FlyInput::default(), 0.0);
+    assert_eq!(stage.settings.camera, settings.camera);
+    params::set_from_str(&mut stage.settings, "camera.file", "1").expect("a parameter");
+    stage.update(&FlyInput::default(), 0.0);
+    assert_eq!(stage.settings.camera, first);
+}
+
+#[test]
 fn gpu_the_strongest_sun_moves_with_the_animation_until_a_person_takes_it() {
     let mut scene = model(1.0);
     add_suns(&mut scene, &[(0.0, 0.5), (3.0, 0.9), (1.0, 1.2)]);

@@ -2,10 +2,10 @@
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Camera, Lens};
+use shadowfit_params::set_from_str;
 use shadowfit_params::tool::{CameraSettings, Settings};
 use shadowfit_render::FlyCamera;
-use shadowfit_scene::SceneCamera;
-use shadowfit_study::{PosedScene, file_camera};
+use shadowfit_study::PosedScene;
 
 use super::Stage;
 
@@ -22,18 +22,18 @@ pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
         // A scene of unknown units: all lengths follow from its size. Shadows reach as far as the camera sees, since
         // maps are placed by content and not by distance.
         settings.technique.fit.caster_extension = radius * 2.0;
-        settings.camera.near = radius * 0.005;
+        settings.camera.near = near_of(&bounds);
         settings.camera.far = radius * 20.0;
         settings.camera.speed = radius * 0.4;
     }
-    let own = scene.cameras.iter().enumerate().find_map(|(index, camera)| Some((index, seen_by(camera, prepared)?)));
-    let Some((index, camera)) = own else {
+    let own = (1..).zip(&scene.cameras).find_map(|(number, _)| Some((number, seen_by(prepared, Some(number))?)));
+    let Some((number, camera)) = own else {
         let camera = overview(&bounds, radius, &settings);
         return (settings, camera);
     };
     take_lens(&mut settings.camera, &camera);
     // Built-in scenes have a start view and no file.
-    settings.camera.file = scene.subject.is_none().then(|| number(index));
+    settings.camera.file = scene.subject.is_none().then_some(number);
     (settings, placed(&camera))
 }
 
@@ -43,7 +43,12 @@ fn radius(bounds: &Aabb) -> f32 {
     if radius > 0.0 { radius } else { 1e-3 }
 }
 
-/// The number of a camera or sun of a file by its index.
+/// Returns the near distance of a perspective lens that suits a scene's bounds, in metres.
+pub(crate) fn near_of(bounds: &Aabb) -> f32 {
+    radius(bounds) * 0.005
+}
+
+/// The number of a sun of a file by its index.
 fn number(index: usize) -> u32 {
     u32::try_from(index + 1).unwrap_or(u32::MAX)
 }
@@ -62,10 +67,11 @@ fn take_lens(settings: &mut CameraSettings, camera: &Camera) {
     *settings = CameraSettings { fov_y, height, near: camera.near, far: camera.far, ..*settings };
 }
 
-/// A camera of the file in the present pose. `None` where its node has no size.
-fn seen_by(camera: &SceneCamera, scene: &PosedScene) -> Option<Camera> {
+/// Returns the camera of the file with a number, in the present pose. `None` without such a camera, or if its node has no
+/// size.
+fn seen_by(scene: &PosedScene, number: Option<u32>) -> Option<Camera> {
     // The settings have no aspect: the window has.
-    file_camera(camera, scene.pose(), &scene.bounds(), 1.0)
+    scene.file_camera((number? as usize).checked_sub(1)?, 1.0)
 }
 
 /// The place and direction of a camera of the file.
@@ -76,7 +82,7 @@ fn placed(camera: &Camera) -> FlyCamera {
 impl Stage {
     /// Moves sun and camera to the file's sun and camera that the settings name, in the present pose. A number that the
     /// file lacks counts as none. The lens is taken once, when a camera is chosen.
-    pub(super) fn follow_file(&mut self) {
+    pub(crate) fn follow_file(&mut self) {
         let (scene, pose) = (self.scene.scene(), self.scene.pose());
         let light = &mut self.settings.light;
         match numbered(&scene.suns, light.file) {
@@ -84,8 +90,7 @@ impl Stage {
             None => light.file = None,
         }
         let file = self.settings.camera.file;
-        let seen = numbered(&scene.cameras, file).and_then(|camera| seen_by(camera, &self.scene));
-        let Some(camera) = seen else {
+        let Some(camera) = seen_by(&self.scene, file) else {
             (self.settings.camera.file, self.followed) = (None, None);
             return;
         };
@@ -97,9 +102,27 @@ impl Stage {
         self.camera = placed(&camera);
     }
 
-    /// Takes kept settings. Their lens belongs to the file's camera of this number, and may have been changed since.
-    pub(crate) fn restore_settings(&mut self, settings: &Settings, lens_of: Option<u32>) {
-        (self.settings, self.followed) = (*settings, lens_of);
+    /// Takes settings whose lens is already the one for their camera of the file.
+    pub(crate) fn restore_settings(&mut self, settings: &Settings) {
+        if settings.camera.file != self.settings.camera.file {
+            self.set_camera(self.camera);
+        }
+        (self.settings, self.followed) = (*settings, settings.camera.file);
+    }
+
+    /// Chooses the camera of the file that parameters name, if they name one, and gives the settings its lens. Set the other
+    /// parameters afterwards, since they may change the lens. A value that makes no sense changes nothing.
+    pub(crate) fn choose_camera<'a>(
+        &self,
+        parameters: impl IntoIterator<Item = (&'a str, &'a str)>,
+        settings: &mut Settings,
+    ) {
+        let Some((id, value)) = parameters.into_iter().filter(|(id, _)| *id == "camera.file").last() else { return };
+        if set_from_str(settings, id, value).is_ok()
+            && let Some(camera) = seen_by(&self.scene, settings.camera.file)
+        {
+            take_lens(&mut settings.camera, &camera);
+        }
     }
 
     /// Distance above the surface at which shadow rays start, in metres.

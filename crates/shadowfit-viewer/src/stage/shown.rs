@@ -170,7 +170,11 @@ impl Stage {
 /// Takes over the settings that show an artefact.
 fn take_shown(settings: &mut Settings, from: &Settings) {
     settings.technique = from.technique;
-    (settings.camera.far, settings.camera.height) = (from.camera.far, from.camera.height);
+    let (camera, other) = (&mut settings.camera, &from.camera);
+    if camera.height.is_some() != other.height.is_some() {
+        camera.near = other.near;
+    }
+    (camera.far, camera.height) = (other.far, other.height);
     settings.light.animate = from.light.animate;
     let (view, from) = (&mut settings.view, &from.view);
     (view.mode, view.play, view.freeze_fit) = (from.mode, from.play, from.freeze_fit);
@@ -214,16 +218,20 @@ mod tests {
     fn what_changed_while_an_artefact_was_searched_or_on_show_stays() {
         let mut stage = Stage::new(renderer_gpu(), default_scene(), 1).expect("the default scene");
         stage.settings.technique.maps = shadowfit::Windows::default().into();
+        (stage.settings.camera.height, stage.settings.camera.near) = (Some(10.0), 9.0);
         let first = stage.settings;
         let found = stage.search(Artefact::ClippingHole).run();
         stage.settings.light.azimuth += 0.5;
         stage.show_found(found);
         assert_eq!(stage.settings.light.azimuth, first.light.azimuth + 0.5);
         assert_ne!(stage.settings.technique, first.technique);
+        let near = crate::stage::near_of(&stage.bounds());
+        assert_eq!((stage.settings.camera.height, stage.settings.camera.near), (None, near));
         // A second artefact follows the technique from before the first one.
         stage.settings.camera.fov_y *= 1.1;
         let (before, _) = stage.before_artefact();
         assert_eq!((before.technique, before.view), (first.technique, first.view));
+        assert_eq!((before.camera.height, before.camera.near), (Some(10.0), 9.0));
         assert_eq!((before.light.azimuth, before.camera.fov_y), (first.light.azimuth + 0.5, first.camera.fov_y * 1.1));
         // Unless a person has taken another one.
         stage.settings.technique = first.technique.with_count(2);

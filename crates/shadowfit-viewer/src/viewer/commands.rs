@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
 use shadowfit_egui::{Artefact, Command, Toggle, UserPreset, keys_of};
 use shadowfit_params as params;
-use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
+use shadowfit_params::tool::{ErrorMarks, HEIGHTS, InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, in_background, settings_to_toml};
 
@@ -24,7 +24,8 @@ use crate::undo::State;
 
 /// Presets for the second technique: the first of them that differs from the present one.
 const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
-/// How far the camera flies toward a point, as a share of the distance.
+/// How far the camera flies toward a point, as a share of the distance. The height of an orthographic picture shrinks by the
+/// same share.
 const FOCUS: f64 = 0.6;
 
 impl Viewer {
@@ -236,7 +237,7 @@ impl Viewer {
     }
 
     pub(super) fn restore_state(&mut self, state: State) {
-        self.stage.settings = state.settings;
+        self.stage.restore_settings(&state.settings);
         if let Some(values) = state.sample {
             self.stage.set_sample_values(values);
         }
@@ -244,14 +245,23 @@ impl Viewer {
         self.stage.restore_artefact(state.artefact);
     }
 
-    /// Flies toward the surface at a point of the picture, in views of the camera.
+    /// Flies toward the surface at a point of the picture, in views of the camera. An orthographic picture keeps its direction,
+    /// moves its middle to the point and gets smaller. The roll stays.
     fn focus(&mut self, at: [f32; 2]) {
         if !self.stage.settings.view.mode.shows_camera() {
             return;
         }
         let Some(target) = self.stage.pick(at, self.interface.pictures.size()) else { return };
-        let eye = self.stage.camera.position;
-        self.stage.set_camera(FlyCamera::look_at(eye + (target - eye) * FOCUS, target));
+        let camera = self.stage.camera;
+        let way = target - camera.position;
+        let nearer = if let Some(height) = &mut self.stage.settings.camera.height {
+            *height = (*height * (1.0 - FOCUS) as f32).clamp(HEIGHTS.0, HEIGHTS.1);
+            let across = way.reject_from(camera.forward().as_dvec3());
+            FlyCamera { position: camera.position + across, ..camera }
+        } else {
+            FlyCamera { roll: camera.roll, ..FlyCamera::look_at(camera.position + way * FOCUS, target) }
+        };
+        self.stage.set_camera(nearer);
     }
 
     fn set_bookmark(&mut self, key: u8) {
@@ -307,6 +317,8 @@ impl Viewer {
             params::set_technique_from_str(self.edited(), id, value)?;
         } else {
             params::set_from_str(&mut self.stage.settings, id, value)?;
+            // The next action may change the lens of the camera that this one chooses.
+            self.stage.follow_file();
         }
         Ok(format!("{id} = {value}"))
     }
@@ -380,7 +392,7 @@ impl Viewer {
         command_line(
             &self.source,
             self.stage.animation,
-            (&self.stage.settings, &self.own_settings),
+            (&self.stage.settings, &self.own_with_lens()),
             self.stage.sample().map(|show| (show.sample, show.variant, &show.values)),
         )
     }

@@ -22,12 +22,23 @@ impl Viewer {
             animation: stage.animation,
             camera: now.camera.file.is_none().then_some(stage.camera),
             seconds: stands.then(|| stage.seconds()),
-            settings: differences(now, &self.own_settings),
+            settings: differences(now, &self.own_with_lens()),
             sample: sample.into_iter().flatten().map(|(option, value)| (option.to_owned(), value)).collect(),
             other,
             artefact: self.linked_artefact(),
             notes: Vec::new(),
         }
+    }
+
+    /// Returns the scene's own settings with the lens of the file's camera that is followed: whoever reads a link or a command
+    /// line takes that lens first.
+    pub(super) fn own_with_lens(&self) -> Settings {
+        let (mut own, followed) = (self.own_settings, self.stage.settings.camera.file);
+        if let Some(number) = followed.filter(|_| followed != own.camera.file) {
+            self.stage.choose_camera([("camera.file", number.to_string().as_str())], &mut own);
+            own.camera.file = self.own_settings.camera.file;
+        }
+        own
     }
 
     /// The artefact on show, unless it was not found.
@@ -68,6 +79,7 @@ impl Viewer {
     fn bring_back(&mut self, link: &Link) {
         let mut notes = link.notes.clone();
         let mut settings = self.own_settings;
+        self.stage.choose_camera(link.settings.iter().map(|(id, value)| (id.as_str(), value.as_str())), &mut settings);
         apply(&link.settings, &mut settings);
         if let Some(show) = self.stage.sample() {
             let (sample, variant) = (show.sample, show.variant);
@@ -79,7 +91,7 @@ impl Viewer {
         }
         self.searching = None;
         self.interface.edits_other = false;
-        self.stage.restore_settings(&settings, settings.camera.file);
+        self.stage.restore_settings(&settings);
         self.stage.animation = link.animation;
         self.stage.compare_with(link.other.as_ref().map(|(other, _)| with(other, &settings).technique));
         if let Some((_, split)) = &link.other {

@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
+use shadowfit_params::Group;
+use shadowfit_params::tool::Settings;
 use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 
 use super::Viewer;
+use super::start::of_scene;
 use crate::cli::check_animation;
 use crate::files::{self, settings_of_png};
 use crate::link::LinkedScene;
@@ -57,13 +60,21 @@ impl Viewer {
         Ok(format!("Playing {}", path.display()))
     }
 
-    /// Takes the settings that a screenshot was made with: the technique for the side that the panel edits.
+    /// Takes the settings that a screenshot was made with: the technique for the side that the panel edits. The camera stays,
+    /// with its lens. In a picture of another scene, the sun of that scene's file counts as one by hand.
     fn open_picture(&mut self, path: &Path) -> Result<String> {
         let text = settings_of_png(path)?.ok_or_else(|| anyhow!("it has no settings of the viewer"))?;
-        let table: toml::Table = toml::from_str(&text)?;
-        let settings = table.get("settings").and_then(toml::Value::as_table);
+        let mut table: toml::Table = toml::from_str(&text)?;
+        let is_of_scene = table.get("scene").and_then(toml::Value::as_str) == Some(&self.source.text());
+        let settings = table.get_mut("settings").and_then(toml::Value::as_table_mut).context("it has no settings")?;
+        settings.remove(Group::Camera.id());
+        if let Some(light) = settings.get_mut(Group::Light.id()).and_then(toml::Value::as_table_mut)
+            && !is_of_scene
+        {
+            light.remove("file");
+        }
         let mut read = self.stage.settings.with_technique(self.edited_technique());
-        settings_from_toml(settings.context("it has no settings")?, &mut read)?;
+        settings_from_toml(settings, &mut read)?;
         self.stage.settings = read.with_technique(self.stage.settings.technique);
         *self.edited() = read.technique;
         Ok(format!("Settings of {}", path.display()))
@@ -111,9 +122,8 @@ impl Viewer {
         self.searching = None;
         self.tuning.abandon();
         self.history = History::default();
-        let view = self.stage.settings.view;
+        let kept = self.stage.settings;
         let comparing = self.stage.other_technique();
-        let technique = self.stage.settings.technique;
         self.stage.set_prepared(prepared);
         let is_sample = match &self.source {
             SceneSource::Sample { sample, variant } => {
@@ -142,9 +152,8 @@ impl Viewer {
             self.message = None;
         } else {
             self.message = None;
-            // Another scene keeps the settings, except for lengths and light.
-            self.stage.settings.technique = technique.with_lengths_of(&self.own_settings.technique);
-            self.stage.settings.view = view;
+            let Settings { technique, view, .. } = of_scene(&kept, &self.own_settings);
+            (self.stage.settings.technique, self.stage.settings.view) = (technique, view);
             self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));
         }
         self.interface.scene_changed(&self.stage);

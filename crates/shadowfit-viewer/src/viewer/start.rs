@@ -6,7 +6,7 @@ use anyhow::Context;
 use shadowfit_classics::SampleValues;
 use shadowfit_egui::Command;
 use shadowfit_params::Kind;
-use shadowfit_params::tool::Settings;
+use shadowfit_params::tool::{Settings, ViewSettings};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
 
@@ -103,23 +103,24 @@ impl Viewer {
         self.set_up_sample(&arguments)?;
         let kept = self.start.kept.take().filter(|_| self.saved_is_there());
         let mut home = self.own_settings;
+        self.stage.choose_camera(arguments.settings(), &mut home);
         let Some((source, kept, camera)) = kept else {
             let technique = arguments.apply(&mut home)?;
-            self.stage.settings = home;
+            self.stage.restore_settings(&home);
             self.stage.set_home();
             return Ok(technique);
         };
         // The state that a reset goes back to: without saved settings, and with the arguments that make sense without
         // them.
         arguments.apply_what_is_there(&mut home)?;
-        self.stage.settings = home;
+        self.stage.restore_settings(&home);
         self.stage.set_home();
         let mut settings = if source == self.source { with_own_near(kept, &home) } else { of_scene(&kept, &home) };
-        let lens_of = settings.camera.file;
         // Arguments win over saved settings.
+        self.stage.choose_camera(arguments.settings(), &mut settings);
         let technique = arguments.apply(&mut settings)?;
-        self.stage.restore_settings(&settings, lens_of);
-        if let Some(camera) = camera.filter(|_| source == self.source) {
+        self.stage.restore_settings(&settings);
+        if let Some(camera) = camera.filter(|_| source == self.source && settings.camera.file.is_none()) {
             self.stage.set_camera(camera);
         }
         if let Some((other, split)) = self.saved.other {
@@ -189,7 +190,8 @@ fn with_own_near(mut kept: Settings, home: &Settings) -> Settings {
 }
 
 /// Settings of another scene, with the lengths and the light of this one.
-fn of_scene(kept: &Settings, home: &Settings) -> Settings {
+pub(super) fn of_scene(kept: &Settings, home: &Settings) -> Settings {
     let technique = kept.technique.with_lengths_of(&home.technique);
-    Settings { light: home.light, camera: home.camera, technique, ..*kept }
+    let view = ViewSettings { ray_offset: home.view.ray_offset, ..kept.view };
+    Settings { light: home.light, camera: home.camera, technique, view, ..*kept }
 }

@@ -293,6 +293,26 @@ fn gpu_the_pixel_under_a_resting_pointer_is_explained() {
 }
 
 #[test]
+fn gpu_a_double_click_keeps_the_roll_and_moves_an_orthographic_picture_across() {
+    let mut viewer = ready(&[], None);
+    until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());
+    viewer.stage.camera.roll = 0.3;
+    run(&mut viewer, Command::Set("camera.height".to_owned(), "4".to_owned()));
+    let before = viewer.stage.camera;
+    run(&mut viewer, Command::Focus([0.6, 0.55]));
+    let after = viewer.stage.camera;
+    let way = after.position - before.position;
+    assert!(way.length() > 0.1 && way.dot(before.forward().as_dvec3()).abs() < 1e-4, "{way}");
+    assert_eq!((after.yaw, after.pitch, after.roll), (before.yaw, before.pitch, 0.3));
+    let height = viewer.stage.settings.camera.height.expect("it stays orthographic");
+    assert!((height - 1.6).abs() < 1e-5, "{height}");
+    run(&mut viewer, Command::Set("camera.height".to_owned(), "perspective".to_owned()));
+    run(&mut viewer, Command::Focus([0.6, 0.55]));
+    assert_ne!(viewer.stage.camera.position, after.position);
+    assert_eq!(viewer.stage.camera.roll, 0.3);
+}
+
+#[test]
 fn gpu_a_click_flies_nowhere_where_the_picture_is_not_the_cameras() {
     let mut viewer = ready(&[], None);
     until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());

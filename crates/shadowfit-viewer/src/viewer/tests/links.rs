@@ -245,3 +245,93 @@ fn gpu_cameras_and_suns_of_a_file_come_back_by_link_while_followed_and_after() {
     until(&mut first, "the first view", |viewer| viewer.stage.settings.camera.file == Some(1));
     assert_eq!(settings(&first).light.file, Some(2));
 }
+
+#[test]
+fn gpu_arguments_and_links_choose_a_camera_with_its_lens_and_may_change_that() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("views.gltf");
+    write_views(&path);
+    let file = path.to_str().expect("text");
+    let camera = |viewer: &Viewer| viewer.stage.settings.camera;
+    let mut first = ready(&[file, "--set", "camera.near=0.3", "--set", "camera.file=2"], None);
+    for _ in 0..2 {
+        assert_eq!((camera(&first).file, camera(&first).height, camera(&first).near), (Some(2), Some(3.0), 0.3));
+        run(&mut first, Command::Reset);
+        frame(&mut first);
+    }
+    // As a perspective, the second camera has the same field of view as the first one.
+    for height in ["5", "perspective"] {
+        set(&mut first, "camera.height", height);
+        let link = first.link();
+        let text = first.command_line();
+        let arguments: Vec<&str> = text.split(' ').skip(1).collect();
+        let mut second = ready(&[file], None);
+        second.follow(Link::parse(&link.to_fragment()).expect("a link"));
+        frame(&mut second);
+        let assert_same = |other: &Viewer| {
+            assert_eq!((camera(other), other.stage.camera), (camera(&first), first.stage.camera), "{text}");
+        };
+        assert_same(&second);
+        assert_same(&ready(&arguments, None));
+    }
+    let mut third = ready(&[file], None);
+    third.follow(Link::parse("#v=1&file=views.gltf&camera.file=2").expect("a link"));
+    frame(&mut third);
+    assert_eq!((camera(&third).file, camera(&third).height), (Some(2), Some(3.0)));
+    // What was flown yields to a camera that the arguments name.
+    let store = folder.path().join("viewer.toml");
+    let mut flown = ready(&[file], Some(&store));
+    run(&mut flown, Command::LookAt { eye: [1.0, 2.0, 3.0], target: [0.0; 3] });
+    flown.save();
+    let back = ready(&["--set", "camera.file=2"], Some(&store));
+    assert_eq!((camera(&back).file, camera(&back).height), (Some(2), Some(3.0)));
+}
+
+#[test]
+fn gpu_undo_goes_back_to_the_camera_of_the_file_before() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("views.gltf");
+    write_views(&path);
+    let mut viewer = ready(&[path.to_str().expect("text")], None);
+    let view = |viewer: &Viewer| (viewer.stage.settings.camera, viewer.stage.camera);
+    pass(&mut viewer, 2.0);
+    let one = view(&viewer);
+    set(&mut viewer, "camera.file", "2");
+    pass(&mut viewer, 2.0);
+    let two = view(&viewer);
+    set(&mut viewer, "camera.height", "perspective");
+    pass(&mut viewer, 2.0);
+    for (command, expected) in [(Command::Undo, two), (Command::Undo, one), (Command::Redo, two)] {
+        run(&mut viewer, command);
+        frame(&mut viewer);
+        assert_eq!(view(&viewer), expected);
+    }
+}
+
+#[test]
+fn gpu_a_picture_leaves_the_camera_and_gives_the_sun_to_its_own_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, picture] = ["views.gltf", "picture.png"].map(|name| folder.path().join(name));
+    write_views(&path);
+    let mut viewer = ready(&[path.to_str().expect("text")], None);
+    for (id, value) in [("camera.file", "2"), ("camera.near", "0.4"), ("light.file", "1"), ("bias.slope", "1.25")] {
+        set(&mut viewer, id, value);
+    }
+    run(&mut viewer, Command::Screenshot(Some(picture.clone())));
+    let light = viewer.stage.settings.light;
+    run(&mut viewer, Command::Reset);
+    frame(&mut viewer);
+    let (before, place) = (viewer.stage.settings, viewer.stage.camera);
+    run(&mut viewer, Command::OpenFile(picture.clone()));
+    frame(&mut viewer);
+    let settings = viewer.stage.settings;
+    assert_eq!((settings.camera, viewer.stage.camera), (before.camera, place));
+    assert_eq!((settings.light, settings.technique.bias.slope), (light, 1.25));
+    run(&mut viewer, Command::Open("plain".to_owned()));
+    until(&mut viewer, "the plain", |viewer| viewer.loading.is_none());
+    let camera = viewer.stage.settings.camera;
+    run(&mut viewer, Command::OpenFile(picture));
+    let settings = viewer.stage.settings;
+    assert_eq!((settings.camera, settings.light.file), (camera, None));
+    assert!((settings.light.elevation - light.elevation).abs() < 1e-5, "the sun stands where it stood");
+}

@@ -18,6 +18,17 @@ fn gpu_nothing_can_be_taken_back_that_was_done_before_the_scene_was_there() {
 }
 
 #[test]
+fn gpu_the_start_of_rays_belongs_to_its_scene() {
+    let mut viewer = ready(&[], None);
+    run(&mut viewer, Command::Set("view.ray_offset".to_owned(), "0.5".to_owned()));
+    run(&mut viewer, Command::Set("view.shadows".to_owned(), "off".to_owned()));
+    run(&mut viewer, Command::Open("plain".to_owned()));
+    until(&mut viewer, "the plain", |viewer| viewer.loading.is_none());
+    let view = viewer.stage.settings.view;
+    assert_eq!((view.ray_offset, view.shadows), (None, false));
+}
+
+#[test]
 fn gpu_a_search_for_a_technique_ends_with_its_scene() {
     let mut viewer = ready(&["--technique", "xna-1"], None);
     run(&mut viewer, Command::StartTune);
