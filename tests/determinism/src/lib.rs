@@ -28,7 +28,7 @@ pub const HASH: u64 = 0x271a_9f64_f791_c29f;
 /// The hashes over the numbers alone that as many fits give, every setting written out: they do not know what anything is
 /// called or what is kept between frames, and only change if engines get other numbers.
 pub const NUMBERS: NumbersByKind =
-    NumbersByKind { one_map: 0xd2f4_6590_daee_0821, slices: 0x6246_3ab3_6ddf_53ee, windows: 0x7c07_6592_3b80_df78 };
+    NumbersByKind { one_map: 0xcbed_08f2_b4b7_6d15, slices: 0x75c7_126f_e4c2_2ec0, windows: 0x1d4e_5c93_1d61_e34b };
 
 /// A hash over numbers for each kind of technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

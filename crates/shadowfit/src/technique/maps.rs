@@ -33,9 +33,9 @@ impl Default for Maps {
 /// [earlier frame showed](crate::FitInput::demand), or else of what rays through the boxes find. They are whole: the
 /// last one holds all receivers in view, so that a late or wrong count costs sharpness and never coverage.
 ///
-/// A lens below 3 degrees of vertical view sees a thin strip of that plane, which slices may fit better. Windows need up to
-/// 4 times the resolution of the presets `focused-4` and `calm-4` at 1 degree, and 21 times at 0.2 degrees. They need up to
-/// 1.8 times from 5 to 20 degrees, and 1.5 times from 50 to 170 degrees.
+/// A lens below 3 degrees of vertical view sees a thin strip of that plane, which slices may fit better, as they do above
+/// 120 degrees. Windows need up to 2.5 times the resolution of the presets `focused-4` and `calm-4` at 1 degree, and 3.7
+/// times at 0.2 degrees. They need up to 1.7 times from 5 to 120 degrees, and 3.1 times at 170 degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Windows {
