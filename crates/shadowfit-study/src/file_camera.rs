@@ -46,6 +46,13 @@ pub fn camera_reaches(scene: &Scene, bounds: &Aabb) -> Vec<f32> {
     reaches
 }
 
+/// Returns the near distance of a perspective lens that suits a scene's bounds, in metres.
+pub fn near_of(bounds: &Aabb) -> f32 {
+    // A scene of one point has no size.
+    let radius = (bounds.max - bounds.min).length() * 0.5;
+    if radius > 0.0 { radius * 0.005 } else { 5e-6 }
+}
+
 /// Returns a camera of a scene in a pose, for pictures of `aspect` (width divided by height). `reach` is the camera's
 /// distance from [`camera_reaches`], in metres. The picture keeps the camera's vertical field of view or height, and its
 /// width follows from `aspect`. `None` if the camera's node has no size.

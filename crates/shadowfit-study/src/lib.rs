@@ -36,7 +36,7 @@ pub use background::{in_background, in_background_async, next_turn};
 pub use background_judge::{BackgroundJudge, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
-pub use file_camera::{camera_reaches, file_camera};
+pub use file_camera::{camera_reaches, file_camera, near_of};
 pub use fits::{RayUse, see_by_rays};
 pub use frame::atmosphere;
 pub use judging::{Judging, SharedTruth};

@@ -15,10 +15,9 @@ use shadowfit_egui::Artefact;
 use shadowfit_params::Inputs;
 use shadowfit_params::tool::{Settings, ViewMode};
 use shadowfit_render::FlyCamera;
-use shadowfit_study::PosedScene;
+use shadowfit_study::{PosedScene, near_of};
 
 use crate::narration;
-use crate::stage::near_of;
 use crate::view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 
 /// Height of a shadow texel on screen when acne is shown, as a share of the picture's height: a few

@@ -36,7 +36,6 @@ use shadowfit_study::{PrepareError, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapError;
 
 use compare::Other;
-pub(crate) use home::near_of;
 pub(crate) use live::judged_figures;
 pub(crate) use sample::SampleShow;
 use shot::Shot;

@@ -9,9 +9,8 @@ use gltf::json::accessor::{Accessor, ComponentType, sparse::Sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, buffer};
 
-use super::container::MAX_FILE_BYTES;
 use super::extensions::{COMPRESSED, DECOMPRESS};
-use super::uri::{Folder, read_uri};
+use super::uri::{Folder, MAX_FILE_BYTES, read_uri};
 use crate::error::Problem;
 
 /// Elements that one import may decode. Accessors may overlap, so that the size of a file alone does not bound the memory;

@@ -10,9 +10,6 @@ use gltf::json::{Root, Value, deserialize, serialize};
 use super::{extensions, material, repair, transforms};
 use crate::{SceneError, Transform};
 
-/// Largest file read, glTF and buffers alike: what a GLB can hold at most.
-pub(crate) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
-
 /// What some editors write before UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 

@@ -7,8 +7,7 @@ use std::collections::HashMap;
 use gltf::json::{Root, image as json};
 
 use super::accessor::Reader;
-use super::container::MAX_FILE_BYTES;
-use super::uri::{Folder, read_uri};
+use super::uri::{Folder, MAX_FILE_BYTES, read_uri};
 use crate::Image;
 
 /// Greatest width and height, in pixels: the texture size that every GPU of the last decade has.

@@ -50,7 +50,7 @@ use self::notes::Notes;
 pub use self::size::SceneSize;
 use self::uri::Folder;
 #[cfg(not(target_family = "wasm"))]
-use self::uri::{file_size, read_file};
+use self::uri::{MAX_FILE_BYTES, file_size, read_file};
 use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Scene, SceneError, Skin};
 
@@ -96,7 +96,7 @@ pub fn load_gltf_with_progress(
 ) -> Result<Scene, SceneError> {
     let size = SceneSize::of_file(file_size(path));
     progress(LoadStep::Read, &size);
-    let bytes = read_file(path, container::MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
+    let bytes = read_file(path, MAX_FILE_BYTES).map_err(|reason| SceneError::Unreadable {
         path: path.to_owned(),
         reason,
         hint: "Check the path and its permissions",

@@ -12,6 +12,9 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 
+/// Largest file read, glTF and buffers alike: what a GLB can hold at most.
+pub(crate) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
+
 /// Padding is optional: exporters disagree about it.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,

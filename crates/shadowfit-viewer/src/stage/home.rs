@@ -5,7 +5,7 @@ use shadowfit::{Aabb, Camera, Lens};
 use shadowfit_params::set_from_str;
 use shadowfit_params::tool::{CameraSettings, Settings};
 use shadowfit_render::FlyCamera;
-use shadowfit_study::PosedScene;
+use shadowfit_study::{PosedScene, near_of};
 
 use super::Stage;
 
@@ -41,11 +41,6 @@ pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
 fn radius(bounds: &Aabb) -> f32 {
     let radius = (bounds.max - bounds.min).length() * 0.5;
     if radius > 0.0 { radius } else { 1e-3 }
-}
-
-/// Returns the near distance of a perspective lens that suits a scene's bounds, in metres.
-pub(crate) fn near_of(bounds: &Aabb) -> f32 {
-    radius(bounds) * 0.005
 }
 
 /// The number of a sun of a file by its index.

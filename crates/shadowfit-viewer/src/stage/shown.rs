@@ -225,7 +225,7 @@ mod tests {
         stage.show_found(found);
         assert_eq!(stage.settings.light.azimuth, first.light.azimuth + 0.5);
         assert_ne!(stage.settings.technique, first.technique);
-        let near = crate::stage::near_of(&stage.bounds());
+        let near = shadowfit_study::near_of(&stage.bounds());
         assert_eq!((stage.settings.camera.height, stage.settings.camera.near), (None, near));
         // A second artefact follows the technique from before the first one.
         stage.settings.camera.fov_y *= 1.1;
