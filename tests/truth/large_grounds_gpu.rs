@@ -2,6 +2,7 @@
 //! preset and in any format of its maps.
 
 use std::collections::BTreeMap;
+use std::num::NonZero;
 use std::sync::Mutex;
 
 use shadowfit::glam::Vec3;
@@ -66,8 +67,8 @@ impl Cell {
 }
 
 /// Pixels that may lie at an edge of a shadow that the picture does not show, so that the judge does not know them as
-/// pixels of an edge.
-const UNSEEN_EDGES: u64 = 6;
+/// pixels of an edge. `aabb-1`, whose texels are the widest, has 9 in one picture.
+const UNSEEN_EDGES: u64 = 9;
 
 /// Numbers of values of a cell's properties.
 const COUNTS: [usize; 5] = [GROUNDS.len(), WALLS.len(), SUNS.len(), PRESETS.len(), MapFormat::ALL.len()];
@@ -75,6 +76,15 @@ const COUNTS: [usize; 5] = [GROUNDS.len(), WALLS.len(), SUNS.len(), PRESETS.len(
 #[test]
 fn no_plane_shadows_itself_on_grounds_of_any_size() {
     assert_no_false_shadow(&all_pairs(&COUNTS));
+}
+
+/// Rays that start too near to the ground hit it, and those that start above it by more move the edges of shadows.
+#[test]
+fn exact_edges_are_right_on_a_ground_of_100_km() {
+    let of = |value: f32, all: &[f32]| all.iter().position(|other| *other == value).expect("a value of the sweep");
+    let exact = PRESETS.iter().position(|preset| preset.name == "exact-4").expect("a preset");
+    let cell = |sun: f32| vec![of(1e5, &GROUNDS), of(2.0, &WALLS), of(sun, &SUNS), exact, 0];
+    assert_no_false_shadow(&[30.0, 60.0, 90.0].map(cell));
 }
 
 #[test]
@@ -100,7 +110,7 @@ fn assert_no_false_shadow(rows: &[Vec<usize>]) {
         }
     };
     // Each thread has a device of its own.
-    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get()).min(rows.len());
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(rows.len());
     std::thread::scope(|scope| {
         for thread in 0..threads {
             scope.spawn(move || rows.iter().skip(thread).step_by(threads).for_each(judge));

@@ -10,6 +10,8 @@ const FAR: f32 = 20.0;
 const ROOM_BEHIND: f32 = 1.25;
 /// Number of poses of an animation in which distances are measured.
 const SAMPLES: usize = 17;
+/// Number of nodes that are placed for that in all. Animations beyond it count no more.
+const MOST_NODES: usize = 4_000_000;
 /// Least near distance of an orthographic camera, as a share of its far distance. Such a camera is moved back by the distance
 /// that it lacks, which changes no pixel: several maps divide the logarithm of the depth.
 const LEAST_NEAR: f32 = 1e-3;
@@ -37,7 +39,9 @@ pub fn camera_reaches(scene: &Scene, bounds: &Aabb) -> Vec<f32> {
     widen(&rest);
     let is_open = |camera: &SceneCamera| !matches!(camera.lens, FileLens::Perspective { far: Some(_), .. });
     if scene.cameras.iter().any(is_open) {
-        for (index, animation) in scene.animations.iter().enumerate() {
+        // A file may have any number of animations.
+        let poses = (MOST_NODES / scene.nodes.len().max(1)).max(SAMPLES);
+        for (index, animation) in scene.animations.iter().enumerate().take(poses / SAMPLES) {
             // The end itself is the start of the next turn.
             let (step, last) = (animation.duration / (SAMPLES - 1) as f32, animation.duration.next_down());
             (0..SAMPLES).for_each(|sample| widen(&scene.pose(Some(index), (sample as f32 * step).min(last))));

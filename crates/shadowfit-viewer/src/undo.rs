@@ -5,6 +5,7 @@ use shadowfit::Technique;
 use shadowfit_classics::SampleValues;
 use shadowfit_params::PARAMETERS;
 use shadowfit_params::tool::Settings;
+use shadowfit_render::FlyCamera;
 
 use crate::stage::ArtefactShow;
 
@@ -91,14 +92,19 @@ pub(crate) struct History {
     last: Option<State>,
     /// Last height of an orthographic picture without a camera of the file, in metres.
     height: Option<f32>,
+    /// Last place of a flown camera.
+    flown: Option<FlyCamera>,
 }
 
 impl History {
-    /// Notes the present state, at a time in seconds.
-    pub(crate) fn feed(&mut self, seconds: f64, state: &State) {
+    /// Notes the present state and the camera's place, at a time in seconds.
+    pub(crate) fn feed(&mut self, seconds: f64, state: &State, place: FlyCamera) {
         let still = state.still();
         let camera = &state.settings.camera;
-        self.height = camera.height.filter(|_| camera.file.is_none()).or(self.height);
+        if camera.file.is_none() {
+            self.height = camera.height.or(self.height);
+            self.flown = Some(place);
+        }
         self.undoer.feed_state(seconds, &still);
         if self.last.as_ref() != Some(&still) {
             self.name(&still);
@@ -124,6 +130,12 @@ impl History {
         Some(state.with_motion_of(now, self.height))
     }
 
+    /// Returns the last place of a flown camera if the way from one state to another leaves a camera of the file.
+    pub(crate) fn flown_again(&self, from: &State, to: &State) -> Option<FlyCamera> {
+        let leaves = from.settings.camera.file.is_some() && to.settings.camera.file.is_none();
+        self.flown.filter(|_| leaves)
+    }
+
     /// Name of the change that undo would take back.
     pub(crate) fn undo_name(&self) -> Option<&str> {
         self.undo.as_deref()
@@ -147,6 +159,8 @@ impl History {
 mod tests {
     use super::*;
 
+    const STILL: FlyCamera = FlyCamera { position: glam::DVec3::ZERO, yaw: 0.0, pitch: 0.0, roll: 0.0 };
+
     fn state(count: u32) -> State {
         let settings = Settings::default().with_technique(Technique::default().with_count(count));
         State { settings, other: None, artefact: ArtefactShow::default(), sample: None }
@@ -159,7 +173,7 @@ mod tests {
         let mut feed = |history: &mut History, state: &State| {
             for _ in 0..40 {
                 seconds += 0.1;
-                history.feed(seconds, state);
+                history.feed(seconds, state, STILL);
             }
         };
         let (four, three) = (state(4), state(3));
@@ -176,7 +190,7 @@ mod tests {
     fn rest(history: &mut History, seconds: &mut f64, state: &State) {
         for _ in 0..40 {
             *seconds += 0.1;
-            history.feed(*seconds, state);
+            history.feed(*seconds, state, STILL);
         }
     }
 
@@ -218,14 +232,14 @@ mod tests {
         moving.settings.light.animate = true;
         for frame in 0..100 {
             moving.settings.light.azimuth = frame as f32 * 0.01;
-            history.feed(f64::from(frame) * 0.1, &moving);
+            history.feed(f64::from(frame) * 0.1, &moving, STILL);
         }
         assert_eq!(history.undo_name(), None);
         let mut fewer = moving.clone();
         fewer.settings.technique = fewer.settings.technique.with_count(2);
         for frame in 100..200 {
             fewer.settings.light.azimuth = frame as f32 * 0.01;
-            history.feed(f64::from(frame) * 0.1, &fewer);
+            history.feed(f64::from(frame) * 0.1, &fewer, STILL);
         }
         let back = history.undo(&fewer).expect("a change");
         assert_eq!(back.settings.technique.maps.count(), 4);

@@ -255,7 +255,7 @@ impl Viewer {
         self.line = None;
         if self.has_scene {
             let state = self.state();
-            self.history.feed(self.clock, &state);
+            self.history.feed(self.clock, &state, self.stage.camera);
             self.last_state = Some(state);
         }
         if self.clock - self.saved_at > SAVE_EVERY {

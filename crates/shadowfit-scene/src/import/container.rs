@@ -41,9 +41,12 @@ pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> R
 /// The JSON in a form that the gltf crate reads, and its content. Where the crate cannot read it, other versions of glTF
 /// and required extensions are refused first, since their own layout may be the reason.
 fn readable<'a>(path: &Path, json: &'a [u8]) -> Result<(Cow<'a, [u8]>, Root), SceneError> {
+    // The crate reads animation pointers beside a node, and leaves them out.
+    let has_pointers = |root: &Root| root.extensions_used.iter().any(|name| name == "KHR_animation_pointer");
     let unread = match deserialize::from_slice(json) {
-        Ok(root) => return Ok((Cow::Borrowed(json), root)),
-        Err(error) => error,
+        Ok(root) if !has_pointers(&root) => return Ok((Cow::Borrowed(json), root)),
+        Ok(_) => None,
+        Err(error) => Some(error),
     };
     let malformed = |(element, reason)| malformed(path, element, reason);
     let mut loose: Value = deserialize::from_slice(json).map_err(|error| malformed(("JSON", error.to_string())))?;
@@ -53,7 +56,7 @@ fn readable<'a>(path: &Path, json: &'a [u8]) -> Result<(Cow<'a, [u8]>, Root), Sc
     repair::complete(&mut loose);
     let repaired = serialize::to_vec(&loose).and_then(|json| Ok((deserialize::from_slice(&json)?, json)));
     // The first error has the line and column of the file.
-    let (root, json) = repaired.map_err(|_| malformed(("JSON", unread.to_string())))?;
+    let (root, json) = repaired.map_err(|error| malformed(("JSON", unread.unwrap_or(error).to_string())))?;
     Ok((Cow::Owned(json), root))
 }
 

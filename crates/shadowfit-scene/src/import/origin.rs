@@ -25,13 +25,17 @@ const NEARER: f64 = 4.0;
 /// Least distance at which neighbouring f32 positions are more than a millimetre apart, in metres.
 const COARSE: f64 = 16_384.0;
 
+/// Share of a scene's triangles that counts as many.
+const MANY: f64 = 0.4;
+
 /// Sets the origin of a scene to the middle of most of its triangles if these lie far from the origin of the file. Notes
 /// the new origin, and parts that are placed coarsely all the same.
 pub(super) fn place(scene: &mut Scene, tree: &Tree, reader: &Reader, notes: &mut Notes) -> Result<(), Problem> {
     let parts = parts(scene, tree, reader)?;
     let middle = DVec3::from_array([0, 1, 2].map(|axis| median(&parts, |part| part.middle[axis])));
     let reach = |origin: DVec3| median(&parts, |part| part.farthest(origin));
-    if middle.abs().max_element() > NEAR_ORIGIN && reach(middle) * NEARER <= reach(DVec3::ZERO) {
+    let is_far = middle.abs().max_element() > NEAR_ORIGIN;
+    if is_far && reach(middle) * NEARER <= reach(DVec3::ZERO) && !has_place_here(&parts, middle) {
         scene.origin = middle.round();
         let [x, y, z] = scene.origin.to_array();
         notes.add(format!(
@@ -48,6 +52,14 @@ pub(super) fn place(scene: &mut Scene, tree: &Tree, reader: &Reader, notes: &mut
         ));
     }
     Ok(())
+}
+
+/// Whether many triangles lie near the origin of the file, and would be placed coarsely from another one: a place with a
+/// detailed backdrop far away.
+fn has_place_here(parts: &[Part], origin: DVec3) -> bool {
+    let all: u64 = parts.iter().map(|part| part.triangles).sum();
+    let here = parts.iter().filter(|part| part.farthest(DVec3::ZERO) <= NEAR_ORIGIN && part.nearest(origin) >= COARSE);
+    here.map(|part| part.triangles).sum::<u64>() as f64 >= MANY * all as f64
 }
 
 /// World bounds of an instance at rest, relative to the origin of the file.

@@ -109,6 +109,11 @@ fn scenes_near_their_origin_and_those_around_it_stay() {
         let scene = file(&[node.as_str(), "{}", "{}"].join(","), "");
         assert_eq!(scene.origin != DVec3::ZERO, is_moved, "{place}");
     }
+    // Two triangles here, and a backdrop of three.
+    let far = r#""mesh":0,"translation":[50000,0,0]"#;
+    let backdrop =
+        format!(r#"{{"mesh":0,"children":[3]}},{{{far},"children":[4]}},{{{far}}},{{"mesh":0}},{{"mesh":0}}"#);
+    assert_eq!(file(&backdrop, "").origin, DVec3::ZERO);
     let wide = r#"{"mesh":0,"translation":[-1000000,0,0]},{"mesh":0,"translation":[1010000,0,0]},{}"#;
     assert_eq!(file(wide, "").origin, DVec3::ZERO);
 }

@@ -83,6 +83,22 @@ fn pointers_to_transforms_and_weights_of_nodes_move_them_and_others_are_noted() 
     assert!(scene.notes.iter().any(is_noted), "{:?}", scene.notes);
 }
 
+/// The extension forbids a node, and the gltf crate reads such a file as it is.
+#[test]
+fn a_pointer_beside_a_node_moves_the_node_that_it_points_at() {
+    let mut build = Build::default();
+    let positions = build.floats("VEC3", 3, &TRIANGLE);
+    let times = build.floats("SCALAR", 1, &[0.0, 1.0]);
+    let vectors = build.floats("VEC3", 3, &[0.0, 0.0, 0.0, 4.0, 4.0, 4.0]);
+    build.members(&format!(
+        r#""nodes":[{{"mesh":0}},{{}}],"extensionsUsed":["KHR_animation_pointer"],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":{positions}}}}}]}}],
+        "animations":[{{"samplers":[{{"input":{times},"output":{vectors}}}],"channels":[{{"sampler":0,"target":{{"node":1,
+        "path":"pointer","extensions":{{"KHR_animation_pointer":{{"pointer":"/nodes/0/translation"}}}}}}}}]}}]"#
+    ));
+    assert_eq!(translation(&build.load("beside").unwrap(), 0.5), Vec3::splat(2.0));
+}
+
 #[test]
 fn linear_translation_interpolates_clamps_at_the_start_and_loops() {
     let scene = moving("translation", "LINEAR", "VEC3", 3, &[1.0, 2.0], &[0.0, 0.0, 0.0, 4.0, 0.0, 8.0]).unwrap();

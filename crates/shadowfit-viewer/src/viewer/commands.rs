@@ -225,14 +225,23 @@ impl Viewer {
     fn go_back(&mut self) {
         let now = self.state();
         if let Some(state) = self.history.undo(&now) {
-            self.restore_state(state);
+            self.go_to(&now, state);
         }
     }
 
     fn go_forward(&mut self) {
         let now = self.state();
         if let Some(state) = self.history.redo(&now) {
-            self.restore_state(state);
+            self.go_to(&now, state);
+        }
+    }
+
+    /// Restores a state, and the place to which the camera was flown.
+    fn go_to(&mut self, now: &State, state: State) {
+        let flown = self.history.flown_again(now, &state);
+        self.restore_state(state);
+        if let Some(place) = flown {
+            self.stage.set_camera(place);
         }
     }
 

@@ -117,7 +117,7 @@ impl DemandView {
             corner: [left, top],
             size: [width, height],
             step: self.step(),
-            pixels: height as f32 / PIXELS * self.shown() as f32,
+            pixels: height as f32 / PIXELS * self.frustum.height_in_picture(&self.clip_from_world),
             exponent: ((space.texel.to_bits() >> 23) & 0xff).cast_signed(),
             near: first,
             far,
@@ -153,17 +153,6 @@ impl DemandView {
         let middle = (self.frustum.corners[0] + self.frustum.corners[2]) * 0.5;
         let forward = self.frustum.forward;
         forward.extend(self.frustum.near - forward.dot(middle)).to_array()
-    }
-
-    /// Share of the picture's height that the frustum takes, in eighths: it leaves out what a tilted near plane hides.
-    fn shown(&self) -> f64 {
-        let clip_from_world = self.clip_from_world.as_dmat4();
-        let [top, bottom] = [4, 7].map(|corner: usize| {
-            let clip = clip_from_world * self.frustum.corners[corner].as_dvec3().extend(1.0);
-            clip.y / clip.w
-        });
-        let eighths = ((top - bottom).abs() * 4.0).round();
-        if eighths >= 1.0 { eighths / 8.0 } else { 1.0 }
     }
 
     /// Width of a pixel that faces the eye, of a picture whose part in the frustum is [`PIXELS`] high, in metres: at the

@@ -32,7 +32,7 @@ pub struct ResolveUniform {
     pub point_reach: f32,
     pub unsure_maps: u32,
     pub sun_tangent: f32,
-    pub padding_0: u32,
+    pub vertex_rounding: f32,
     pub padding_1: u32,
     pub padding_2: u32,
     pub points: [[f32; 4]; MAX_POINTS],

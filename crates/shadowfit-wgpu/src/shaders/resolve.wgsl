@@ -37,7 +37,8 @@ struct Resolve {
     unsure_maps: u32,
     // Tangent of the sun's angular radius; 0 for a point.
     sun_tangent: f32,
-    padding_0: u32,
+    // What positions in the largest triangles may be rounded by, in metres.
+    vertex_rounding: f32,
     padding_1: u32,
     padding_2: u32,
     // xy: from the pixel's first sample, in pixels; zw: from the sun's centre, in its radii.

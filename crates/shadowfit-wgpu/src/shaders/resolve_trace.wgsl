@@ -85,11 +85,14 @@ fn unsure_at(index: u32) -> Unsure {
 
 // Whether the light reaches a point of a pixel: 1 or 0.
 fn lit_at(unsure: Unsure, place: vec2<f32>, in_sun: vec2<f32>) -> f32 {
-    let above = unsure.surface.normal * height_of(unsure.surface);
-    let start = point_of(unsure.pixel, unsure.surface, place) + above + resolve.eye;
+    let height = height_of(unsure.surface);
+    let point = point_of(unsure.pixel, unsure.surface, place) + unsure.surface.normal * height + resolve.eye;
     let aside = in_sun * resolve.sun_tangent;
     let beside = unsure.across.x * aside.x + unsure.across.y * aside.y;
-    return select(1.0, 0.0, shadowfit_rays_blocked(start, normalize(shadowfit_receiver.to_light + beside)));
+    let ray = normalize(shadowfit_receiver.to_light + beside);
+    // Farther than large triangles are rounded by, along the ray: this moves no edge of a shadow.
+    let farther = max(resolve.vertex_rounding - height, 0.0) / max(dot(unsure.surface.normal, ray), SHADOWFIT_MIN_COSINE);
+    return select(1.0, 0.0, shadowfit_rays_blocked(point + ray * farther, ray));
 }
 
 // What the threads of a workgroup find: of each pixel what the map has in the way, then for each ray how much more light it

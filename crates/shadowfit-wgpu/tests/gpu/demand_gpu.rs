@@ -110,9 +110,14 @@ fn orthographic(near: f32) -> DemandView {
 /// A view through a portal that leans to a side and hides the lower part of the picture: its near plane is the portal (E.
 /// Lengyel, "Oblique view frustum depth projection and clipping", 2005).
 fn portal(depth: DepthConvention) -> DemandView {
+    behind_plane(depth, DVec3::new(0.3, 0.5, -1.0), 2.0)
+}
+
+/// A view whose near plane lies at a distance from the eye, in metres, along a normal.
+fn behind_plane(depth: DepthConvention, normal: DVec3, distance: f64) -> DemandView {
     let view = view(depth, SIZE);
     let matrix = view.clip_from_world.as_dmat4();
-    let plane = DVec3::new(0.3, 0.5, -1.0).normalize().extend(-2.0);
+    let plane = normal.normalize().extend(-distance);
     let sides = matrix.inverse().transpose() * plane;
     let corner = DVec4::new(sides.x.signum(), sides.y.signum(), f64::from(depth.far()), 1.0);
     let plane = plane / plane.dot(matrix.inverse() * corner);
@@ -128,6 +133,7 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
     let gpu = Engine::shared();
     let plain = view(DepthConvention::ZeroToOne, SIZE);
     let reversed = view(DepthConvention::Reversed, SIZE);
+    let lower_half = behind_plane(DepthConvention::Reversed, DVec3::NEG_Y, 0.5);
     let camera = camera();
     let clip_from_view = infinite(camera.clip_from_view(DepthConvention::Reversed), camera.near);
     let endless = DemandView { clip_from_world: clip_from_view * camera.view_from_world(), ..reversed };
@@ -149,9 +155,12 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
         ("to 20 m", near),
         ("plain portal", portal(DepthConvention::ZeroToOne)),
         ("reversed portal", portal(DepthConvention::Reversed)),
+        ("the lower half of a picture", lower_half),
         ("orthographic", orthographic(1.5)),
         ("orthographic from behind the eye", orthographic(-5.0)),
     ];
+    let share = lower_half.frustum.height_in_picture(&lower_half.clip_from_world);
+    assert!((0.3..0.8).contains(&share), "{share} of the picture is shown");
     for (name, view) in cases {
         compared(&gpu, name, &view, &Drawing::new(SIZE), 1);
     }

@@ -69,7 +69,7 @@ impl Picture<'_> {
     }
 
     /// Position of a pixel's point relative to the eye, and its movements on its surface for a pixel to the right and one
-    /// down of a picture that is [`PIXELS`] high.
+    /// down of a picture whose part in the frustum is [`PIXELS`] high.
     fn point(&self, x: i32, y: i32) -> Option<[DVec3; 3]> {
         let depth = self.depth(x, y)?;
         let [across, along] = [(1, 0), (0, 1)].map(|(i, j)| {
@@ -78,7 +78,8 @@ impl Picture<'_> {
             [next, previous].into_iter().flatten().min_by(|a, b| a.abs().total_cmp(&b.abs()))
         });
         let (x, y) = (f64::from(x), f64::from(y));
-        let scale = f64::from(self.view.rectangle[3]) / f64::from(PIXELS) / (2.0 * SHARE);
+        let shown = f64::from(self.view.frustum.height_in_picture(&self.view.clip_from_world));
+        let scale = f64::from(self.view.rectangle[3]) * shown / f64::from(PIXELS) / (2.0 * SHARE);
         let moved = |i: f64, j: f64, change: f64| {
             let at = |share: f64| self.unproject(x + share * i, y + share * j, depth + share * change);
             (at(SHARE) - at(-SHARE)) * scale
@@ -111,7 +112,8 @@ impl Picture<'_> {
         if ray.dot(self.view.frustum.forward.as_dvec3()) < 0.0 { -ray } else { ray }
     }
 
-    /// Width of a pixel that faces the eye at a view depth, of a picture that is [`PIXELS`] high, in metres.
+    /// Width of a pixel that faces the eye at a view depth, of a picture whose part in the frustum is [`PIXELS`] high, in
+    /// metres.
     fn pixel_width(&self, (x, y): (i32, i32), depth: f64) -> f64 {
         let frustum = &self.view.frustum;
         let forward = frustum.forward.as_dvec3();
@@ -124,6 +126,7 @@ impl Picture<'_> {
             let [of_a, of_b] = [a, b].map(|p| forward.dot(p.truncate()) + (offset - depth) * p.w);
             (a.truncate() * of_b - b.truncate() * of_a) / (a.w * of_b - b.w * of_a)
         };
-        at(f64::from(y)).distance(at(f64::from(y) + 1.0)) * height / f64::from(PIXELS)
+        let shown = f64::from(self.view.frustum.height_in_picture(&self.view.clip_from_world));
+        at(f64::from(y)).distance(at(f64::from(y) + 1.0)) * height * shown / f64::from(PIXELS)
     }
 }

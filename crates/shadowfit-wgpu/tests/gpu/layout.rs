@@ -159,7 +159,7 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
             point_reach,
             unsure_maps,
             sun_tangent,
-            padding_0,
+            vertex_rounding,
             padding_1,
             padding_2,
             points,

@@ -6,6 +6,7 @@ use super::grid::PIXELS;
 use super::histogram::needed_texel;
 use super::seen::Seen;
 use crate::base::{DepthConvention, FitError, checks};
+use crate::view::ViewFrustum;
 
 /// A depth buffer that was read back.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +20,8 @@ pub struct DepthRows<'a> {
     pub clip_from_world: Mat4,
     /// Depth convention of that matrix. Buffers of OpenGL store -1..1 as 0..1: give them as they are.
     pub depth: DepthConvention,
-    /// The view's forward direction, of unit length, in world axes.
-    pub forward: Vec3,
+    /// Frustum of the view, for the view depths of points and for the part of the picture that it shows.
+    pub view: &'a ViewFrustum,
 }
 
 impl Seen {
@@ -39,19 +40,21 @@ impl Seen {
         let picture = Picture::new(rows)?;
         checks::within("the stride of depth rows", f64::from(stride), 1.0, f64::from(u32::MAX))?;
         let stride = stride as usize;
+        // A grid is counted for pictures of a certain height.
+        let pixels = picture.height as f32 / PIXELS * rows.view.height_in_picture(&rows.clip_from_world);
         // From the middle of the first stride, with a neighbour on all sides.
         let first = |pixels: usize| (stride / 2).clamp(1, pixels - 2);
         for y in (first(picture.height)..picture.height - 1).step_by(stride) {
             for x in (first(picture.width)..picture.width - 1).step_by(stride) {
                 if let Some(point) = picture.point(x, y) {
-                    self.count_point(&point, rows.forward, picture.height);
+                    self.count_point(&point, rows.view.forward, pixels);
                 }
             }
         }
         Ok(())
     }
 
-    fn count_point(&mut self, point: &Point, forward: Vec3, height: usize) {
+    fn count_point(&mut self, point: &Point, forward: Vec3, pixels: f32) {
         let Point { position, ray, right, down, pixel } = *point;
         let depth = position.dot(forward.as_dvec3());
         // Shadows end there.
@@ -68,8 +71,6 @@ impl Seen {
             let texel = f64::from(needed_texel(right, down, direction));
             self.count_depth(depth as f32, libm::log2(pixel / texel) as f32);
         }
-        // A grid is counted for pictures of a certain height.
-        let pixels = height as f32 / PIXELS;
         if let Some(cell) = space.index(position.as_vec3(), normal.as_vec3(), right * pixels, down * pixels) {
             self.count_cell(cell);
         }
@@ -116,7 +117,7 @@ impl<'a> Picture<'a> {
             DepthConvention::Reversed => (0.0, (1.0, 0.0)),
             DepthConvention::NegativeOneToOne => (1.0, (2.0, -1.0)),
         };
-        let forward = rows.forward.as_dvec3();
+        let forward = rows.view.forward.as_dvec3();
         Ok(Self { depths: rows.depths, width, height, world_from_clip, forward, far, depth })
     }
 
@@ -220,7 +221,7 @@ mod tests {
         let direction = Vec3::new(0.3, -0.8, 0.2);
         let mut seen = Seen::new(SeenSpace::new(&view, direction, Vec3::Y, 300.0)?);
         let clip_from_world = camera().clip_from_world(depth);
-        seen.count_rows(&DepthRows { depths, width: WIDTH, clip_from_world, depth, forward: view.forward }, stride)?;
+        seen.count_rows(&DepthRows { depths, width: WIDTH, clip_from_world, depth, view: &view }, stride)?;
         Ok(seen)
     }
 
@@ -249,7 +250,7 @@ mod tests {
             let space = SeenSpace::new(&view, Vec3::new(0.3, -0.8, 0.2), Vec3::Y, distance).expect("a distance");
             let (mut seen, depth) = (Seen::new(space), DepthConvention::Reversed);
             let clip_from_world = camera().clip_from_world(depth);
-            let rows = DepthRows { depths: &depths, width: WIDTH, clip_from_world, depth, forward: view.forward };
+            let rows = DepthRows { depths: &depths, width: WIDTH, clip_from_world, depth, view: &view };
             seen.count_rows(&rows, 1).expect("a picture");
             (seen.demand().counts.iter().sum::<u32>(), seen.histogram().bins.iter().sum::<u32>())
         };
@@ -270,7 +271,8 @@ mod tests {
         let direction = Vec3::new(0.6, 0.0, -0.8);
         let mut seen = Seen::new(SeenSpace::new(&view, direction, Vec3::Y, 100.0).expect("a view"));
         let clip_from_world = camera.clip_from_world(depth);
-        seen.count_rows(&DepthRows { depths: &depths, width: 64, clip_from_world, depth, forward }, 1).expect("rows");
+        seen.count_rows(&DepthRows { depths: &depths, width: 64, clip_from_world, depth, view: &view }, 1)
+            .expect("rows");
         assert_eq!(seen.demand().counts.iter().sum::<u32>(), 62 * 62);
     }
 
@@ -282,7 +284,7 @@ mod tests {
             width: WIDTH,
             clip_from_world: camera().clip_from_world(DepthConvention::Reversed),
             depth: DepthConvention::Reversed,
-            forward: camera().forward,
+            view: &camera().frustum().expect("a camera"),
         };
         let picture = Picture::new(&rows).expect("a picture");
         for x in [1, 40, 158] {

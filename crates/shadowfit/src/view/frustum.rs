@@ -139,6 +139,19 @@ impl ViewFrustum {
         self.near >= self.far
     }
 
+    /// Returns the share of a picture's height that the frustum takes, in eighths: it leaves out the part that a tilted near
+    /// plane hides. `clip_from_world` is the matrix that the picture is drawn with, for positions relative to
+    /// [`Self::origin`].
+    pub fn height_in_picture(&self, clip_from_world: &Mat4) -> f32 {
+        let clip_from_world = clip_from_world.as_dmat4();
+        let [top, bottom] = [4, 7].map(|corner: usize| {
+            let clip = clip_from_world * self.corners[corner].as_dvec3().extend(1.0);
+            clip.y / clip.w
+        });
+        let eighths = libm::round((top - bottom).abs() * 4.0);
+        if eighths >= 1.0 { (eighths / 8.0) as f32 } else { 1.0 }
+    }
+
     /// Whether a part of the view lies before a view depth, in metres. A view of which no part lies before the shadow
     /// distance is shown without shadows.
     pub const fn begins_before(&self, distance: f32) -> bool {

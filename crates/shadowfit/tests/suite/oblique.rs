@@ -415,7 +415,7 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
             let depths: Vec<f32> = (0..SIZE[0] * SIZE[1]).map(stored).collect();
             let mut seen = shadowfit::Seen::new(space);
             let clip_from_world = clip_from_world.as_mat4();
-            let rows = DepthRows { depths: &depths, width: SIZE[0], clip_from_world, depth, forward: view.forward };
+            let rows = DepthRows { depths: &depths, width: SIZE[0], clip_from_world, depth, view: &view };
             seen.count_rows(&rows, 1).unwrap();
             let bins = seen.histogram().bins.to_vec();
             (seen.demand().counts.iter().sum::<u32>(), bins.iter().sum::<u32>(), bins)

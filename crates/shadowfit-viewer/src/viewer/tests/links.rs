@@ -309,6 +309,26 @@ fn gpu_undo_goes_back_to_the_camera_of_the_file_before() {
 }
 
 #[test]
+fn gpu_redo_goes_back_to_where_the_camera_was_flown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("views.gltf");
+    write_views(&path);
+    let mut viewer = ready(&[path.to_str().expect("text")], None);
+    pass(&mut viewer, 2.0);
+    let view = |viewer: &Viewer| (viewer.stage.settings.camera.file, viewer.stage.camera);
+    let first = view(&viewer);
+    let mut place = viewer.stage.camera;
+    place.position.x += 3.0;
+    viewer.stage.set_camera(place);
+    pass(&mut viewer, 2.0);
+    for (command, expected) in [(Command::Undo, first), (Command::Redo, (None, place))] {
+        run(&mut viewer, command);
+        frame(&mut viewer);
+        assert_eq!(view(&viewer), expected);
+    }
+}
+
+#[test]
 fn gpu_a_picture_leaves_the_camera_and_gives_the_sun_to_its_own_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     let [path, picture] = ["views.gltf", "picture.png"].map(|name| folder.path().join(name));

@@ -122,7 +122,7 @@ fn sun(elevation: f32) -> Vec3 {
 fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov: f32) -> Seen {
     let fit = &technique.fit;
     let space = SeenSpace::new(&view.frustum(), light, fit.up, fit.max_distance).unwrap();
-    let pixel = 2.0 * (fov.to_radians() * 0.5).tan() / PIXELS as f32;
+    let pixel = 2.0 * (fov.to_radians() * 0.5).tan() / PIXELS;
     let mut seen = Seen::new(space);
     for hit in hits(view, world.origin, &world.boxes, f64::from(fit.max_distance)) {
         let [point, normal, right, down] = [hit.point, hit.normal, hit.right, hit.down].map(DVec3::as_vec3);
@@ -162,7 +162,7 @@ fn ratios(scene: &Scene, paths: u8, light: Vec3, fov: f32, others: &[&str]) -> V
         let of = |preset: &str| of_path(preset, scene, path, light, fov);
         of("windows-4") / others.iter().map(|preset| of(preset)).fold(f64::INFINITY, f64::min)
     };
-    (0..paths).map(ratio).filter(|ratio| ratio.is_finite()).collect()
+    (0..paths).map(ratio).filter(|ratio| !ratio.is_nan()).collect()
 }
 
 fn geometric_mean(values: &[f64]) -> f64 {
@@ -183,7 +183,8 @@ const HIGH_SUN_LIMIT: f64 = 1.8;
 fn windows_are_nearly_as_fine_as_slices_under_high_suns() {
     for scene in scenes() {
         let found = ratios(&scene, 4, sun(80.0), USUAL, &HISTOGRAM);
-        assert!(geometric_mean(&found) <= HIGH_SUN_LIMIT, "{}: {found:.2?}", scene.name);
+        let is_near = geometric_mean(&found) <= HIGH_SUN_LIMIT && greatest(&found) <= 2.0 * HIGH_SUN_LIMIT;
+        assert!(is_near, "{}: {found:.2?}", scene.name);
     }
 }
 
