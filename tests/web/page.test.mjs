@@ -243,8 +243,9 @@ function testTasks() {
     await viewer.keepTasks();
     const long = viewer.tasks.filter(({ duration }) => duration > LONGEST_TASK);
     context.diagnostic(`tasks of more than ${LONGEST_TASK} ms: ${JSON.stringify(long)}`);
-    // A busy machine may take the page's core away now and then; a viewer that blocked it would do so in each frame.
-    assert.ok(long.length <= 2, JSON.stringify(long));
+    // A busy machine takes the page's core away now and then, up to four times in a minute. A viewer that blocked the page
+    // would do so in each frame, hundreds of times.
+    assert.ok(long.length <= 6, JSON.stringify(long));
   });
 }
 
