@@ -1,4 +1,4 @@
-//! Grounds of 10 m to 100 km in one box, and casters as far away: a plane never shadows itself, under any sun, with any
+//! Grounds of 10 m to 100 km in one box, and casters 20 km away: a plane never shadows itself, under any sun, with any
 //! preset and in any format of its maps.
 
 use std::collections::BTreeMap;
@@ -78,7 +78,7 @@ fn no_plane_shadows_itself_on_grounds_of_any_size() {
     assert_no_false_shadow(&all_pairs(&COUNTS));
 }
 
-/// Rays that start too near to the ground hit it, and those that start above it by more move the edges of shadows.
+/// Rays that start too near to the ground hit it. Rays that start higher above it move the edges of shadows.
 #[test]
 fn exact_edges_are_right_on_a_ground_of_100_km() {
     let of = |value: f32, all: &[f32]| all.iter().position(|other| *other == value).expect("a value of the sweep");
@@ -109,7 +109,7 @@ fn assert_no_false_shadow(rows: &[Vec<usize>]) {
             println!("{}: {share:.3}% in false shadow", cell.name());
         }
     };
-    // Each thread has a device of its own.
+    // Each thread opens its own device.
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(rows.len());
     std::thread::scope(|scope| {
         for thread in 0..threads {
@@ -137,7 +137,7 @@ fn a_far_mountain_shadows_half_of_the_ground_with_all_presets_and_formats() {
 }
 
 /// Asserts that pictures of a ground are right. A mountain stands 20 km toward the sun, and its shadow ends along a line
-/// through the picture. The depth ranges of all maps are as long, so that the bias must be large.
+/// through the picture. The depth ranges of all maps are 20 km, too, so the bias must be large.
 fn assert_right_beside_a_mountain(techniques: impl Iterator<Item = (&'static Preset, MapFormat)>) {
     let (away, height) = (20e3, 3e3);
     let mountain = solid(Vec3::new(-8e3, 0.0, away), Vec3::new(0.0, height, away + 1e3));

@@ -199,9 +199,9 @@ fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Number, mut value: f64, la
     chosen.or_else(|| response.changed().then_some(value))
 }
 
-/// Returns a number as text: with its decimals, and on a logarithmic scale with as many more as a small value needs.
+/// Returns a number as text with its decimals. A small value on a logarithmic scale gets more of them.
 fn text(number: &Number, value: f64) -> String {
-    /// Share of the value by which its text may differ.
+    /// Greatest error of the text, as a share of the value.
     const ROUNDING: f64 = 0.05;
     let is_close = |decimals: &usize| {
         let text = format!("{value:.decimals$}");

@@ -8,9 +8,9 @@ const FAR: f32 = 20.0;
 /// Room behind the scene that such a camera sees, as a multiple of the distance to its far side. It also covers parts that
 /// turn, and poses between two samples of an animation.
 const ROOM_BEHIND: f32 = 1.25;
-/// Number of poses of an animation in which distances are measured.
+/// Number of poses that an animation is measured in.
 const SAMPLES: usize = 17;
-/// Number of nodes that are placed for that in all. Animations beyond it count no more.
+/// Number of nodes that these poses may place in all. Later animations do not count.
 const MOST_NODES: usize = 4_000_000;
 /// Least near distance of an orthographic camera, as a share of its far distance. Such a camera is moved back by the distance
 /// that it lacks, which changes no pixel: several maps divide the logarithm of the depth.

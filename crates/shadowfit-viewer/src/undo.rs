@@ -39,7 +39,7 @@ impl State {
         Self { settings, ..self.clone() }
     }
 
-    /// This state, with the values of `now` for those that change by themselves. `height` is the last height of a flown
+    /// Returns this state, but takes from `now` the values that change by themselves. `height` is the last height of a flown
     /// orthographic picture, in metres.
     fn with_motion_of(mut self, now: &Self, height: Option<f32>) -> Self {
         let (light, last) = (&mut self.settings.light, &now.settings.light);

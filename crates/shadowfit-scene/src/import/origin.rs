@@ -25,7 +25,7 @@ const NEARER: f64 = 4.0;
 /// Least distance at which neighbouring f32 positions are more than a millimetre apart, in metres.
 const COARSE: f64 = 16_384.0;
 
-/// Share of a scene's triangles that counts as many.
+/// Share of a scene's triangles near the origin of its file with which it keeps that origin.
 const MANY: f64 = 0.4;
 
 /// Sets the origin of a scene to the middle of most of its triangles if these lie far from the origin of the file. Notes

@@ -12,7 +12,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 
-/// Largest file read, glTF and buffers alike: what a GLB can hold at most.
+/// Size of the largest file that is read, in bytes: the limit of a GLB, and the same for buffers.
 pub(crate) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
 
 /// Padding is optional: exporters disagree about it.

@@ -44,8 +44,8 @@ impl Saved {
     }
 }
 
-/// In the order of the table, so that a choice comes before the parameters that exist only with it. The angles of a sun that
-/// the file moves are no change by a person.
+/// In the order of the table, so that a choice comes before the parameters that exist only with it. A person did not
+/// change the angles of a sun that the file moves.
 fn put_settings_over(merged: &mut Settings, known: &Settings, ours: &Settings) {
     let is_moved = |id| ours.light.file.is_some() && ["light.azimuth", "light.elevation"].contains(&id);
     for parameter in PARAMETERS {

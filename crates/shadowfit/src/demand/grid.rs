@@ -51,8 +51,9 @@ const CELLS_UNDER_HIGH_SUNS: f64 = 2.0;
 const CELLS_PER_COSINE: f64 = 8.0;
 
 /// Lenses that show a height between these two, in metres for each metre of distance, have equal cells. Cells of
-/// narrower ones are smaller, down to a quarter, since little of a wide cell is in view. Cells of wider ones are larger:
-/// the sides of the picture lie many times as far from the eye as the view depth that their pixels belong to.
+/// narrower ones are smaller, since little of a wide cell is in view: down to a quarter, if the coarsest still reach the end
+/// of the view. Cells of wider ones are larger: the sides of the picture lie many times as far from the eye as the view
+/// depth that their pixels belong to.
 const NARROW: f64 = 0.07;
 const WIDE: f64 = 2.0;
 const LENSES: (f64, f64) = (0.25, 16.0);

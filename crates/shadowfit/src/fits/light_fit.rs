@@ -49,9 +49,10 @@ pub struct LightProjection {
     pub texel_size: Vec2,
     /// Distance between the near and the far plane, in metres.
     pub depth_range: f32,
-    /// Bound of the distance from [`Self::origin`] to the corners of the receivers' boxes that the map is for, and to
-    /// those of the map itself where maps are fitted together, in metres; 0 if it is not known. A shader rounds a vertex by a share of its distance, and a large triangle that
-    /// reaches into the map is off by the rounding of its vertices. [Biases](crate::bias) cover that.
+    /// Bound of the distance from [`Self::origin`] to the corners of the receivers' boxes that the map is for, in metres.
+    /// Slices of a view share one bound, which also holds the corners of their maps. 0 if it is not known. A shader rounds
+    /// a vertex by a share of its distance, and a large triangle that reaches into the map is off by the rounding of its
+    /// vertices. [Biases](crate::bias) cover that.
     #[cfg_attr(feature = "serde", serde(default))]
     pub vertex_distance: f32,
     /// Width and height of the map, in texels.

@@ -429,7 +429,7 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
     }
 }
 
-/// A camera below the water's surface that looks down, drawn with the surface as the near plane for what lies above.
+/// A camera below the water's surface that looks down, and whose near plane shows only the things above the surface.
 #[test]
 fn a_plane_that_hides_the_whole_picture_leaves_an_empty_view() {
     let (tangent, pitch) = (DVec2::new(0.8, 0.5), 0.8_f64);

@@ -113,7 +113,7 @@ fn pixels_per_texel(maps: &FittedMaps, technique: &Technique, view: &SceneView, 
     Some(greatest / a.perp_dot(b).abs())
 }
 
-/// The 95% quantile over what is seen and turned to the light; `None` where nothing is.
+/// The 95% quantile over all visible points that face the light; `None` without such points.
 fn quantile(maps: &FittedMaps, technique: &Technique, world: &World, view: &SceneView, light: Vec3) -> Option<f64> {
     let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::demand::MIN_FACING);
     let seen = hits(view, world.origin, &world.boxes, f64::from(technique.fit.max_distance));

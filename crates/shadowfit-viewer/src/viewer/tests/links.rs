@@ -278,7 +278,7 @@ fn gpu_arguments_and_links_choose_a_camera_with_its_lens_and_may_change_that() {
     third.follow(Link::parse("#v=1&file=views.gltf&camera.file=2").expect("a link"));
     frame(&mut third);
     assert_eq!((camera(&third).file, camera(&third).height), (Some(2), Some(3.0)));
-    // What was flown yields to a camera that the arguments name.
+    // A camera in the arguments replaces the flown one.
     let store = folder.path().join("viewer.toml");
     let mut flown = ready(&[file], Some(&store));
     run(&mut flown, Command::LookAt { eye: [1.0, 2.0, 3.0], target: [0.0; 3] });

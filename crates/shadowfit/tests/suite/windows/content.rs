@@ -5,7 +5,7 @@ use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMap, Scratch};
+use shadowfit::{Aabb, BoxTree, Boxes, FitInput, FitState, FittedMap, Scratch, ShadowFitter};
 
 use super::{World, any_seen, any_windows, windows};
 use crate::read_by_coverage::{Sample, any_samples, check};
@@ -98,5 +98,65 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
         // The depth range over the ground alone is no longer than a few metres.
         let is_lost = matches!(proof, CoverageProof::CasterLost { by, .. } if by > 95.0);
         assert!(is_lost || !is_under, "{proof:?}");
+    }
+}
+
+/// The depth ranges of the maps of a ground, in metres: in a list or in a tree of standing boxes.
+fn depths_over(ground: &[Aabb], stands: bool, direction: Vec3) -> Vec<f32> {
+    let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.3, -0.2, -1.0));
+    let technique = windows(4, 1024).with_max_distance(300.0);
+    let list = Boxes { origin: DVec3::ZERO, boxes: ground };
+    let tree = BoxTree::of(list).unwrap();
+    let views = [view.frustum()];
+    let nothing = FitInput::new(&views, direction);
+    let input = if stands {
+        FitInput { standing: Some(&tree), ..nothing }
+    } else {
+        FitInput { receivers: Some(list), casters: Some(list), ..nothing }
+    };
+    let maps = *ShadowFitter::new(&technique).fit(&input).unwrap();
+    maps.iter().map(|map| map.projection.depth_range).collect()
+}
+
+/// A box of 60 km, and tiles of 200 m as far as anything is seen.
+#[test]
+fn a_ground_in_one_box_has_nearly_the_depths_of_its_tiles() {
+    let square =
+        |x: f32, z: f32, half: f32| Aabb::new(Vec3::new(x - half, -1.0, z - half), Vec3::new(x + half, 0.0, z + half));
+    let tiles: Vec<Aabb> = (0..400_u16)
+        .map(|i| square(f32::from(i % 20) * 200.0 - 1900.0, f32::from(i / 20) * 200.0 - 1900.0, 100.0))
+        .collect();
+    for direction in [Vec3::new(0.6, -0.2, 0.5), Vec3::new(0.3, -0.8, -0.4), Vec3::NEG_Y] {
+        for stands in [false, true] {
+            let [one, tiled] =
+                [&[square(0.0, 0.0, 3e4)][..], &tiles].map(|ground| depths_over(ground, stands, direction));
+            for (one, tiled) in one.iter().zip(&tiled) {
+                assert!(*one <= 2.0 * tiled, "{one} m, and {tiled} m over tiles, {direction}, in a tree: {stands}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bias_below_the_rounding_of_depths_is_found_with_the_numbers() {
+    let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.0, -0.3, -1.0));
+    let (views, direction) = ([view.frustum()], Vec3::new(0.3, -0.8, -0.4));
+    let ground = [Aabb::new(Vec3::new(-1e4, -1.0, -1e4), Vec3::new(1e4, 0.0, 1e4))];
+    let boxes = Some(Boxes { origin: DVec3::ZERO, boxes: &ground });
+    let input = FitInput { receivers: boxes, casters: boxes, ..FitInput::new(&views, direction) };
+    let technique = windows(4, 1024);
+    let maps = *ShadowFitter::new(&technique).fit(&input).unwrap();
+    let mut storage = vec![DVec2::ZERO; Scratch::required(1, 1)];
+    for map in maps.iter() {
+        for (share, is_enough) in [(1.0, true), (0.0, false)] {
+            let mut map = *map;
+            map.bias.constant_depth *= share;
+            let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
+            let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
+            assert_eq!(proof.is_proven(), is_enough, "{proof:?}");
+            let is_told =
+                matches!(proof, CoverageProof::DepthTooCoarse(found) if found.bias == 0.0 && found.needed > found.step);
+            assert_eq!(is_told, !is_enough, "{proof:?}");
+        }
     }
 }

@@ -118,7 +118,7 @@ fn sun(elevation: f32) -> Vec3 {
     Vec3::new(0.6 * cos, -sin, 0.8 * cos)
 }
 
-/// What a picture shows, as a depth buffer tells it.
+/// The counts that a depth buffer of the picture gives.
 fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov: f32) -> Seen {
     let fit = &technique.fit;
     let space = SeenSpace::new(&view.frustum(), light, fit.up, fit.max_distance).unwrap();
@@ -176,7 +176,7 @@ fn greatest(values: &[f64]) -> f64 {
 /// `focused-4` with a depth histogram: what reports call `histogram-4`.
 const HISTOGRAM: [&str; 1] = ["focused-4"];
 
-/// Most pixels per texel under a high sun, over those of slices that a histogram chooses: the geometric mean of paths.
+/// Greatest ratio of pixels per texel to slices that a histogram chooses, under a high sun: the geometric mean of paths.
 const HIGH_SUN_LIMIT: f64 = 1.8;
 
 #[test]
@@ -188,7 +188,7 @@ fn windows_are_nearly_as_fine_as_slices_under_high_suns() {
     }
 }
 
-/// Most pixels per texel through a usual lens, over those of the best preset: the geometric mean of paths.
+/// Greatest ratio of pixels per texel to the best preset, through a usual lens: the geometric mean of paths.
 const LENS_LIMIT: f64 = 1.5;
 
 /// The presets that may be finer through some lens.
