@@ -140,7 +140,8 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
         }
         if viewer.is_waiting() {
             // A software driver draws on the cores that the awaited thread needs.
-            std::thread::sleep((3 * begin.elapsed()).max(Duration::from_millis(5)));
+            let share = if viewer.stage.gpu().is_software() { 3 * begin.elapsed() } else { Duration::ZERO };
+            std::thread::sleep(share.max(Duration::from_millis(5)));
         }
         timings.frame(viewer.player.place().as_deref().unwrap_or("random actions"), own);
     }
