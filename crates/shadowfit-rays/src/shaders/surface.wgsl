@@ -14,15 +14,6 @@ fn shadowfit_rays_no_surface() -> shadowfit_RaySurface {
     return shadowfit_RaySurface(SHADOWFIT_RAYS_FAR, vec3<f32>(0.0), SHADOWFIT_RAYS_NONE, SHADOWFIT_RAYS_NONE);
 }
 
-// The unit normal in world space, against a ray, of an instance's triangle whose normal in its mesh is of any length.
-fn shadowfit_rays_normal(normal: vec3<f32>, instance: u32, direction: vec3<f32>) -> vec3<f32> {
-    let placed = shadowfit_rays_instances[instance];
-    let world = placed.row_x.xyz * normal.x + placed.row_y.xyz * normal.y + placed.row_z.xyz * normal.z;
-    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
-    let unit = normalize(world / max(max(abs(world.x), abs(world.y)), abs(world.z)));
-    return select(unit, -unit, dot(unit, direction) > 0.0);
-}
-
 // Whether a ray meets a box at a distance of at most `most`, in units of the ray's inverses.
 fn shadowfit_rays_meets_within(node: shadowfit_rays_Node, ray: shadowfit_rays_Ray, most: f32) -> bool {
     let a = (node.least - ray.origin) * ray.inverses;
@@ -59,10 +50,12 @@ fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray
     return vec4<f32>(n, select(SHADOWFIT_RAYS_FAR, dot(n, c) * inverse_determinant, is_hit));
 }
 
-// The first triangle that a ray meets within a distance, in metres. Both sides of triangles count.
+// The first triangle that a ray meets within a distance, in metres. Both sides of triangles count. If it meets holes alone, the
+// one that is nearest to the middle counts: pictures decide by smaller images what is a hole.
 // origin: relative to the origin of the scene, in metres. direction: of unit length.
 fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32) -> shadowfit_RaySurface {
     var found = shadowfit_rays_no_surface();
+    var hole = found;
     let world = shadowfit_rays_ray(origin, direction);
     var most = distance;
     var ray = world;
@@ -121,10 +114,16 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
         } else {
             for (var slot = node.first; slot < node.first + node.count; slot++) {
                 let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
-                if met.w >= 0.0 && met.w <= most && shadowfit_rays_ends(slot, instance, ray, met.w) {
-                    found = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
+                if !(met.w >= 0.0 && met.w <= most) {
+                    continue;
+                }
+                let surface = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
+                if shadowfit_rays_ends(slot, instance, ray, met.w) {
+                    found = surface;
                     most = met.w;
                     reach = shadowfit_rays_scaled(most, ray);
+                } else if abs(met.w - 0.5 * distance) < abs(hole.distance - 0.5 * distance) {
+                    hole = surface;
                 }
             }
         }
@@ -141,6 +140,9 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
             next = stack[height];
         }
         current = next;
+    }
+    if found.slot == SHADOWFIT_RAYS_NONE {
+        found = hole;
     }
     if found.slot != SHADOWFIT_RAYS_NONE {
         found.normal = shadowfit_rays_normal(found.normal, found.instance, direction);
