@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     if let Some(file) = &arguments.scene {
         scene.warnings(file).for_each(|warning| eprintln!("{warning}"));
     }
-    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     let mut stage = Stage::new(gpu, scene, SAMPLES)?;
     let mut settings = stage.settings;
     stage.choose_camera(arguments.settings(), &mut settings);
@@ -101,7 +101,7 @@ impl Drop for Progress {
 /// Plays a script without a window; the files that it saves are put into the folder.
 fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let start = Start::new(arguments)?.saving_into(folder);
-    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     gpu.keep_faults();
     let mut renewals = Renewals::default();
     let mut stage = Stage::empty(gpu, SAMPLES)?;
@@ -121,7 +121,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
         clock += f64::from(FRAME);
         if let Some(why) = gpu.lost() {
             renewals.next(&why)?;
-            let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+            let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
             gpu.keep_faults();
             canvas = Canvas::new(&gpu.device, size, FORMAT);
             viewer.move_to(gpu, FORMAT, &why)?;

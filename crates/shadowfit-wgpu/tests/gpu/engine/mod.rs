@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use bytemuck::{NoUninit, Pod};
-use shadowfit_testing::{Lent, TestGpu, open_software_gpu, read_back};
+use shadowfit_testing::{Lent, TestGpu, open_test_gpu, read_back};
 use wgpu::util::DeviceExt;
 
 /// A device of the software adapter. A test has it to itself and finds the pipelines of the tests before it: most tests draw
@@ -43,7 +43,7 @@ impl Engine {
     pub(crate) fn shared() -> Self {
         static FREE: Mutex<Vec<Engine>> = Mutex::new(Vec::new());
         fn open() -> Engine {
-            Engine::of(open_software_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()))
+            Engine::of(open_test_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()))
         }
         std::thread_local! {
             static LENT: Lent<Engine> = Lent::new(&FREE, open);
@@ -62,7 +62,7 @@ impl Engine {
 
     /// Opens a device of its own without optional features.
     pub(crate) fn open(limits: wgpu::Limits) -> Self {
-        Self::of(open_software_gpu(wgpu::Features::empty(), limits))
+        Self::of(open_test_gpu(wgpu::Features::empty(), limits))
     }
 
     pub(crate) fn of(TestGpu { adapter, device, queue }: TestGpu) -> Self {
