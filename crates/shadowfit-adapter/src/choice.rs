@@ -14,7 +14,7 @@ pub enum AdapterChoice {
     /// The fastest adapter.
     #[default]
     Any,
-    /// A software rasteriser (Mesa's llvmpipe, SwiftShader, WARP), even if a GPU is present.
+    /// A software rasteriser (Mesa's llvmpipe, `SwiftShader`, WARP), even if a GPU is present.
     Software,
     /// The first adapter with this text in its name. Upper and lower case are equal.
     Named(String),

@@ -69,9 +69,16 @@ pub fn adapter_name() -> &'static str {
 }
 
 /// Returns the step, in pixels, to which an adapter rounds the corners of triangles. Vulkan guarantees 1/16, and graphics APIs
-/// tell tests no more. Drivers use 1/256, except SwiftShader.
+/// tell tests no more. Drivers use 1/256, except `SwiftShader`.
 pub fn subpixel_step(info: &wgpu::AdapterInfo) -> f32 {
     if info.name.contains("SwiftShader") { 1.0 / 16.0 } else { 1.0 / 256.0 }
+}
+
+/// Returns the step, in texels, to which an adapter rounds the position that a linear filter takes its weights from. Vulkan
+/// guarantees 1/16. Drivers use 1/256, except `SwiftShader`: its positions have 16 bits, which leaves 1/128 in a texture of 512
+/// texels.
+pub fn filter_step(info: &wgpu::AdapterInfo) -> f32 {
+    if info.name.contains("SwiftShader") { 1.0 / 128.0 } else { 1.0 / 256.0 }
 }
 
 /// Returns the tests' device with depth clamp and the default limits of WebGPU, or the limits of an adapter that has less.
@@ -91,7 +98,8 @@ pub fn test_gpu() -> TestGpu {
     LENT.with(Lent::get)
 }
 
-/// Opens the tests' adapter again, with these features, if the adapter has them, and these limits.
+/// Opens the tests' adapter again, with these features, if the adapter has them, and these limits, or lower ones of the
+/// adapter.
 ///
 /// # Panics
 ///
@@ -102,7 +110,7 @@ pub fn open_test_gpu(features: wgpu::Features, required_limits: wgpu::Limits) ->
     let adapter = adapter.unwrap_or_else(|error| panic!("this test draws. {ADAPTER}={}: {error}", adapter_name()));
     let descriptor = wgpu::DeviceDescriptor {
         required_features: adapter.features() & features,
-        required_limits,
+        required_limits: required_limits.or_worse_values_from(&adapter.limits()),
         ..Default::default()
     };
     let device = pollster::block_on(adapter.request_device(&descriptor));

@@ -5,16 +5,18 @@
 
 mod folder;
 mod gpu;
+mod lacking;
 #[cfg(feature = "wgsl")]
 pub mod layout;
 pub mod pairs;
 pub mod read_back;
-mod skipped;
 #[cfg(feature = "wgsl")]
 pub mod wgsl;
 
 pub use folder::package_folder;
-pub use gpu::{ADAPTER, Lent, TestGpu, adapter_choice, adapter_name, open_test_gpu, subpixel_step, test_gpu};
+pub use gpu::{
+    ADAPTER, Lent, TestGpu, adapter_choice, adapter_name, filter_step, open_test_gpu, subpixel_step, test_gpu,
+};
 #[cfg(feature = "render")]
 pub use gpu::{golden_gpu, open_renderer_gpu, renderer_gpu};
-pub use skipped::lacking;
+pub use lacking::lacking;

@@ -69,7 +69,7 @@ enum Task {
     Bundle {
         /// Folder of the bundle, new or empty.
         folder: std::path::PathBuf,
-        /// Builds OpenGL in, too: run with WGPU_BACKEND=gl.
+        /// Builds OpenGL in, too: run with `WGPU_BACKEND=gl`.
         #[arg(long)]
         gles: bool,
     },

@@ -6,7 +6,8 @@
 //! Tests with `own_process` in their path measure or limit their process, so they count among the others.
 
 use std::collections::BTreeMap;
-use std::process::Command;
+use std::iter;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
@@ -129,7 +130,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     }
     let mut suite = Suite { tier, features: setup::features(&machine), left_out, adapter: None };
     if gpu {
-        suite.draw_on(hardware_adapter()?);
+        suite.draw_on(suite.hardware_adapter()?);
     }
     if tier != Tier::Quick {
         // The tests that start a program would otherwise start the one of an earlier build.
@@ -164,15 +165,6 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     report.finish()
 }
 
-/// Returns the name of the first adapter of this machine that is no software rasteriser.
-fn hardware_adapter() -> Result<String> {
-    let mut command = process::cargo("run");
-    command.args(["--quiet", "--package", "shadowfit-adapter", "--example", "adapters", "--", "--hardware"]);
-    let output = command.stderr(std::process::Stdio::inherit()).output().context("cargo does not start")?;
-    ensure!(output.status.success(), "`--gpu` needs a GPU. Without it, tests draw on the software adapter");
-    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-}
-
 /// Runs the golden tests so that they write their pictures.
 ///
 /// # Errors
@@ -199,6 +191,16 @@ struct Suite {
 }
 
 impl Suite {
+    /// Returns the name of the first adapter of this machine that is no software rasteriser.
+    fn hardware_adapter(&self) -> Result<String> {
+        process::run(process::cargo("build").args(self.packages()).args(["--example", "adapters"]))?;
+        let program = format!("debug/examples/adapters{}", std::env::consts::EXE_SUFFIX);
+        let mut adapters = Command::new(process::target_folder().join(program));
+        let output = adapters.arg("--hardware").stderr(Stdio::inherit()).output().context("the example adapters")?;
+        ensure!(output.status.success(), "`--gpu` needs a GPU. Without it, tests draw on the software adapter");
+        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    }
+
     /// Lets the tests draw on an adapter, without the tests that need the software driver.
     fn draw_on(&mut self, adapter: String) {
         println!("tests draw on {adapter}");
@@ -213,16 +215,18 @@ impl Suite {
         }
     }
 
+    /// The packages with their features.
+    fn packages(&self) -> Vec<&'static str> {
+        if self.tier == Tier::Quick {
+            let packages = QUICK_PACKAGES.iter().flat_map(|package| ["--package", package]);
+            return packages.chain(["--features", QUICK_FEATURES]).collect();
+        }
+        iter::once("--workspace").chain(self.features.iter().copied()).collect()
+    }
+
     /// The packages with their features, and the kinds of targets that hold tests.
     fn targets(&self) -> Vec<&'static str> {
-        let mut targets = Vec::new();
-        if self.tier == Tier::Quick {
-            targets.extend(QUICK_PACKAGES.iter().flat_map(|package| ["--package", package]));
-            targets.extend(["--features", QUICK_FEATURES]);
-        } else {
-            targets.push("--workspace");
-            targets.extend(self.features);
-        }
+        let mut targets = self.packages();
         targets.extend(["--lib", "--bins", "--tests", "--no-fail-fast"]);
         targets
     }

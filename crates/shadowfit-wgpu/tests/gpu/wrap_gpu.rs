@@ -3,6 +3,7 @@
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius, Softness};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection};
+use shadowfit_testing::filter_step;
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::engine::Engine;
@@ -78,9 +79,10 @@ fn assert_same_factors(map: &ShadowMapDescriptor, wraps: &[[u32; 2]]) {
     let points = points(&box_fit(map.depth));
     // Weights come from the position in the layer, which f32 rounds to 2⁻¹⁷ of a texel here, in each axis.
     let tolerance = 4e-5;
-    // A sampler may round the weights of its linear filter to 8 bits, as Vulkan allows (`subTexelPrecisionBits`): the rounded
-    // position takes the next weight in each axis of some samples.
-    let (weight, share) = if filters_linearly(map) { (2.0 / 256.0, STEPPED) } else { (0.0, 0.0) };
+    // A sampler rounds the position, as Vulkan allows (`subTexelPrecisionBits`): some samples take the next weight in each
+    // axis.
+    let (weight, share) =
+        if filters_linearly(map) { (2.0 * filter_step(&gpu.adapter.get_info()), STEPPED) } else { (0.0, 0.0) };
     let factors = harness(&gpu, map, [0, 0]).turned(&points);
     let shadowed = factors.iter().filter(|factor| **factor < 0.9).count();
     assert!((1000..9900).contains(&shadowed), "{:?}: {shadowed} points in shadow or beside one", map.filter);
