@@ -59,7 +59,7 @@ impl<'a> Compared<'a> {
     pub(crate) fn differences(&self) -> Vec<Difference> {
         let [a, b] = self.maps;
         let differ = (0..a.len()).filter(|texel| (a[*texel] - b[*texel]).abs() > DEPTH);
-        differ.map(|texel| self.difference(texel)).filter(|found| found.is_beyond_slope()).collect()
+        differ.map(|texel| self.difference(texel)).filter(Difference::is_beyond_slope).collect()
     }
 
     /// Asserts that differences lie at edges, and that they are no more than edges explain.
