@@ -123,6 +123,26 @@ fn missing_empty_and_foreign_files_end_in_exit_code_2_with_their_name() {
     }
 }
 
+// Draws maps in all filters and formats, a walk and six judged pictures: half a minute on the software adapter. No other
+// test runs the checks one after the other on one device.
+#[test]
+fn the_check_of_the_software_adapter_passes_and_reports_every_row() {
+    let scratch = Scratch::new("check");
+    let output = run(&scratch.0, &["--check"]);
+    let (report, progress) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{report}\n{progress}");
+    for row in ["Look-up", "Map formats", "Kept maps", "Exact edges", "Visible points", "Coverage"] {
+        assert!(report.contains(&format!("[passed] {row} (")), "{row} is missing in: {report}");
+        assert!(progress.contains(&format!("{row}: passed")), "{row} is missing in: {progress}");
+    }
+    for fact in ["adapter", "driver", "backend", "device type", "limits", "features", "Shadows can be trusted"] {
+        assert!(report.contains(fact), "{fact} is missing in: {report}");
+    }
+    assert_eq!(report.matches("tolerance").count(), 6, "{report}");
+    assert!(scratch.files().is_empty(), "the check leaves files behind");
+    assert_refused(&scratch, &["--check", "--headless", "out"], &["--check", "--headless"]);
+}
+
 #[test]
 fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
     let scratch = Scratch::new("flags");

@@ -96,6 +96,14 @@ pub enum Command {
     ApplyTune,
     /// Forget what the search found. If it was applied, the settings stay. A button of the panel.
     DiscardTune,
+    /// Check the graphics device, and show the report. A menu of the panel.
+    CheckDevice,
+    /// End the check early; the checks that have not run say so. A button of the report.
+    CancelCheck,
+    /// Copy the report as text. A button of the report.
+    CopyCheck,
+    /// Close the report, and end a check that is under way. A button of the report.
+    CloseCheck,
     /// Save the technique that the controls edit under this name, replacing one of the same name. A button of the panel.
     SavePreset(String),
     /// Delete the saved technique of this name. A button of the panel.

@@ -7,6 +7,9 @@ use crate::units::grouped;
 use crate::widgets::{Icon, icon_button};
 use crate::{Changes, Command, Panel, Part, SceneLine, keys_of, with_keys};
 
+/// Line of the menu that opens the [check](crate::device_check_overlay).
+const CHECK_THIS_GPU: &str = "Check this GPU…";
+
 /// Title, buttons, scene and message.
 pub(crate) fn show(
     ui: &mut Ui,
@@ -37,7 +40,16 @@ pub(crate) fn show(
 
 /// From the right to the left.
 fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Option<Command>) {
-    button(ui, Icon::CircleQuestionMark, "Help", "Shows the table of keys", Command::ToggleHelp, command);
+    if panel.has(Part::DeviceCheck) {
+        let check = "Compares this device's maps, look-ups and rays with the CPU's, in about a minute.";
+        let items = [
+            ("Table of keys", "Shows the table of keys.", Command::ToggleHelp),
+            (CHECK_THIS_GPU, check, Command::CheckDevice),
+        ];
+        menu(ui, Icon::CircleQuestionMark, "Help", "Keys, and a check of this device.", items, command);
+    } else {
+        button(ui, Icon::CircleQuestionMark, "Help", "Shows the table of keys", Command::ToggleHelp, command);
+    }
     if panel.has(Part::Theme) {
         theme_menu(ui, command);
     }

@@ -247,6 +247,8 @@ pub enum Part {
     Screenshot,
     /// The choice of dark and light.
     Theme,
+    /// The check of the graphics device.
+    DeviceCheck,
     /// The plots over time.
     Plots,
 }

@@ -44,6 +44,7 @@ mod card;
 mod classes;
 mod command;
 mod compare;
+mod device_check;
 mod figures;
 mod header;
 mod help;
@@ -80,6 +81,7 @@ pub use artefact::Artefact;
 pub use artefact_card::artefact_card;
 pub use classes::PixelClass;
 pub use command::{Command, Toggle};
+pub use device_check::device_check_overlay;
 pub use help::help_overlay;
 pub use input::{
     Card, CardChoice, CardControl, CardFigure, CardRow, Changes, Compare, PanelInput, PanelOutput, Part, SceneLine,

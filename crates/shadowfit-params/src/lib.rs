@@ -27,6 +27,7 @@ mod rust_code;
 mod table;
 mod text;
 
+pub mod device_check;
 pub mod figures;
 pub mod tool;
 

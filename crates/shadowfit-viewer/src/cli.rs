@@ -22,7 +22,8 @@ use crate::source::{OPTION_PREFIX, SceneSource};
 #[command(
     name = "viewer",
     version,
-    after_help = "Press H in the window for its keys. Exit codes: 0, or 2 where something was refused or cannot be done."
+    after_help = "Press H in the window for its keys. Exit codes: 0, 1 where --check found a fault, or 2 where something was \
+                  refused or cannot be done."
 )]
 pub struct Arguments {
     /// Scene: a glTF file (.gltf or .glb), or one of the built-in scenes courtyard, plain, arcade and forest. Without one
@@ -97,6 +98,11 @@ pub struct Arguments {
     /// Prints a table to the standard error at the end: the time of each step of the start and of each line of the script.
     #[arg(long, requires_all = ["headless", "script"])]
     pub timings: bool,
+
+    /// Checks the graphics device in about a minute, instead of opening a window: its maps, look-ups, passes and rays
+    /// against the same on the CPU. Prints a report for an issue, and ends with exit code 1 if a check fails.
+    #[arg(long, conflicts_with_all = ["headless", "script", "link"])]
+    pub check: bool,
 
     /// Prints to the standard error when the window is ready, and the frame time now and then.
     #[arg(long)]

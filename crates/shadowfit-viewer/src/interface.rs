@@ -12,6 +12,7 @@ use glam::Vec2;
 use shadowfit_egui::{
     CardFigure, Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset,
 };
+use shadowfit_params::device_check::CheckReport;
 use shadowfit_params::figures::Figures;
 
 use crate::saved::Saved;
@@ -49,6 +50,8 @@ pub(crate) struct InterfaceInput<'a> {
     pub(crate) saved: &'a Saved,
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
+    /// The report of the check of the graphics device, while its dialog is open.
+    pub(crate) device_check: Option<&'a CheckReport>,
     /// The figures of the sample that is shown.
     pub(crate) sample_figures: &'a [CardFigure],
     pub(crate) changes: Changes<'a>,
@@ -69,6 +72,7 @@ impl<'a> InterfaceInput<'a> {
             saved,
             presets: &[],
             tune: Tune::Idle,
+            device_check: None,
             sample_figures: &[],
             changes: Changes::default(),
             message: None,
@@ -200,6 +204,8 @@ impl Interface {
         }
         let context = ui.ctx().clone();
         shadowfit_egui::help_overlay(&context, &mut self.help_open);
+        let asked = input.device_check.and_then(|report| shadowfit_egui::device_check_overlay(&context, report));
+        output.commands.extend(asked);
     }
 
     fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {

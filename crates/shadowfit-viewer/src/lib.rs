@@ -7,6 +7,7 @@
 
 mod artefact;
 mod cli;
+mod device_check;
 #[cfg(test)]
 mod docs_tests;
 mod effect;
@@ -57,18 +58,20 @@ pub use headless::{PICTURES, render_pictures};
 pub use shadowfit_egui::Artefact;
 pub use stage::{Shown, Stage, StageError};
 
-/// Runs the viewer with the process's arguments: the window, or with `--headless` the pictures. Errors are printed to
-/// the standard error, with exit code 2.
+/// Runs the viewer with the process's arguments: the window, with `--headless` the pictures, or with `--check` the check of
+/// the graphics device, whose failure is exit code 1. Errors are printed to the standard error, with exit code 2.
 #[cfg(not(target_family = "wasm"))]
 pub fn main() -> ExitCode {
     let arguments = cli::parse();
     shadowfit_render::hush_lost_devices();
     let result = match &arguments.headless {
-        Some(folder) => headless::run(&arguments, folder),
-        None => window::run(&arguments),
+        _ if arguments.check => device_check::run(arguments.adapter()),
+        Some(folder) => headless::run(&arguments, folder).map(|()| true),
+        None => window::run(&arguments).map(|()| true),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::from(2)

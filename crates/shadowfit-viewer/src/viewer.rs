@@ -25,6 +25,7 @@ use shadowfit_params::tool::Settings;
 use tempfile::TempDir;
 
 use crate::artefact::Found;
+use crate::device_check::DeviceCheck;
 use crate::effect::{Activity, Effect};
 use crate::input::Input;
 use crate::interface::{Interface, InterfaceInput, InterfaceOutput, Layout};
@@ -67,6 +68,7 @@ pub(crate) struct Viewer {
     searching: Option<Receiver<Found>>,
     chooser: Option<Receiver<Option<PathBuf>>>,
     tuning: Tuning,
+    device_check: DeviceCheck,
     measuring: Measuring,
     history: History,
     /// State at the end of the last frame.
@@ -151,6 +153,7 @@ impl Viewer {
             searching: None,
             chooser: None,
             tuning: Tuning::default(),
+            device_check: DeviceCheck::default(),
             measuring: Measuring::default(),
             history: History::default(),
             last_state: None,
@@ -272,6 +275,7 @@ impl Viewer {
             saved: &self.saved,
             presets: &self.presets,
             tune: self.tuning.shown(),
+            device_check: self.device_check.report(),
             sample_figures: self.measuring.lines(),
             changes: Changes { undo: self.history.undo_name(), redo: self.history.redo_name() },
             message: message.or(request.as_deref()),
@@ -347,6 +351,7 @@ impl Viewer {
         }
         self.take_saved();
         self.tuning.take();
+        self.device_check.take();
         self.measuring.take();
     }
 
@@ -402,6 +407,7 @@ impl Viewer {
             || self.searching.is_some()
             || !self.saving.is_empty()
             || self.tuning.is_running()
+            || self.device_check.is_running()
             || self.measuring.is_running()
     }
 

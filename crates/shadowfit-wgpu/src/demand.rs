@@ -53,9 +53,11 @@
 
 mod error;
 mod pass;
+mod reference;
 mod view;
 
 pub use error::{DemandPassError, Unsupported};
 pub(crate) use pass::supported;
 pub use pass::{DemandPass, demand_wgsl};
+pub use reference::{Depths, count_on_cpu};
 pub use view::{DemandUniform, DemandView};

@@ -52,7 +52,7 @@ pub(crate) fn say_where(folder: &Path) {
 /// Whether the viewer's arguments already ask for something that opens no window.
 fn needs_no_display(args: &[String]) -> bool {
     args.iter().any(|arg| {
-        matches!(arg.as_str(), "--headless" | "--parameters" | "--help" | "-h" | "--version" | "-V")
+        matches!(arg.as_str(), "--headless" | "--check" | "--parameters" | "--help" | "-h" | "--version" | "-V")
             || arg.starts_with("--headless=")
     })
 }
@@ -67,6 +67,7 @@ mod tests {
         assert!(asks(&["--headless", "shots"]));
         assert!(asks(&["scene.glb", "--headless=shots"]));
         assert!(asks(&["--help"]));
+        assert!(asks(&["--check", "--software"]));
         assert!(!asks(&["--size", "640x360"]));
         assert!(!asks(&["headless.glb"]));
         assert!(!asks(&[]));

@@ -4,6 +4,7 @@
 mod card;
 mod commands;
 mod controls;
+mod device_check;
 mod figures;
 mod golden;
 mod host;

@@ -88,6 +88,7 @@ fn more(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
         ("Screenshot", false, Command::Screenshot(None)),
         ("Copy a link", false, Command::CopyLink),
         ("Help", false, Command::ToggleHelp),
+        ("Check this GPU…", false, Command::CheckDevice),
     ];
     MenuButton::new("More").ui(ui, |ui| {
         let count = if stage.draws_sample() { 0 } else { of_techniques.len() };

@@ -72,6 +72,10 @@ impl Viewer {
                 self.saved.theme = theme.into();
                 self.interface.context.set_theme(theme);
             }
+            Command::CheckDevice => self.device_check.start(self.start.arguments.adapter()),
+            Command::CancelCheck => self.device_check.cancel(),
+            Command::CloseCheck => self.device_check.close(),
+            Command::CopyCheck => self.copy_check(),
             Command::Escape => self.escape(),
             Command::Quit => self.window_requests.quit = self.page.is_none(),
             // Everything else needs a scene.
@@ -84,10 +88,20 @@ impl Viewer {
         }
     }
 
+    /// Copies the report of the device's check.
+    fn copy_check(&mut self) {
+        if let Some(report) = self.device_check.report() {
+            self.interface.context.copy_text(report.text());
+            self.say("Copied the report of the check");
+        }
+    }
+
     fn escape(&mut self) {
         let context = &self.interface.context;
         if egui::Popup::is_any_open(context) {
             egui::Popup::close_all(context);
+        } else if self.device_check.report().is_some() {
+            self.device_check.close();
         } else if self.interface.help_open {
             self.interface.help_open = false;
         } else if self.interface.drawer_open {

@@ -6,10 +6,9 @@ use shadowfit::glam::{DVec3, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_testing::subpixel_step;
-use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView};
+use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView, count_on_cpu};
 
-use super::demand_picture::{Drawing, cuboid, draw, infinite, quad, read, record, seen};
-use super::demand_reference::{self, Counts};
+use super::demand_picture::{Counts, Drawing, cuboid, draw, infinite, quad, read, record, seen};
 use super::engine::Engine;
 
 /// Width and height of the pictures, in pixels.
@@ -82,10 +81,10 @@ fn assert_close(name: &str, counts: &Counts, expected: &Counts, share: f64) {
 }
 
 /// Compares the pass with the reference, and returns what it counted.
-fn compared(gpu: &Engine, name: &str, view: &DemandView, drawing: &Drawing, step: u32) -> Counts {
+fn compared(gpu: &Engine, name: &str, view: &DemandView, drawing: &Drawing) -> Counts {
     let texture = draw(gpu, view, &scene(), drawing);
     let counts = Counts::from(&seen(gpu, view, &texture));
-    let expected = demand_reference::count(view, &read(gpu, &texture), step);
+    let expected = Counts::from(&count_on_cpu(view, &read(gpu, &texture)).expect("a good view"));
     assert!(expected.cells.iter().sum::<u32>() > 5000, "{name}: nothing to compare");
     assert_eq!(expected.bins.iter().sum::<u32>() > 5000, view.frustum.near > 0.0, "{name}");
     assert_close(name, &counts, &expected, ROUNDING);
@@ -163,7 +162,7 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
     let share = lower_half.frustum.height_in_picture(&lower_half.clip_from_world);
     assert!((0.3..0.8).contains(&share), "{share} of the picture is shown");
     for (name, view) in cases {
-        compared(&gpu, name, &view, &Drawing::new(SIZE), 1);
+        compared(&gpu, name, &view, &Drawing::new(SIZE));
     }
 }
 
@@ -172,8 +171,8 @@ fn a_part_of_a_texture_is_counted_as_a_picture_of_its_own() {
     let gpu = Engine::shared();
     let whole = view(DepthConvention::Reversed, SIZE);
     let part = DemandView { rectangle: [30, 50, SIZE[0], SIZE[1]], ..whole };
-    let alone = compared(&gpu, "whole", &whole, &Drawing::new(SIZE), 1);
-    let within = compared(&gpu, "part", &part, &Drawing::new([200, 150]), 1);
+    let alone = compared(&gpu, "whole", &whole, &Drawing::new(SIZE));
+    let within = compared(&gpu, "part", &part, &Drawing::new([200, 150]));
     assert_close("part of whole", &within, &alone, ROUNDING);
 }
 
@@ -217,7 +216,7 @@ fn points_turned_from_the_light_are_left_out_and_grazing_ones_ask_for_no_texel()
 fn plain_and_reversed_depth_give_the_same() {
     let gpu = Engine::shared();
     let [plain, reversed] = [DepthConvention::ZeroToOne, DepthConvention::Reversed]
-        .map(|depth| compared(&gpu, "either", &view(depth, SIZE), &Drawing::new(SIZE), 1));
+        .map(|depth| compared(&gpu, "either", &view(depth, SIZE), &Drawing::new(SIZE)));
     // Plain depth has 24 bits for a range that grows with the square of the distance.
     assert_close("plain of reversed", &plain, &reversed, 0.02);
 }
@@ -275,9 +274,9 @@ fn shares_of_points_do_not_depend_on_the_resolution() {
     // picture's border in the coarse picture, by a step.
     let border = 4.0 * f64::from(SIZE[0] + SIZE[1]);
     let step_share = f64::from(subpixel_step(&gpu.adapter.get_info())) * border / f64::from(SIZE[0] * SIZE[1]);
-    let coarse = compared(&gpu, "coarse", &view(DepthConvention::Reversed, SIZE), &Drawing::new(SIZE), 1);
-    for (size, step) in [([320, 180], 1), ([1280, 720], 3)] {
-        let counts = compared(&gpu, "fine", &view(DepthConvention::Reversed, size), &Drawing::new(size), step);
+    let coarse = compared(&gpu, "coarse", &view(DepthConvention::Reversed, SIZE), &Drawing::new(SIZE));
+    for size in [[320, 180], [1280, 720]] {
+        let counts = compared(&gpu, "fine", &view(DepthConvention::Reversed, size), &Drawing::new(size));
         for (a, b) in shares(&counts).iter().zip(shares(&coarse)) {
             assert!((a - b).abs() < 0.01 + step_share, "{size:?}: {a} of the points, and {b} in a coarse picture");
         }

@@ -2,9 +2,8 @@
 
 use shadowfit::Seen;
 use shadowfit::glam::{Mat4, Vec3, Vec4};
-use shadowfit_wgpu::demand::{DemandPass, DemandView};
+use shadowfit_wgpu::demand::{DemandPass, DemandView, Depths};
 
-use super::demand_reference::{Counts, Depths};
 use super::engine::Engine;
 use super::engine::picture::{DepthPicture, SeenCorner};
 
@@ -29,6 +28,13 @@ impl Drawing {
 pub(super) fn quad(corners: [Vec3; 4]) -> [Vec3; 6] {
     let [a, b, c, d] = corners;
     [a, b, c, a, c, d]
+}
+
+/// The counts of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Counts {
+    pub(super) cells: Vec<u32>,
+    pub(super) bins: Vec<u32>,
 }
 
 /// Triangles of a box.

@@ -10,7 +10,6 @@ mod clamp_gpu;
 mod culling_gpu;
 mod demand_gpu;
 mod demand_picture;
-mod demand_reference;
 mod differences;
 mod door_gpu;
 mod engine;

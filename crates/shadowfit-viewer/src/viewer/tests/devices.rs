@@ -48,6 +48,35 @@ fn gpu_a_lost_device_takes_nothing_along_in_any_view() {
     }
 }
 
+// Opens a device with a scene, and waits for a look-up with its shaders: 3 s on the software adapter.
+#[test]
+fn gpu_the_check_of_the_device_is_shown_cancelled_copied_and_closed_beside_frames() {
+    let mut viewer = ready(&[]);
+    let link = viewer.link().to_fragment();
+    run(&mut viewer, Command::CheckDevice);
+    let has_facts = |viewer: &Viewer| viewer.device_check.report().is_some_and(|report| !report.facts.is_empty());
+    until(&mut viewer, "the device of the check", has_facts);
+    assert!(viewer.device_check.is_running() && viewer.is_waiting());
+    run(&mut viewer, Command::CancelCheck);
+    until(&mut viewer, "the end of the check", |viewer| !viewer.device_check.is_running());
+    let report = viewer.device_check.report().expect("the dialog stays open").clone();
+    assert!(report.has_ended() && !report.has_passed(), "{}", report.text());
+    viewer.ask(Command::CopyCheck);
+    let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(640.0, 360.0)));
+    let copied =
+        [(); 3].map(|()| viewer.frame(RawInput { screen_rect, ..Default::default() }, FRAME).1.commands).concat();
+    assert_eq!(copied, [egui::OutputCommand::CopyText(report.text())]);
+    run(&mut viewer, Command::Escape);
+    assert!(viewer.device_check.report().is_none() && !viewer.window_requests.quit);
+    assert_eq!(viewer.link().to_fragment(), link, "the check changes nothing that a link keeps");
+    assert_eq!(viewer.history.undo_name(), None, "nor anything to undo");
+    // A check that is closed while it runs leaves nothing behind.
+    run(&mut viewer, Command::CheckDevice);
+    run(&mut viewer, Command::CloseCheck);
+    frame(&mut viewer);
+    assert!(!viewer.device_check.is_running() && viewer.device_check.report().is_none());
+}
+
 #[test]
 fn gpu_two_techniques_a_frozen_fit_and_a_sample_outlive_their_device() {
     let mut viewer = ready(&[]);

@@ -1,26 +1,24 @@
-//! What the compute pass over a depth buffer counts, in plain Rust and f64: positions by the inverse of the matrix, the
-//! surface's plane by differences, cells and bins by the core.
+//! The counts of the compute pass over a depth buffer in plain Rust and f64: positions by the inverse of the matrix, the
+//! surface's plane by differences of depths, cells and bins by the core. Checks of a graphics device compare the pass with
+//! it, and devices without compute shaders can count by it.
 
-use shadowfit::demand::{CELLS, DemandSpace, PIXELS};
-use shadowfit::demand::{CLASSES, DEPTHS};
-use shadowfit::demand::{DepthHistogram, needed_texel};
+use shadowfit::demand::{PIXELS, Seen, needed_texel};
 use shadowfit::glam::{DMat4, DVec3, DVec4};
-use shadowfit_wgpu::demand::DemandView;
+
+use super::error::DemandPassError;
+use super::view::DemandView;
+use crate::pixels::lies_in;
 
 /// Share of a pixel over which movements are measured.
 const SHARE: f64 = 1e-3;
 
-/// The depths of a texture, rows from the top.
-pub(super) struct Depths {
-    pub(super) width: u32,
-    pub(super) values: Vec<f32>,
-}
-
-/// What is counted.
+/// The values of a depth texture of one sample a pixel, read back.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Counts {
-    pub(super) cells: Vec<u32>,
-    pub(super) bins: Vec<u32>,
+pub struct Depths {
+    /// Width of the texture, in pixels.
+    pub width: u32,
+    /// Depth of each pixel, rows from the top.
+    pub values: Vec<f32>,
 }
 
 /// A picture whose pixels are turned into points.
@@ -30,22 +28,32 @@ struct Picture<'a> {
     world_from_clip: DMat4,
 }
 
-/// Counts every `step`-th pixel across and down.
-pub(super) fn count(view: &DemandView, depths: &Depths, step: u32) -> Counts {
+/// Counts the visible points of a depth buffer on the CPU, as [`DemandPass`](super::DemandPass) does on the GPU. The two
+/// differ by the points that rounding moves into a neighbouring cell or bin.
+///
+/// # Errors
+///
+/// [`DemandPassError::Rectangle`] for a rectangle beyond the depths, and [`DemandPassError::Fit`] for a view or light that
+/// makes no sense.
+pub fn count_on_cpu(view: &DemandView, depths: &Depths) -> Result<Seen, DemandPassError> {
+    let texture = [depths.width, (depths.values.len() as u32).checked_div(depths.width).unwrap_or(0)];
+    if !lies_in(view.rectangle, texture) {
+        return Err(DemandPassError::Rectangle { rectangle: view.rectangle, texture });
+    }
     let picture = Picture { view, depths, world_from_clip: view.clip_from_world.as_dmat4().inverse() };
-    let space = DemandSpace::new(&view.frustum, view.direction, view.up, view.max_distance).expect("a good view");
-    let mut counts = Counts { cells: vec![0; CELLS], bins: vec![0; DEPTHS * CLASSES] };
+    let mut seen = Seen::new(view.space()?);
     let [_, _, width, height] = view.rectangle;
+    let step = view.step();
     for y in (step / 2..height).step_by(step as usize) {
         for x in (step / 2..width).step_by(step as usize) {
-            picture.count(x.cast_signed(), y.cast_signed(), &space, &mut counts);
+            picture.count(x.cast_signed(), y.cast_signed(), &mut seen);
         }
     }
-    counts
+    Ok(seen)
 }
 
 impl Picture<'_> {
-    fn count(&self, x: i32, y: i32, space: &DemandSpace, counts: &mut Counts) {
+    fn count(&self, x: i32, y: i32, seen: &mut Seen) {
         let Some([position, right, down]) = self.point(x, y) else { return };
         let (frustum, far) = (&self.view.frustum, self.view.frustum.far.min(self.view.max_distance));
         let forward = frustum.forward.as_dvec3();
@@ -55,16 +63,15 @@ impl Picture<'_> {
         }
         let normal = right.cross(down).normalize();
         let normal = if normal.dot(self.ray(x, y)) > 0.0 { -normal } else { normal };
+        let space = seen.space().demand;
         if normal.dot(space.direction.as_dvec3()) < 0.0 {
             let texel = needed_texel(right.as_vec3(), down.as_vec3(), space.direction);
             let class = (self.pixel_width((x, y), depth) / f64::from(texel)).log2() as f32;
             // Views that begin behind the eye have no histogram.
-            if let Some(bin) = DepthHistogram::bin(frustum.near, far, DEPTHS, CLASSES, depth as f32, class) {
-                counts.bins[bin] += 1;
-            }
+            seen.count_depth(depth as f32, class);
         }
         if let Some(index) = space.index(position.as_vec3(), normal.as_vec3(), right.as_vec3(), down.as_vec3()) {
-            counts.cells[index] += 1;
+            seen.count_cell(index);
         }
     }
 

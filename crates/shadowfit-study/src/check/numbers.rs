@@ -1,0 +1,208 @@
+//! Numbers that shaders compute, read back: shadow factors at points, the texels of maps, and a depth buffer. Each number
+//! is a pixel of a picture of bits, which every device can draw.
+
+use anyhow::Result;
+use shadowfit_render::{Gpu, ReadBack, bindings};
+use shadowfit_wgpu::demand::Depths;
+use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl, stored_wgsl};
+use wgpu::util::DeviceExt;
+
+use super::texels::Texels;
+
+/// A position relative to the maps' origin, in metres, and a unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Point {
+    pub(super) position: [f32; 3],
+    pub(super) normal: [f32; 3],
+}
+
+/// Points in a row of their picture; a power of two keeps the centres of pixels exact.
+const ROW: u32 = 256;
+
+/// Format of the pictures: the bits of floats.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+
+/// Draws a point into each pixel, and computes the factor there.
+const POINTS: &str = "
+struct Varying {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) @interpolate(flat) position: vec3<f32>,
+    @location(1) @interpolate(flat) normal: vec3<f32>,
+}
+@vertex fn vs(
+    @builtin(vertex_index) index: u32, @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>,
+) -> Varying {
+    let pixel = vec2<f32>(f32(index % ROW), f32(index / ROW)) + 0.5;
+    let ndc = pixel / vec2<f32>(f32(ROW), f32(ROWS)) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+    return Varying(vec4<f32>(ndc, 0.0, 1.0), position, normal);
+}
+@fragment fn fs(in: Varying) -> @location(0) u32 {
+    return bitcast<u32>(shadowfit_factor(in.position, in.normal));
+}
+";
+
+/// A triangle over the whole picture.
+const WHOLE: &str = "
+@vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.5, 1.0);
+}
+";
+
+/// The texels of all maps, one map below the other.
+const TEXELS: &str = "
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) u32 {
+    let at = vec2<i32>(pixel.xy);
+    return bitcast<u32>(shadowfit_stored(at.y / HEIGHT, vec2<i32>(at.x, at.y % HEIGHT)));
+}
+";
+
+/// The depths of a depth buffer.
+const DEPTHS: &str = "
+@group(0) @binding(0) var depths: texture_depth_2d;
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) u32 {
+    return bitcast<u32>(textureLoad(depths, vec2<i32>(pixel.xy), 0));
+}
+";
+
+/// A picture of numbers.
+struct Numbers<'a> {
+    label: &'static str,
+    wgsl: &'a str,
+    bound: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
+    /// Bytes of the vertices, if the picture is drawn by points, and their number.
+    points: Option<(&'a [u8], u32)>,
+    size: [u32; 2],
+}
+
+impl Numbers<'_> {
+    /// Draws the picture and reads it back, rows from the top.
+    async fn read(&self, gpu: &Gpu) -> Result<Vec<f32>> {
+        let pipeline = self.pipeline(&gpu.device);
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let texture = bindings::plain_texture(&gpu.device, self.label, self.size, FORMAT, usage);
+        let view = texture.create_view(&Default::default());
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(self.label),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, self.bound.1, &[]);
+        match self.points {
+            Some((contents, count)) => {
+                let usage = wgpu::BufferUsages::VERTEX;
+                let descriptor = wgpu::util::BufferInitDescriptor { label: Some(self.label), contents, usage };
+                pass.set_vertex_buffer(0, gpu.device.create_buffer_init(&descriptor).slice(..));
+                pass.draw(0..count, 0..1);
+            }
+            None => pass.draw(0..3, 0..1),
+        }
+        drop(pass);
+        gpu.submit([encoder.finish()]);
+        let bytes = ReadBack::new(gpu, &texture, self.size, 4).arrive(gpu).await?;
+        Ok(bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect())
+    }
+
+    fn pipeline(&self, device: &wgpu::Device) -> wgpu::RenderPipeline {
+        let source = wgpu::ShaderSource::Wgsl(self.wgsl.into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(self.label), source });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &[Some(self.bound.0)],
+            immediate_size: 0,
+        });
+        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+        let buffers = [Some(wgpu::VertexBufferLayout {
+            array_stride: 24,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        })];
+        let topology = match self.points {
+            Some(_) => wgpu::PrimitiveTopology::PointList,
+            None => wgpu::PrimitiveTopology::TriangleList,
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs"),
+                compilation_options: Default::default(),
+                buffers: if self.points.is_some() { &buffers } else { &[] },
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fs"),
+                compilation_options: Default::default(),
+                targets: &[Some(FORMAT.into())],
+            }),
+            primitive: wgpu::PrimitiveState { topology, ..Default::default() },
+            depth_stencil: None,
+            multisample: Default::default(),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// Returns the look-up's shadow factors at points, by its WGSL.
+pub(super) async fn factors(gpu: &Gpu, map: &ShadowMap, points: &[Point]) -> Result<Vec<f32>> {
+    let count = points.len() as u32;
+    let rows = count.div_ceil(ROW).max(1);
+    let constants = format!("const ROW = {ROW}u; const ROWS = {rows}u;");
+    let wgsl = [&receiver_wgsl(map.descriptor(), &WgslOptions::group(0)), POINTS, &constants].concat();
+    let values = points.iter().flat_map(|point| [point.position, point.normal]).flatten();
+    let bytes: Vec<u8> = values.flat_map(f32::to_le_bytes).collect();
+    let numbers = Numbers {
+        label: "factors",
+        wgsl: &wgsl,
+        bound: (map.receiver_layout(), map.receiver_group()),
+        points: Some((&bytes, count)),
+        size: [ROW, rows],
+    };
+    let mut factors = numbers.read(gpu).await?;
+    factors.truncate(points.len());
+    Ok(factors)
+}
+
+/// Returns the depths that the maps store, as the look-up finds them: without the wrap of maps that are stored shifted.
+pub(super) async fn texels(gpu: &Gpu, map: &ShadowMap) -> Result<Vec<Texels>> {
+    let descriptor = map.descriptor();
+    let [width, height] = descriptor.resolution;
+    let options = WgslOptions::group(0);
+    let stored = stored_wgsl(descriptor, &options, gpu.adapter.get_info().backend);
+    let fragment = TEXELS.replace("HEIGHT", &height.to_string());
+    let wgsl = [&receiver_wgsl(descriptor, &options), &stored, WHOLE, &fragment].concat();
+    let numbers = Numbers {
+        label: "texels",
+        wgsl: &wgsl,
+        bound: (map.receiver_layout(), map.receiver_group()),
+        points: None,
+        size: [width, height * descriptor.maps],
+    };
+    let depths = numbers.read(gpu).await?;
+    let maps = depths.chunks_exact((width * height) as usize);
+    Ok(maps.map(|depths| Texels { width, depths: depths.to_vec() }).collect())
+}
+
+/// Returns the values of a depth buffer of one sample a pixel. OpenGL's shaders cannot load them.
+pub(super) async fn depths(gpu: &Gpu, view: &wgpu::TextureView) -> Result<Depths> {
+    let size = [view.texture().width(), view.texture().height()];
+    let sample_type = wgpu::TextureSampleType::Depth;
+    let binding =
+        wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled: false };
+    let layout = bindings::layout(&gpu.device, "depths", wgpu::ShaderStages::FRAGMENT, &[binding]);
+    let group = bindings::group(&gpu.device, "depths", &layout, &[wgpu::BindingResource::TextureView(view)]);
+    let wgsl = [WHOLE, DEPTHS].concat();
+    let numbers = Numbers { label: "depths", wgsl: &wgsl, bound: (&layout, &group), points: None, size };
+    Ok(Depths { width: size[0], values: numbers.read(gpu).await? })
+}
