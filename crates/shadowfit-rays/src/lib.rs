@@ -2,7 +2,7 @@
 //! between a point and the sun.
 //!
 //! [`RayMesh`] is the hierarchy of one mesh, built on the CPU; [`RayScene`] holds meshes, and their instances of the
-//! frame, in six storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
+//! frame, in five storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
 //! has. Positions are in metres, in `f32` relative to an origin that the engine chooses.
 
 mod cut_out;
@@ -31,4 +31,4 @@ pub use wgsl::{RayWgslOptions, rays_wgsl, refit_wgsl};
 
 /// Levels that the shaders' stack can follow: those of the hierarchy of instances and of a mesh together. A balanced
 /// hierarchy of 2^32 triangles has 33.
-pub const MAX_DEPTH: usize = 64;
+pub const MAX_DEPTH: usize = 32;

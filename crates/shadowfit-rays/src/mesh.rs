@@ -35,7 +35,7 @@ pub struct RayMemory {
 
 /// Levels up to which a mesh's hierarchy is taken as it was built: what remains of [`MAX_DEPTH`](crate::MAX_DEPTH) holds
 /// millions of instances.
-const MESH_DEPTH: usize = 40;
+const MESH_DEPTH: usize = 20;
 /// Nodes for each triangle while the hierarchy is built: two for the tree of single triangles, and one in each of the two
 /// lists between which the builder moves what is not joined yet.
 const NODES_BUILDING: u64 = 4;

@@ -5,8 +5,9 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::deform::Deforming;
+use crate::hierarchy::WIDTH;
 use crate::mesh::RayMesh;
-use crate::records::NO_ROOT;
+use crate::records::{NO_ROOT, packed};
 
 /// A mesh of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,9 +43,13 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
-    /// Its first node.
+    /// Its root, packed.
     pub(crate) fn root(&self) -> u32 {
-        if self.nodes.is_empty() { NO_ROOT } else { self.nodes.start }
+        match (self.nodes.is_empty(), self.depth) {
+            (true, _) => NO_ROOT,
+            (_, 1) => packed(self.triangles.len() as u32, self.triangles.start),
+            _ => packed(0, self.nodes.start + WIDTH as u32),
+        }
     }
 
     /// Whether a mesh takes as much room.

@@ -10,6 +10,7 @@ use crate::cut_out::AlphaImage;
 use crate::deform::{Deforming, RefitPass, VertexBuffer};
 use crate::device::{BUFFERS, caught, check, group, layout, storage};
 use crate::error::RayError;
+use crate::hierarchy::WIDTH;
 use crate::instance::RayInstance;
 use crate::mesh::RayMesh;
 use crate::placed::{ImageId, MeshId, Meshes, Placed};
@@ -29,7 +30,8 @@ pub struct RayScene {
     group: wgpu::BindGroup,
     /// What the group binds, in the order of its bindings.
     bound: [wgpu::Buffer; BUFFERS],
-    top_nodes: Records,
+    /// Place of the nodes of instances, but for the first ones.
+    top_nodes: Range<u32>,
     instance_records: Records,
     nodes: Pool,
     triangles: Pool,
@@ -59,14 +61,16 @@ impl RayScene {
     /// [`RayError::Device`] if it is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, RayError> {
         check(&device.limits())?;
-        let top_nodes = Records::new::<NodeRecord>(device, queue, "nodes of instances")?;
         let instance_records = Records::new::<InstanceRecord>(device, queue, "instances")?;
-        let nodes = Pool::new::<NodeRecord>(device, queue, "nodes of meshes")?;
+        let mut nodes = Pool::new::<NodeRecord>(device, queue, "nodes")?;
+        // Shaders find the root of the instances at the beginning.
+        nodes.take(WIDTH)?;
+        let top_nodes = nodes.take(TopLevel::room(1))?;
         let triangles = Pool::new::<TriangleRecord>(device, queue, "triangles")?;
         let cut_outs = Pool::new::<CutOutRecord>(device, queue, "cut-outs")?;
         let images = Pool::new::<u32>(device, queue, "cut-out images")?;
         let pools = [&nodes, &triangles, &cut_outs, &images].map(|pool| pool.records.buffer());
-        let bound = [top_nodes.buffer(), instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
+        let bound = [pools[0], instance_records.buffer(), pools[1], pools[2], pools[3]];
         let bound = bound.map(Clone::clone);
         let (layout, group) = caught(device, || {
             let layout = rays_layout(device);
@@ -79,6 +83,7 @@ impl RayScene {
             layout,
             group,
             bound,
+            top: TopLevel::new(&[], 0, top_nodes.start)?,
             top_nodes,
             instance_records,
             nodes,
@@ -91,7 +96,6 @@ impl RayScene {
             refit: None,
             origin: DVec3::ZERO,
             instances: Vec::new(),
-            top: TopLevel::new(&[], 0)?,
             mesh_depth: 0,
             changed: Vec::new(),
             uploaded: 0,
@@ -266,7 +270,7 @@ impl RayScene {
         refit.record(&self.device, &self.queue, encoder, deforming, (scene, vertices))
     }
 
-    /// Layout of the bind group: six storage buffers that compute and fragment shaders read.
+    /// Layout of the bind group: five storage buffers that compute and fragment shaders read.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
@@ -357,12 +361,20 @@ impl RayScene {
                 Ok(instance.placed(mesh.root(), mesh.bounds))
             })
             .collect();
-        let top = TopLevel::new(&placed?, mesh_depth)?;
-        let [nodes, records] = top.counts();
-        let reserved = self.top_nodes.reserve(nodes).and_then(|()| self.instance_records.reserve(records));
-        self.rebind()?;
-        reserved?;
-        (self.top, self.mesh_depth) = (top, mesh_depth);
+        let placed = placed?;
+        let top_nodes = self.nodes.take(TopLevel::room(placed.len()))?;
+        let made = TopLevel::new(&placed, mesh_depth, top_nodes.start)
+            .and_then(|top| self.instance_records.reserve(top.records()).map(|()| top));
+        let bound = self.rebind();
+        match bound.and(made) {
+            Ok(top) => self.top = top,
+            Err(error) => {
+                self.nodes.give(top_nodes);
+                return Err(error);
+            }
+        }
+        self.mesh_depth = mesh_depth;
+        self.nodes.give(std::mem::replace(&mut self.top_nodes, top_nodes));
         self.instances.clear();
         self.instances.extend_from_slice(instances);
         self.upload();
@@ -370,7 +382,7 @@ impl RayScene {
     }
 
     fn upload(&mut self) {
-        self.uploaded += self.top.upload(&self.top_nodes, &self.instance_records);
+        self.uploaded += self.top.upload(&self.nodes.records, &self.instance_records);
     }
 
     /// Finds room for a mesh, and uploads it.
@@ -402,7 +414,7 @@ impl RayScene {
     fn write(&self, mesh: &RayMesh, placed: &Placed) {
         let nodes = mesh.hierarchy.nodes.iter().map(|node| {
             let base = if node.count > 0 { placed.triangles.start } else { placed.nodes.start };
-            NodeRecord { first: base + node.first, ..*node }
+            if node.is_none() { *node } else { NodeRecord { first: base + node.first, ..*node } }
         });
         let triangles = mesh.triangles.iter().map(|triangle| {
             let base = if triangle.cut_out > 0 { placed.cut_outs.start } else { 0 };
@@ -431,7 +443,7 @@ impl RayScene {
     /// Makes the bind group again if a buffer is another one.
     fn rebind(&mut self) -> Result<(), RayError> {
         let pools = [&self.nodes, &self.triangles, &self.cut_outs, &self.images].map(|pool| pool.records.buffer());
-        let now = [self.top_nodes.buffer(), self.instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
+        let now = [pools[0], self.instance_records.buffer(), pools[1], pools[2], pools[3]];
         if self.bound.each_ref() != now {
             let bound = now.map(Clone::clone);
             self.group = caught(&self.device, || bind(&self.device, &self.layout, &bound))?;

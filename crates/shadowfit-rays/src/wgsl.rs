@@ -60,7 +60,7 @@ impl<'a> RayWgslOptions<'a> {
 ///
 /// `shadowfit_rays_triangles[slot]` is the triangle of a hit's slot, with corners `a`, `b` and `c` in the space of its mesh.
 ///
-/// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 5 of the group, which is
+/// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 4 of the group, which is
 /// [`RayScene::group`](crate::RayScene::group); no derivatives.
 pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
     let rays = include_str!("shaders/rays.wgsl")

@@ -50,8 +50,10 @@ struct shadowfit_rays_Ray {
 }
 
 // Depths are compared with this before anything is uploaded.
-const SHADOWFIT_RAYS_STACK: u32 = MAX_DEPTHu;
-const SHADOWFIT_RAYS_NONE: u32 = 0xffffffffu;
+const SHADOWFIT_RAYS_STACK: u32 = 3u * MAX_DEPTHu;
+// A node in a word has the number of its triangles, or of its instances, in the bits above these.
+const SHADOWFIT_RAYS_FIRST: u32 = 0x7ffffffu;
+const SHADOWFIT_RAYS_COUNT_AT: u32 = 27u;
 // Greater than any distance that matters, in metres.
 const SHADOWFIT_RAYS_FAR: f32 = 3.0e38;
 // Share of the longest component below which a direction is parallel to a slab: its inverse times a kilometre, in
@@ -60,13 +62,13 @@ const SHADOWFIT_RAYS_PARALLEL: f32 = 1e-29;
 // A box ends by this factor later than f32 finds: four roundings (T. Ize, "Robust BVH Ray Traversal", 2013).
 const SHADOWFIT_RAYS_LATER: f32 = 1.0000005;
 
-@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_top: array<shadowfit_rays_Node>;
+// Those of the instances, of which the root comes first, and those of the meshes.
+@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_nodes: array<shadowfit_rays_Node>;
 @group(GROUP) @binding(1) var<storage, read> shadowfit_rays_instances: array<shadowfit_rays_Instance>;
-@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_nodes: array<shadowfit_rays_Node>;
-@group(GROUP) @binding(3) var<storage, read> shadowfit_rays_triangles: array<shadowfit_rays_Triangle>;
-@group(GROUP) @binding(4) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
+@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_triangles: array<shadowfit_rays_Triangle>;
+@group(GROUP) @binding(3) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
 // Of each image its width, its height, and four texels a word, the first one lowest.
-@group(GROUP) @binding(5) var<storage, read> shadowfit_rays_images: array<u32>;
+@group(GROUP) @binding(4) var<storage, read> shadowfit_rays_images: array<u32>;
 
 fn shadowfit_rays_ray(origin: vec3<f32>, direction: vec3<f32>) -> shadowfit_rays_Ray {
     let size = abs(direction);
@@ -97,14 +99,6 @@ fn shadowfit_rays_meets(least: vec3<f32>, most: vec3<f32>, ray: shadowfit_rays_R
     let enter = max(max(near.x, near.y), near.z);
     let leave = min(min(far.x, far.y), far.z);
     return leave * SHADOWFIT_RAYS_LATER >= enter && leave >= 0.0;
-}
-
-// Whether a ray meets the box of a node, of the top level or of a mesh.
-fn shadowfit_rays_meets_node(is_top: bool, node: u32, ray: shadowfit_rays_Ray) -> bool {
-    if is_top {
-        return shadowfit_rays_meets(shadowfit_rays_top[node].least, shadowfit_rays_top[node].most, ray);
-    }
-    return shadowfit_rays_meets(shadowfit_rays_nodes[node].least, shadowfit_rays_nodes[node].most, ray);
 }
 
 fn shadowfit_rays_remainder(index: i32, size: i32) -> i32 {
@@ -220,55 +214,63 @@ fn shadowfit_rays_blocks_any(first: u32, count: u32, instance: u32, ray: shadowf
     return false;
 }
 
+// A node in a word, and NONE where a ray does not meet it. No node is NONE as well.
+fn shadowfit_rays_child(node: u32, ray: shadowfit_rays_Ray) -> u32 {
+    let child = shadowfit_rays_nodes[node];
+    let packed = child.first | (child.count << SHADOWFIT_RAYS_COUNT_AT);
+    return select(SHADOWFIT_RAYS_NONE, packed, shadowfit_rays_meets(child.least, child.most, ray));
+}
+
 // Whether anything stands on a ray from a point, relative to the origin of the scene, in metres, along a unit direction.
 fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     let world = shadowfit_rays_ray(origin, direction);
-    if !shadowfit_rays_meets_node(true, 0u, world) {
-        return false;
-    }
     var ray = world;
     var stack: array<u32, SHADOWFIT_RAYS_STACK>;
     var height = 0u;
     // The instance whose mesh the ray is in, and the height of the stack where it was entered.
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = 0u;
+    var current = shadowfit_rays_nodes[0].first | (shadowfit_rays_nodes[0].count << SHADOWFIT_RAYS_COUNT_AT);
     loop {
-        let is_top = instance == SHADOWFIT_RAYS_NONE;
+        let count = current >> SHADOWFIT_RAYS_COUNT_AT;
         var next = SHADOWFIT_RAYS_NONE;
-        var first = 0u;
-        var count = 0u;
-        if is_top {
-            first = shadowfit_rays_top[current].first;
-            count = shadowfit_rays_top[current].count;
-        } else {
-            first = shadowfit_rays_nodes[current].first;
-            count = shadowfit_rays_nodes[current].count;
-        }
         if count == 0u {
-            let goes_left = shadowfit_rays_meets_node(is_top, first, ray);
-            if shadowfit_rays_meets_node(is_top, first + 1u, ray) {
-                next = first + 1u;
-            }
-            if goes_left {
+            let first = current & SHADOWFIT_RAYS_FIRST;
+            let met = vec4<u32>(
+                shadowfit_rays_child(first, ray), shadowfit_rays_child(first + 1u, ray),
+                shadowfit_rays_child(first + 2u, ray), shadowfit_rays_child(first + 3u, ray));
+            next = met.w;
+            if met.z != SHADOWFIT_RAYS_NONE {
                 if next != SHADOWFIT_RAYS_NONE {
                     stack[height] = next;
                     height++;
                 }
-                next = first;
+                next = met.z;
             }
-        } else if is_top {
-            let root = shadowfit_rays_instances[first].root;
-            if root != SHADOWFIT_RAYS_NONE {
-                let inside = shadowfit_rays_in_mesh(first, world);
-                if shadowfit_rays_meets_node(false, root, inside) {
-                    ray = inside;
-                    instance = first;
-                    entered = height;
-                    next = root;
+            if met.y != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
                 }
+                next = met.y;
             }
-        } else if shadowfit_rays_blocks_any(first, count, instance, ray) {
+            if met.x != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = met.x;
+            }
+        } else if instance == SHADOWFIT_RAYS_NONE {
+            let index = current & SHADOWFIT_RAYS_FIRST;
+            let root = shadowfit_rays_instances[index].root;
+            if root != SHADOWFIT_RAYS_NONE {
+                ray = shadowfit_rays_in_mesh(index, world);
+                instance = index;
+                entered = height;
+                next = root;
+            }
+        } else if shadowfit_rays_blocks_any(current & SHADOWFIT_RAYS_FIRST, count, instance, ray) {
             return true;
         }
         if next == SHADOWFIT_RAYS_NONE {
