@@ -11,6 +11,9 @@
 //! it by the technique's bias. Points outside all maps, or nearer to a map's border than the filter reaches, are traced;
 //! surfaces that face away from the light get 0 without a ray.
 //!
+//! Depths are rounded, and GPUs move the corners of triangles by up to 1/256 pixel. Each traced pixel therefore finds its
+//! triangle again with a short ray from the eye, and its shadow ray starts from the exact point with the exact normal.
+//!
 //! Several rays of a pixel, or those over the disc of a sun with a radius, are few: they correct what the map says of the
 //! whole pixel or disc, instead of standing for it.
 //!

@@ -9,7 +9,7 @@ use super::pipeline::{module, pipeline};
 use super::pyramid::{BOUNDS, Pyramids};
 use super::result::{EdgeResult, ResolveCounts, WhyFiltered};
 use super::shader::{self, Shape};
-use super::source::{Source, is_fine};
+use super::source::Source;
 use super::uniform::ResolveUniform;
 use super::view::ResolveView;
 use crate::bindings;
@@ -449,7 +449,7 @@ fn check_textures(view: &ResolveView<'_>) -> Result<(), ResolveError> {
     let texture = view.depth.texture();
     let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
     let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING);
-    if !is_readable || !is_fine(format) || !matches!(samples, 1 | 4) {
+    if !is_readable || !format.has_depth_aspect() || !matches!(samples, 1 | 4) {
         return Err(ResolveError::Texture { format, samples, usage });
     }
     let size = [texture.width(), texture.height()];

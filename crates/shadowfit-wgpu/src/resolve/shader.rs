@@ -111,11 +111,8 @@ pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Opti
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
     let is_soft = descriptor.filter.is_soft();
     let points = descriptor.edges.samples().max(1);
-    // Whether points lie beside the pixel's first sample.
-    let has_sides = !is_soft && (points > 1 || shape.samples > 1);
     let threads = format!(
-        "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\nconst HAS_SIDES: \
-         bool = {has_sides};\n",
+        "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\n",
         TRACE_THREADS / points
     );
     let list = LIST.replace("LIST_COUNT", "u32");

@@ -132,11 +132,13 @@ const PERSPECTIVE: f64 = 1e-4;
 /// away is less exact than its format. NVIDIA's rays from mountains start below them without it, and above with 2⁻³⁰.
 /// `Depth24Plus` may have 24 bits or be a float.
 fn rounding(format: wgpu::TextureFormat) -> [f32; 2] {
+    const BITS_17: f32 = 1.0 / 131_072.0;
     const BITS_23: f32 = 1.0 / 8_388_608.0;
     const BITS_24: f32 = 1.0 / 16_777_216.0;
     const BITS_30: f32 = 1.0 / 1_073_741_824.0;
     match format {
         wgpu::TextureFormat::Depth32Float | wgpu::TextureFormat::Depth32FloatStencil8 => [BITS_23, BITS_30],
+        wgpu::TextureFormat::Depth16Unorm => [BITS_23, BITS_17],
         _ => [BITS_23, BITS_24],
     }
 }
@@ -204,9 +206,4 @@ fn reach(map: &FittedMap, sun: &SunShadows) -> f32 {
     let descriptor = sun.map().descriptor();
     let texels = descriptor.softness.reach(descriptor.filter) + AROUND;
     map.projection.texel_size.max_element() * texels + map.bias.normal_offset
-}
-
-/// Whether a format's depths are fine enough for rays to start from.
-pub(super) fn is_fine(format: wgpu::TextureFormat) -> bool {
-    format.has_depth_aspect() && format != wgpu::TextureFormat::Depth16Unorm
 }

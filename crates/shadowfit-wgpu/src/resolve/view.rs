@@ -7,7 +7,7 @@ use shadowfit::{Boxes, DepthConvention};
 #[derive(Clone, Copy, Debug)]
 pub struct ResolveView<'a> {
     /// A view of the depth aspect of the whole texture, with usage `TEXTURE_BINDING` and 1 or 4 samples, that the
-    /// pre-pass has stored. Of 16 bits it is refused: its steps are wider than what casts.
+    /// pre-pass has stored. Any depth format is exact. The coarser its steps, the more pixels are traced.
     pub depth: &'a wgpu::TextureView,
     /// The matrix that it was drawn with: from world positions relative to the eye, in metres, to clip space.
     /// Perspective or orthographic, with a finite far plane or an infinite one; jitter is welcome.
@@ -29,9 +29,8 @@ pub struct ResolveView<'a> {
     pub budget: Option<u32>,
     /// The bind group of the pass's [`AnyHit`](super::AnyHit), if that has a layout.
     pub any_hit: Option<&'a wgpu::BindGroup>,
-    /// Rays start at least this far above the surface, in metres, and farther where depths are coarser. Where maps or boxes of
-    /// receivers reach kilometres away they start farther along the light, since positions in large triangles are rounded
-    /// by more. Default: 0.001.
+    /// Rays start at least this far above the surface, in metres. Where maps or boxes of receivers reach kilometres away they
+    /// start farther along the light, since positions in large triangles are rounded by more. Default: 0.001.
     pub ray_offset: f32,
 }
 

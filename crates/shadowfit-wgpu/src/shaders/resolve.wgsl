@@ -62,6 +62,11 @@ const TRACED_BIT: u32 = 1u;
 const BENT: f32 = 0.015625;
 // What a difference of two differences is rounded by, in roundings of a depth.
 const ROUNDINGS: f32 = 4.0;
+// Rasterisers move corners by up to this share of a pixel. GPUs have 256 steps in a pixel and round to the nearest one; WebGPU
+// promises nothing.
+const SNAP: f32 = 0.00390625;
+// Sine of the angle by which stored normals are rounded: they have ten bits or more.
+const STORED_TILT: f32 = 0.002;
 // Positions relative to the eye are rounded by this share of their distance.
 const POSITION_ROUNDING: f32 = 4.76837158e-7;
 
@@ -73,12 +78,18 @@ struct Surface {
     // Depth minus the far plane's, and its change on the surface's plane from a pixel to the next, across and down.
     depth: f32,
     steps: vec2<f32>,
+    // The greatest changes that the surface may have, across and down.
+    most_steps: vec2<f32>,
     // Unit normal on the side of the eye; zero where there is none.
     normal: vec3<f32>,
     // Whether the normal is known: neighbours lie on one plane, or the texture of normals has it.
     is_known: bool,
     // Whether all samples of the pixel lie on the plane.
     is_single: bool,
+    // Distance from the position, along the line of sight, within which the surface lies, in metres.
+    off: vec3<f32>,
+    // Sine of the angle by which the normal may be off.
+    tilt: f32,
 }
 
 // Depth of a pixel's first sample minus that of the far plane; 0 where nothing is drawn, and outside the picture.
@@ -112,21 +123,26 @@ fn moved(change: vec4<f32>, surface: Surface) -> vec3<f32> {
     return (change.xyz - surface.position * change.w) / surface.w;
 }
 
-// Change of depth to the next pixel along an axis; y is 1 where both neighbours lie on one plane with the pixel. Where
-// they do not, it is taken from the neighbour that is nearer in depth, so that what lies behind a silhouette does not
-// count.
-fn change(pixel: vec2<i32>, axis: vec2<i32>, depth: f32) -> vec2<f32> {
+// Change of depth to the next pixel along an axis, and the greatest change to one of both neighbours; z is 1 where these lie on
+// one plane with the pixel. Where they do not, the first is taken from the neighbour that is nearer in depth, so that what lies
+// behind a silhouette does not count.
+fn change(pixel: vec2<i32>, axis: vec2<i32>, depth: f32) -> vec3<f32> {
     let next = depth_at(pixel + axis);
     let previous = depth_at(pixel - axis);
     let after = next - depth;
     let before = depth - previous;
-    let most = BENT * abs(after + before) + ROUNDINGS * rounding(depth);
-    let is_plane = next != 0.0 && previous != 0.0 && abs(after - before) <= most;
+    let rounded = BENT * abs(after + before) + ROUNDINGS * rounding(depth);
+    let is_plane = next != 0.0 && previous != 0.0 && abs(after - before) <= rounded;
     let takes_after = previous == 0.0 || (next != 0.0 && abs(after) <= abs(before));
     // A pixel between two that show nothing is taken to be as deep all over.
     let is_alone = next == 0.0 && previous == 0.0;
     let one_side = select(select(before, after, takes_after), 0.0, is_alone);
-    return vec2<f32>(select(one_side, 0.5 * (after + before), is_plane), select(0.0, 1.0, is_plane));
+    let mean = 0.5 * (after + before);
+    if is_plane {
+        return vec3<f32>(mean, abs(mean), 1.0);
+    }
+    let most = max(select(0.0, abs(after), next != 0.0), select(0.0, abs(before), previous != 0.0));
+    return vec3<f32>(one_side, most, 0.0);
 }
 
 // Whether the other samples of a pixel lie on the plane of its first one.
@@ -176,27 +192,31 @@ fn surface_of(pixel: vec2<i32>, depth: f32) -> Surface {
         let across = dot(normal, moved(m[0], surface));
         let down = dot(normal, moved(m[1], surface));
         surface.steps = -vec2<f32>(across, down) / dot(normal, ray);
+        surface.most_steps = abs(surface.steps);
         surface.is_known = true;
+        surface.tilt = STORED_TILT;
     } else {
         let across = change(pixel, vec2<i32>(1, 0), depth);
         let down = change(pixel, vec2<i32>(0, 1), depth);
         surface.steps = vec2<f32>(across.x, down.x);
+        surface.most_steps = vec2<f32>(across.y, down.y);
         let right = moved(m[0] + m[2] * across.x, surface);
         let below = moved(m[1] + m[2] * down.x, surface);
         let crossed = unit(cross(right, below));
         surface.normal = select(crossed, -crossed, dot(crossed, away) > 0.0);
-        surface.is_known = across.y * down.y > 0.0 && any(crossed != vec3<f32>(0.0));
+        surface.is_known = across.z * down.z > 0.0 && any(crossed != vec3<f32>(0.0));
+        // The central differences of two depths are rounded as a depth is.
+        let rise = abs(dot(ray, crossed)) * rounding(depth);
+        surface.tilt = BENT + rise * (inverseSqrt(dot(right, right)) + inverseSqrt(dot(below, below)));
     }
+    surface.off = ray * (ROUNDINGS * rounding(depth) + SNAP * (surface.most_steps.x + surface.most_steps.y));
     surface.is_single = is_single(pixel, depth, surface.steps);
     return surface;
 }
 
-// Where the rays from a pixel's surface start above it, in metres: farther than its depth, or what follows from it, may
-// be rounded by.
-fn height_of(surface: Surface) -> f32 {
-    let step = length(moved(resolve.world_from_pixel[2], surface)) * rounding(surface.depth);
-    let distance = length(surface.position) + length(resolve.eye);
-    return max(resolve.ray_offset, max(step, POSITION_ROUNDING * distance));
+// Where rays from a point start above its surface, in metres: farther than positions are rounded by.
+fn height_at(position: vec3<f32>) -> f32 {
+    return max(resolve.ray_offset, POSITION_ROUNDING * (length(position) + length(resolve.eye)));
 }
 
 // Texels of a map from a pixel to the next on its plane, across and down.

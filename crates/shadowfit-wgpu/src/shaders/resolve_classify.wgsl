@@ -24,10 +24,11 @@ const ROUNDED_TEXEL: f32 = 0.02;
 
 // How many of the four texels around a corner are not nearer to the light than the point's plane, and how many of them
 // shadow it by the technique's bias. rounding: by how much the plane's depth may be off there, toward the light.
-fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32) -> vec2<f32> {
+// rise: the same of the point, which may lie deeper than its surface.
+fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32, rise: f32) -> vec2<f32> {
     let stored = stored_around(corner, projected);
     let offset = corner - projected.texel;
-    let biased = saturate(projected.depth + dot(projected.gradient, offset));
+    let biased = saturate(projected.depth + rise + dot(projected.gradient, offset));
     let x = projected.gradient.x * 0.5;
     let y = projected.gradient.y * 0.5;
     let around = vec4<f32>(y - x, y + x, x - y, -x - y);
@@ -41,7 +42,7 @@ fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32) ->
 // What the texels say that the filter reads around the points of a pixel: 1 where none is nearer to the light than the
 // point's plane, 0 where all shadow it, UNSURE otherwise, and TOO_WIDE where they do not all lie in the map or are too
 // many. spread: by how much the points differ from the one that is projected, in texels.
-fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>) -> f32 {
+fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> f32 {
     let first = floor(projected.texel - spread - 0.5) - (FOOTPRINT - 1.0);
     let last = floor(projected.texel + spread - 0.5) + FOOTPRINT;
     let blocks = ceil((last - first + 1.0) * 0.5);
@@ -54,7 +55,7 @@ fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f3
     var counts = vec2<f32>(0.0);
     for (var y = 0.0; y < blocks.y; y += 1.0) {
         for (var x = 0.0; x < blocks.x; x += 1.0) {
-            counts += compared(first + 1.0 + 2.0 * vec2<f32>(x, y), projected, rounding);
+            counts += compared(first + 1.0 + 2.0 * vec2<f32>(x, y), projected, rounding, rise);
         }
     }
     let read = 4.0 * blocks.x * blocks.y;
@@ -66,10 +67,20 @@ fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f3
 // are read there.
 fn spread_in(entry: i32, map: shadowfit_Map, surface: Surface) -> vec2<f32> {
     let texels = texels_per_pixel(map, surface);
-    let above = (map.uv_from_world * vec4<f32>(surface.normal * height_of(surface), 0.0)).xy * map.size;
+    let above = (map.uv_from_world * vec4<f32>(surface.normal * height_at(surface.position), 0.0)).xy * map.size;
+    let along = (map.uv_from_world * vec4<f32>(surface.off, 0.0)).xy * map.size;
     let is_coarsest = entry + 1 == i32(shadowfit_receiver.map_count);
     let beside = select(0.0, COARSEST_FOOTPRINT - FOOTPRINT, is_coarsest);
-    return resolve.point_reach * (abs(texels[0]) + abs(texels[1])) + abs(above) + beside;
+    return resolve.point_reach * (abs(texels[0]) + abs(texels[1])) + abs(above) + abs(along) + beside;
+}
+
+// By how much the depth of a point's plane may be nearer to the light, since its surface may be nearer to the eye.
+fn rise_in_map(map: shadowfit_Map, surface: Surface) -> f32 {
+    let m = map.uv_from_world;
+    let to_light = shadowfit_receiver.to_light;
+    let depth = dot(vec3<f32>(m[0].z, m[1].z, m[2].z), to_light);
+    let cosine = max(dot(surface.normal, to_light), SHADOWFIT_MIN_COSINE);
+    return depth * abs(dot(surface.off, surface.normal)) / cosine;
 }
 
 // Whether a ray toward the light meets a box.
@@ -110,14 +121,15 @@ fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<f32> {
     }
     let projected = shadowfit_project(map, surface.position, surface.normal);
     let spread = spread_in(entry, map, surface);
+    let rise = rise_in_map(map, surface);
     var verdict = TOO_WIDE;
     if IS_SOFT {
-        verdict = soft_footprint(map, projected, spread);
+        verdict = soft_footprint(map, projected, spread, rise);
         if verdict != TOO_WIDE {
             return vec2<f32>(verdict);
         }
     }
-    let near = footprint(map, projected, spread);
+    let near = footprint(map, projected, spread, rise);
     return vec2<f32>(select(near, verdict, IS_SOFT), near);
 }
 
@@ -155,14 +167,14 @@ fn verdict_of(pixel: vec2<i32>) -> f32 {
         return BEYOND;
     }
     let facing = dot(surface.normal, shadowfit_receiver.to_light);
-    if surface.is_known && surface.is_single && facing <= 0.0 {
+    if surface.is_known && surface.is_single && facing <= -surface.tilt {
         return FACES_AWAY;
     }
     let unsure = unsure_maps(surface.position);
     if !surface.is_single || (unsure >> 31u) != 0u {
         return FILTERED;
     }
-    if !surface.is_known {
+    if !surface.is_known || facing < surface.tilt {
         return UNSURE;
     }
     let verdict = verdict_of_maps(surface, unsure);

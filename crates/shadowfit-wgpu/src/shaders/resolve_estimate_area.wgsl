@@ -33,8 +33,8 @@ fn estimate_at(map: Estimate, place: vec2<f32>, in_sun: vec2<f32>) -> f32 {
     return shadowfit_look_up(map.projected.texel + map.steps[0] * place.x + map.steps[1] * place.y, map.projected);
 }
 
-// One of the look-ups on all of the pixel, as far as points may lie.
-fn estimate_part(map: Estimate, sides: array<vec2<f32>, 2>, look_up: u32) -> f32 {
+// One of the look-ups on all of the pixel.
+fn estimate_part(map: Estimate, look_up: u32) -> f32 {
     let place = (vec2<f32>(f32(look_up % AREA), f32(look_up / AREA)) + 0.5) / f32(AREA) - 0.5;
-    return estimate_at(map, clamp(place - sample_place(0u), sides[1], sides[0]), vec2<f32>(0.0));
+    return estimate_at(map, place - sample_place(0u), vec2<f32>(0.0));
 }

@@ -47,7 +47,7 @@ fn estimate_at(map: Estimate, place: vec2<f32>, in_sun: vec2<f32>) -> f32 {
 }
 
 // One of the look-ups over the disc.
-fn estimate_part(map: Estimate, sides: array<vec2<f32>, 2>, look_up: u32) -> f32 {
+fn estimate_part(map: Estimate, look_up: u32) -> f32 {
     // The golden angle, pi (3 - sqrt 5).
     let angle = f32(look_up) * 2.39996323;
     let place = vec2<f32>(cos(angle), sin(angle)) * sqrt((f32(look_up) + 0.5) / f32(LOOK_UPS));

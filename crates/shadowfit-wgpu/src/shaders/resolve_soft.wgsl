@@ -116,7 +116,7 @@ fn verdict_of_blocks(p: shadowfit_Projected, blocks: Blocks, around: vec2<f32>, 
 }
 
 // What a map says about a pixel under a sun with a radius: 1, 0, UNSURE or TOO_WIDE.
-fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>) -> f32 {
+fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> f32 {
     let around = spread + FOOTPRINT;
     // How high casters may be: as high as the map has any, and then as high as those in that cone.
     var found = vec2<f32>(NEAREST);
@@ -133,7 +133,7 @@ fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>)
     let is_lid = all(gap <= vec2<f32>(MOST_GAP));
     var verdict = UNSURE;
     if all(radius + around <= vec2<f32>(NARROW)) {
-        verdict = footprint(map, p, spread + radius);
+        verdict = footprint(map, p, spread + radius, rise);
     } else {
         let steepness = abs(p.gradient.x) + abs(p.gradient.y);
         let rounding = map.constant_depth + TOWARD_LIGHT * ROUNDED_TEXEL * steepness;
@@ -143,7 +143,7 @@ fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>)
             // Casters that are lower than the plane rises within its block, such as ledges of a wall that the light grazes,
             // stand in the way close to the point only, where texels are looked at one by one.
             let low = 2.0 * abs(rise_in(p, blocks, rounding) * p.penumbra);
-            let near = footprint(map, p, spread + low);
+            let near = footprint(map, p, spread + low, 0.0);
             verdict = select(near, UNSURE, near == 0.0);
         }
     }

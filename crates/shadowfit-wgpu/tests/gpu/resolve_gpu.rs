@@ -5,6 +5,8 @@
 mod any_hit_gpu;
 #[path = "resolve/errors_gpu.rs"]
 mod errors_gpu;
+#[path = "resolve/exact_gpu.rs"]
+mod exact_gpu;
 #[path = "resolve/factors_gpu.rs"]
 mod factors_gpu;
 #[path = "resolve/pass_gpu.rs"]

@@ -37,9 +37,7 @@ fn refused<'a>(
 fn textures_that_the_pass_cannot_read_are_refused_with_what_they_are() {
     let mut stage = stage();
     let good = stage.draw(&look());
-    let depth16 = wgpu::TextureFormat::Depth16Unorm;
     let textures = [
-        (stage.gpu.texture(SIZE, 1, depth16, BOUND | DRAWN), vec!["Depth16Unorm", "24 or 32 bits"]),
         (stage.gpu.texture(SIZE, 1, wgpu::TextureFormat::R32Float, BOUND), vec!["R32Float", "depth format"]),
         (
             stage.gpu.texture(SIZE, 1, wgpu::TextureFormat::Depth32Float, DRAWN),

@@ -174,6 +174,20 @@ impl Stage {
         Drawn { depth, normals }
     }
 
+    /// Returns the index of the triangle that each pixel shows, counted over all things.
+    pub(super) fn triangles(&self, look: &Look) -> Vec<Option<usize>> {
+        let mut corners = self.corners(look);
+        for (index, corner) in corners.iter_mut().enumerate() {
+            corner.normal = Vec4::splat((index / 3 + 1) as f32);
+        }
+        let usage = READ_BACK | wgpu::TextureUsages::TEXTURE_BINDING;
+        let numbers = self.gpu.texture(look.size, 1, wgpu::TextureFormat::Rgba32Float, usage);
+        let picture = DepthPicture { format: look.format, ..DepthPicture::new(look.size, look.convention) };
+        self.gpu.draw_depths(&DepthPicture { normals: Some(&numbers), ..picture }, &corners);
+        let numbers: Vec<[f32; 4]> = self.gpu.texels(numbers.texture());
+        numbers.iter().map(|number| (number[0] as usize).checked_sub(1)).collect()
+    }
+
     /// Draws depths at a corner of a texture of another size.
     pub(super) fn draw_part(&self, look: &Look, texture: [u32; 2], [left, top]: [u32; 2]) -> Drawn {
         let part = [left, top, look.size[0], look.size[1]];

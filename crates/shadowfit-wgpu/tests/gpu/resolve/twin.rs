@@ -50,6 +50,10 @@ const MOST_BLOCKS: f32 = 6.0;
 const ROUNDED_TEXEL: f32 = 0.02;
 const BENT: f32 = 0.015_625;
 const ROUNDINGS: f32 = 4.0;
+const SNAP: f32 = 0.003_906_25;
+const STORED_TILT: f32 = 0.002;
+const MOST_SNAP: f32 = 0.031_25;
+const BEND: f32 = 0.5;
 const MIN_COSINE: f32 = 0.005;
 const POSITION_ROUNDING: f32 = 4.768_371_6e-7;
 /// Least height of a ray's start, in metres: [`ResolveView::new`](shadowfit_wgpu::resolve::ResolveView::new)'s.
@@ -165,13 +169,13 @@ impl Twin {
             return Verdict::Beyond;
         }
         let facing = dot(surface.normal, self.receiver.to_light.into());
-        if surface.is_known && surface.is_single && facing <= self.slack * 0.01 {
+        if surface.is_known && surface.is_single && facing <= self.slack * 0.01 - surface.tilt {
             return Verdict::FacesAway;
         }
         if !surface.is_single {
             return Verdict::Filtered;
         }
-        if !surface.is_known {
+        if !surface.is_known || facing < surface.tilt + self.slack * 0.01 {
             return Verdict::Unsure;
         }
         match self.of_map(&surface) {
@@ -210,9 +214,10 @@ impl Twin {
             }
             let projected = self.project(map, surface.position, surface.normal);
             let spread = self.spread_in(entry, map, surface);
+            let rise = self.rise_in_map(map, surface);
             let is_soft = self.descriptor.filter.is_soft();
-            let close = || self.footprint(map, &projected, spread);
-            match if is_soft { self.soft_footprint(map, &projected, spread) } else { close() } {
+            let close = || self.footprint(map, &projected, spread, rise);
+            match if is_soft { self.soft_footprint(map, &projected, spread, rise) } else { close() } {
                 Footprint::TooWide if self.descriptor.selection.is_by_coverage() => {
                     near = if is_first && is_soft { Some(close()) } else { near };
                 }
@@ -245,14 +250,22 @@ impl Twin {
     /// By how much the starts of a pixel's rays differ from its first sample in a map, in texels; more in the last one.
     fn spread_in(&self, entry: u32, map: &MapUniform, surface: &Surface) -> Vec2 {
         let [right, down] = self.texels_per_pixel(map, surface);
-        let above = (surface.normal * self.height_of(surface)).extend(0.0);
-        let above = texture_place(map, above).truncate() * Vec2::from(map.size);
+        let in_map = |shift: Vec3| texture_place(map, shift.extend(0.0)).truncate() * Vec2::from(map.size);
+        let above = in_map(surface.normal * self.height_at(surface.position));
+        let along = in_map(surface.off);
         let is_coarsest = entry + 1 == self.receiver.map_count;
         let beside = if is_coarsest { COARSEST_FOOTPRINT - FOOTPRINT } else { 0.0 };
-        self.point_reach * (right.abs() + down.abs()) + above.abs() + beside
+        self.point_reach * (right.abs() + down.abs()) + above.abs() + along.abs() + beside
     }
 
-    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2) -> Footprint {
+    /// By how much the depth of a point's plane may be nearer to the light, since its surface may be nearer to the eye.
+    fn rise_in_map(&self, map: &MapUniform, surface: &Surface) -> f32 {
+        let to_light = Vec3::from(self.receiver.to_light);
+        let depth = texture_place(map, to_light.extend(0.0)).z;
+        depth * dot(surface.off, surface.normal).abs() / dot(surface.normal, to_light).max(MIN_COSINE)
+    }
+
+    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2, rise: f32) -> Footprint {
         let first = (projected.texel - spread - 0.5).floor() - (FOOTPRINT - 1.0);
         let last = (projected.texel + spread - 0.5).floor() + FOOTPRINT;
         let blocks = ((last - first + 1.0) * 0.5).ceil();
@@ -272,7 +285,7 @@ impl Twin {
                 let corner = first + 1.0 + 2.0 * Vec2::new((column / 2) as f32, (row / 2) as f32);
                 let offset = corner - projected.texel;
                 let change = projected.gradient.x * offset.x + projected.gradient.y * offset.y;
-                let biased = (projected.depth + change).clamp(0.0, 1.0);
+                let biased = (projected.depth + rise + change).clamp(0.0, 1.0);
                 let [x, y] = [(column, projected.gradient.x), (row, projected.gradient.y)]
                     .map(|(place, gradient)| if place % 2 == 0 { -gradient * 0.5 } else { gradient * 0.5 });
                 let plane = (projected.surface + rounding + change + (y + x)).clamp(0.0, 1.0);

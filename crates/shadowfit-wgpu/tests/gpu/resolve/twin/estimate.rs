@@ -50,11 +50,11 @@ impl Twin {
         self.look_up(map, projected, projected.texel + steps[0] * place.x + steps[1] * place.y)
     }
 
-    /// For all of the pixel that points may lie in, or of the sun.
-    pub(super) fn estimate_whole(&self, estimate: &Estimate<'_>, [least, most]: [Vec2; 2]) -> f32 {
+    /// For all of the pixel, or of the sun.
+    pub(super) fn estimate_whole(&self, estimate: &Estimate<'_>) -> f32 {
         let in_pixel = |index: u32| {
             let place = (Vec2::new((index % AREA) as f32, (index / AREA) as f32) + 0.5) / AREA as f32 - 0.5;
-            [(place - self.place(0)).clamp(least, most), Vec2::ZERO]
+            [place - self.place(0), Vec2::ZERO]
         };
         let in_sun = |index: u32| [Vec2::ZERO, super::rays::in_disc(index, DISC)];
         let rays: Vec<[Vec2; 2]> =

@@ -3,7 +3,7 @@
 use shadowfit::glam::{Vec2, Vec3, Vec4};
 use shadowfit_truth::Tracer;
 
-use super::{Surface, Twin, dot, transformed};
+use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, Surface, Twin, dot, transformed};
 
 /// What the rays of a pixel find.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,19 @@ pub(in super::super) struct Traced {
     pub(in super::super) factor: f32,
     /// The share of the rays that are not blocked.
     pub(in super::super) share: f32,
+}
+
+/// A point that rays start from, relative to the eye.
+#[derive(Clone, Copy)]
+struct Start {
+    position: Vec3,
+    /// Where the ray starts.
+    above: Vec3,
+    normal: Vec3,
+    /// Where it lies in the pixel, from its first sample, in pixels.
+    place: Vec2,
+    /// `None` where the depth buffer alone says where it is.
+    triangle: Option<u32>,
 }
 
 /// The points of a pixel that rays start from, in pixels from its first sample, and of the sun that they go to, in its
@@ -42,34 +55,38 @@ pub(super) fn in_disc(index: u32, count: u32) -> Vec2 {
 impl Twin {
     pub(in super::super) fn traced(&self, index: usize, tracer: &Tracer) -> Traced {
         let (pixel, surface) = self.surface_at(index);
-        let above = surface.normal * self.height_of(&surface);
-        let sides = self.sides_of(pixel, &surface);
         let [x, y] = self.across_light();
         let turn = self.turn(pixel);
         let (sine, cosine) = turn.sin_cos();
         let across = [x * cosine + y * sine, y * cosine - x * sine];
         let estimate = self.estimate_of(&surface, across, turn);
-        let (mut lit, mut expected) = (0.0, 0.0);
+        let (mut lit, mut expected, mut is_off) = (0.0, 0.0, false);
+        let mut first = None;
         for [place, in_sun] in &self.points {
-            let place = place.clamp(sides[0], sides[1]);
-            let start = self.point_of(pixel, &surface, place) + above + self.eye;
+            let start = self.start_at(pixel, &surface, *place, (tracer, first));
+            first.get_or_insert(start);
+            let above = dot(start.position - surface.position, surface.normal).abs();
+            let most = 0.5 * self.height_at(start.position) + dot(surface.off, surface.normal).abs();
+            is_off |= start.place != *place || (*place != Vec2::ZERO && above > most);
             let aside = *in_sun * self.sun_tangent();
             let direction = Vec3::from(self.receiver.to_light) + across[0] * aside.x + across[1] * aside.y;
-            lit += f32::from(u8::from(!tracer.is_occluded(start, direction.normalize())));
-            expected += estimate.as_ref().map_or(0.0, |map| self.estimate_at(map, [place, *in_sun]));
+            let is_turned_away = start.triangle.is_some() && dot(start.normal, self.receiver.to_light.into()) <= 0.0;
+            let is_lit = !is_turned_away && !tracer.is_occluded(start.above + self.eye, direction.normalize());
+            lit += f32::from(u8::from(is_lit));
+            expected += estimate.as_ref().map_or(0.0, |map| self.estimate_at(map, [start.place, *in_sun]));
         }
         let count = self.points.len() as f32;
         let share = lit / count;
-        let corrected = |map| (self.estimate_whole(map, sides) + (lit - expected) / count).clamp(0.0, 1.0);
+        let corrected = |map| (self.estimate_whole(map) + (lit - expected) / count).clamp(0.0, 1.0);
         let faded = self.faded(surface.position);
-        let factor = estimate.as_ref().map_or(share, corrected) * (1.0 - faded) + faded;
+        let factor = estimate.as_ref().filter(|_| !is_off).map_or(share, corrected) * (1.0 - faded) + faded;
         Traced { factor, share: share * (1.0 - faded) + faded }
     }
 
     /// How many of as many rays over the sun's disc, from a pixel's centre, are not blocked.
     pub(in super::super) fn lit_of(&self, index: usize, count: u32, tracer: &Tracer) -> u32 {
-        let (_, surface) = self.surface_at(index);
-        let start = surface.position + surface.normal * self.height_of(&surface) + self.eye;
+        let (pixel, surface) = self.surface_at(index);
+        let start = self.start_at(pixel, &surface, Vec2::ZERO, (tracer, None)).above + self.eye;
         let [x, y] = self.across_light();
         let is_lit = |index: &u32| {
             let aside = in_disc(*index, count) * self.sun_tangent();
@@ -89,32 +106,50 @@ impl Twin {
         if self.descriptor.filter.is_soft() { self.descriptor.softness.tangent() } else { 0.0 }
     }
 
-    /// Whether a pixel leaves the plane of another one by so little that rays from between them start above the surface.
-    fn is_on_plane(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], surface: &Surface) -> bool {
-        let found = self.depth_at([x + right, y + down]);
-        let off = found - surface.depth - (surface.steps.x * right as f32 + surface.steps.y * down as f32);
-        let up = dot(Self::moved(self.world_from_pixel[2], surface), surface.normal);
-        found != 0.0 && (off * up).abs() * self.point_reach <= 0.5 * self.height_of(surface)
-    }
-
-    /// Whether the surface goes on to a neighbour as the pixel's plane does.
-    fn goes_on(&self, pixel: [i32; 2], axis: [i32; 2], surface: &Surface) -> bool {
-        let is_on_plane = |steps: i32| self.is_on_plane(pixel, axis.map(|side| side * steps), surface);
-        is_on_plane(1) && (is_on_plane(-1) || is_on_plane(2))
-    }
-
-    /// Least and greatest place of a pixel's points, in pixels from its first sample.
-    fn sides_of(&self, pixel: [i32; 2], surface: &Surface) -> [Vec2; 2] {
-        let far = |axis: [i32; 2]| if self.goes_on(pixel, axis, surface) { self.point_reach } else { 0.0 };
-        [-Vec2::new(far([-1, 0]), far([0, -1])), Vec2::new(far([1, 0]), far([0, 1]))]
-    }
-
-    fn point_of(&self, [x, y]: [i32; 2], surface: &Surface, place: Vec2) -> Vec3 {
-        let most = 0.5 * surface.depth.abs();
-        let depth = surface.depth + (surface.steps.x * place.x + surface.steps.y * place.y).clamp(-most, most);
-        let at = Vec2::new(x as f32, y as f32) + self.place(0) + place;
+    fn position_at(&self, at: Vec2, depth: f32) -> Vec3 {
         let homogeneous = transformed(&self.world_from_pixel, Vec4::new(at.x, at.y, depth, 1.0));
         homogeneous.truncate() / homogeneous.w
+    }
+
+    /// Where a ray from a place in a pixel starts, in pixels from its first sample. `first`: the start of the pixel's first ray.
+    fn start_at(
+        &self,
+        [x, y]: [i32; 2],
+        surface: &Surface,
+        place: Vec2,
+        (tracer, first): (&Tracer, Option<Start>),
+    ) -> Start {
+        let farthest = 0.5 * surface.depth.abs();
+        let change = surface.steps.x * place.x + surface.steps.y * place.y;
+        let depth = surface.depth + change.clamp(-farthest, farthest);
+        let [across, down] = surface.most_steps.to_array();
+        let bend = BEND * (across * place.x.abs() + down * place.y.abs());
+        let off = (ROUNDINGS * self.rounding(depth) + MOST_SNAP * (across + down) + bend).min(0.5 * depth.abs());
+        let at = Vec2::new(x as f32, y as f32) + self.place(0) + place;
+        let middle = self.position_at(at, depth);
+        let (one, other) = (self.position_at(at, depth - off), self.position_at(at, depth + off));
+        let (near, far) = if dot(other - one, self.forward) > 0.0 { (one, other) } else { (other, one) };
+        let reach = (middle - near).length() + POSITION_ROUNDING * (middle.length() + self.eye.length());
+        let direction = (far - near).normalize();
+        let begin = middle - direction * reach + self.eye;
+        let mut hit = None;
+        tracer.for_each_hit_within(begin, direction, 2.0 * reach, |other| {
+            if first.is_some_and(|first| first.triangle == Some(other.triangle)) {
+                hit = Some(other);
+            }
+        });
+        let Some(hit) = hit.or_else(|| tracer.first_hit_within(begin, direction, 2.0 * reach)) else {
+            let position = surface.position;
+            let height = self.height_at(position).max(dot(surface.off, surface.normal).abs());
+            let above = position + surface.normal * height;
+            let by_depth = Start { position, above, normal: surface.normal, place: Vec2::ZERO, triangle: None };
+            return first.unwrap_or(by_depth);
+        };
+        let position = middle + direction * (hit.distance - reach);
+        let normal = tracer.normal(hit.triangle);
+        let normal = if dot(normal, direction) > 0.0 { -normal } else { normal };
+        let above = position + normal * self.height_at(position);
+        Start { position, above, normal, place, triangle: Some(hit.triangle) }
     }
 
     /// Two directions across the light (T. Duff et al., "Building an orthonormal basis, revisited", 2017).

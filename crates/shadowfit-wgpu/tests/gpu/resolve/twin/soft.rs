@@ -62,7 +62,7 @@ struct Blocks {
 }
 
 impl Twin {
-    pub(super) fn soft_footprint(&self, map: &MapUniform, p: &Projected, spread: Vec2) -> Footprint {
+    pub(super) fn soft_footprint(&self, map: &MapUniform, p: &Projected, spread: Vec2, rise: f32) -> Footprint {
         let around = spread + FOOTPRINT;
         let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
         let nearest = if is_reversed { 1.0 } else { 0.0 };
@@ -78,7 +78,7 @@ impl Twin {
         let gap = ((found[1] - found[0]) * Vec2::from(map.penumbra)).abs();
         let is_lid = gap.cmple(Vec2::splat(MOST_GAP * (1.0 + self.slack))).all();
         let verdict = if (radius + around).cmple(Vec2::splat(NARROW)).all() {
-            self.footprint(map, p, spread + radius)
+            self.footprint(map, p, spread + radius, rise)
         } else {
             self.verdict_of_blocks(map, p, radius, spread)
         };
@@ -153,7 +153,7 @@ impl Twin {
         let low = 2.0 * (rise * Vec2::from(map.penumbra)).abs() + self.radius_slack;
         match (is_lit, is_covered) {
             // What is lower than the plane within a block.
-            (true, _) => match self.footprint(map, p, spread + low) {
+            (true, _) => match self.footprint(map, p, spread + low, 0.0) {
                 Footprint::Sure(0.0) => Footprint::Unsure,
                 near => near,
             },

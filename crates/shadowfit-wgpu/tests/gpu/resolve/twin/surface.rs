@@ -4,16 +4,24 @@ use shadowfit::glam::{Vec2, Vec3, Vec4};
 use shadowfit_wgpu::MapUniform;
 use shadowfit_wgpu::resolve::NormalEncoding;
 
-use super::{BENT, FOUR, POSITION_ROUNDING, RAY_OFFSET, ROUNDINGS, Twin, dot, texture_place, transformed};
+use super::{
+    BENT, FOUR, POSITION_ROUNDING, RAY_OFFSET, ROUNDINGS, SNAP, STORED_TILT, Twin, dot, texture_place, transformed,
+};
 
 pub(super) struct Surface {
     pub(super) position: Vec3,
     pub(super) w: f32,
     pub(super) depth: f32,
     pub(super) steps: Vec2,
+    /// The greatest changes that the surface may have, across and down.
+    pub(super) most_steps: Vec2,
     pub(super) normal: Vec3,
     pub(super) is_known: bool,
     pub(super) is_single: bool,
+    /// Distance along the line of sight within which the surface lies, in metres.
+    pub(super) off: Vec3,
+    /// Sine of the angle by which the normal may be off.
+    pub(super) tilt: f32,
 }
 
 impl Twin {
@@ -38,7 +46,7 @@ impl Twin {
         if self.samples == 1 { Vec2::ZERO } else { FOUR[sample] }
     }
 
-    fn change(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], depth: f32) -> (f32, bool) {
+    fn change(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], depth: f32) -> (f32, f32, bool) {
         let next = self.depth_at([x + right, y + down]);
         let previous = self.depth_at([x - right, y - down]);
         let (after, before) = (next - depth, depth - previous);
@@ -46,11 +54,14 @@ impl Twin {
         let is_plane = next != 0.0 && previous != 0.0 && (after - before).abs() <= most;
         let takes_after = previous == 0.0 || (next != 0.0 && after.abs() <= before.abs());
         if is_plane {
-            (0.5 * (after + before), true)
+            let mean = 0.5 * (after + before);
+            (mean, mean.abs(), true)
         } else if next == 0.0 && previous == 0.0 {
-            (0.0, false)
+            (0.0, 0.0, false)
         } else {
-            (if takes_after { after } else { before }, false)
+            let [one, other] =
+                [(next, after), (previous, before)].map(|(end, step)| if end == 0.0 { 0.0 } else { step });
+            (if takes_after { after } else { before }, one.abs().max(other.abs()), false)
         }
     }
 
@@ -85,19 +96,24 @@ impl Twin {
         let away = if dot(ray, self.forward) > 0.0 { ray } else { -ray };
         let toward_eye = |normal: Vec3| if dot(normal, away) > 0.0 { -normal } else { normal };
         let stored = self.stored_normal(pixel);
-        let (normal, steps, is_known) = if stored == Vec3::ZERO {
-            let (across, is_flat_across) = self.change(pixel, [1, 0], depth);
-            let (down, is_flat_down) = self.change(pixel, [0, 1], depth);
-            let normal = unit(moved(m[0] + m[2] * across).cross(moved(m[1] + m[2] * down)));
+        let (normal, steps, most_steps, is_known, tilt) = if stored == Vec3::ZERO {
+            let (across, most_across, is_flat_across) = self.change(pixel, [1, 0], depth);
+            let (down, most_down, is_flat_down) = self.change(pixel, [0, 1], depth);
+            let (right, below) = (moved(m[0] + m[2] * across), moved(m[1] + m[2] * down));
+            let normal = unit(right.cross(below));
             let is_known = is_flat_across && is_flat_down && normal != Vec3::ZERO;
-            (toward_eye(normal), Vec2::new(across, down), is_known)
+            let rise = dot(ray, normal).abs() * self.rounding(depth);
+            let tilt = BENT + rise * (1.0 / right.length() + 1.0 / below.length());
+            (toward_eye(normal), Vec2::new(across, down), Vec2::new(most_across, most_down), is_known, tilt)
         } else {
             let normal = toward_eye(stored);
             let [across, down] = [m[0], m[1]].map(|change| dot(stored, moved(change)));
-            (normal, -Vec2::new(across, down) / dot(stored, ray), true)
+            let steps = -Vec2::new(across, down) / dot(stored, ray);
+            (normal, steps, steps.abs(), true, STORED_TILT)
         };
         let is_single = self.is_single(pixel, depth, steps);
-        Surface { position, w, depth, steps, normal, is_known, is_single }
+        let off = ray * (ROUNDINGS * self.rounding(depth) + SNAP * (most_steps.x + most_steps.y));
+        Surface { position, w, depth, steps, most_steps, normal, is_known, is_single, off, tilt }
     }
 
     /// Change of a position per pixel, or per depth, from that of its homogeneous one.
@@ -105,11 +121,9 @@ impl Twin {
         (change.truncate() - surface.position * change.w) / surface.w
     }
 
-    /// How far above the surface rays start, in metres.
-    pub(super) fn height_of(&self, surface: &Surface) -> f32 {
-        let step = Self::moved(self.world_from_pixel[2], surface).length() * self.rounding(surface.depth);
-        let distance = surface.position.length() + self.eye.length();
-        RAY_OFFSET.max(step).max(POSITION_ROUNDING * distance)
+    /// How far above the surface of a point rays start, in metres.
+    pub(super) fn height_at(&self, position: Vec3) -> f32 {
+        RAY_OFFSET.max(POSITION_ROUNDING * (position.length() + self.eye.length()))
     }
 
     /// Texels of a map to the next pixel on the plane, across and down.

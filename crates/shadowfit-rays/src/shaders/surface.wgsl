@@ -1,0 +1,161 @@
+
+// A triangle that a short ray from the eye meets.
+struct shadowfit_RaySurface {
+    // From the ray's origin, in metres; SHADOWFIT_RAYS_FAR if the ray meets no triangle.
+    distance: f32,
+    // Unit geometric normal, against the ray.
+    normal: vec3<f32>,
+    // Place of the triangle among those of the scene, and index of its instance; SHADOWFIT_RAYS_NONE without one.
+    slot: u32,
+    instance: u32,
+}
+
+fn shadowfit_rays_no_surface() -> shadowfit_RaySurface {
+    return shadowfit_RaySurface(SHADOWFIT_RAYS_FAR, vec3<f32>(0.0), SHADOWFIT_RAYS_NONE, SHADOWFIT_RAYS_NONE);
+}
+
+// The unit normal in world space, against a ray, of an instance's triangle whose normal in its mesh is of any length.
+fn shadowfit_rays_normal(normal: vec3<f32>, instance: u32, direction: vec3<f32>) -> vec3<f32> {
+    let placed = shadowfit_rays_instances[instance];
+    let world = placed.row_x.xyz * normal.x + placed.row_y.xyz * normal.y + placed.row_z.xyz * normal.z;
+    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
+    let unit = normalize(world / max(max(abs(world.x), abs(world.y)), abs(world.z)));
+    return select(unit, -unit, dot(unit, direction) > 0.0);
+}
+
+// Whether a ray meets a box at a distance of at most `most`, in units of the ray's inverses.
+fn shadowfit_rays_meets_within(node: shadowfit_rays_Node, ray: shadowfit_rays_Ray, most: f32) -> bool {
+    let a = (node.least - ray.origin) * ray.inverses;
+    let b = (node.most - ray.origin) * ray.inverses;
+    let near = min(a, b);
+    let far = max(a, b);
+    let enter = max(max(near.x, near.y), near.z);
+    let leave = min(min(far.x, far.y), far.z);
+    return leave * SHADOWFIT_RAYS_LATER >= max(enter, 0.0) && enter <= most * SHADOWFIT_RAYS_LATER;
+}
+
+// A distance in metres, in units of a ray's inverses.
+fn shadowfit_rays_scaled(distance: f32, ray: shadowfit_rays_Ray) -> f32 {
+    let size = abs(ray.direction);
+    return distance * max(max(size.x, size.y), size.z);
+}
+
+// The distance at which a ray in the space of a mesh meets a triangle, and twice its area times the normal; FAR if it
+// misses.
+fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray) -> vec4<f32> {
+    let e1 = triangle.a - triangle.b;
+    let e2 = triangle.c - triangle.a;
+    let n = cross(e1, e2);
+    let c = triangle.a - ray.origin;
+    let r = cross(ray.direction, c);
+    let determinant = dot(n, ray.direction);
+    if determinant == 0.0 {
+        return vec4<f32>(n, SHADOWFIT_RAYS_FAR);
+    }
+    let inverse_determinant = 1.0 / determinant;
+    let u = dot(r, e2) * inverse_determinant;
+    let v = dot(r, e1) * inverse_determinant;
+    let is_hit = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+    return vec4<f32>(n, select(SHADOWFIT_RAYS_FAR, dot(n, c) * inverse_determinant, is_hit));
+}
+
+// The first triangle that a ray meets within a distance, in metres. Holes of cut-outs, sides and an engine's own test of hits
+// do not count.
+// origin: relative to the origin of the scene, in metres. direction: of unit length.
+fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32) -> shadowfit_RaySurface {
+    var found = shadowfit_rays_no_surface();
+    let world = shadowfit_rays_ray(origin, direction);
+    var most = distance;
+    var ray = world;
+    var reach = shadowfit_rays_scaled(most, world);
+    if !shadowfit_rays_meets_within(shadowfit_rays_top[0], ray, reach) {
+        return found;
+    }
+    var stack: array<u32, SHADOWFIT_RAYS_STACK>;
+    var height = 0u;
+    var instance = SHADOWFIT_RAYS_NONE;
+    var entered = 0u;
+    var current = 0u;
+    loop {
+        var node: shadowfit_rays_Node;
+        let is_top = instance == SHADOWFIT_RAYS_NONE;
+        if is_top {
+            node = shadowfit_rays_top[current];
+        } else {
+            node = shadowfit_rays_nodes[current];
+        }
+        var next = SHADOWFIT_RAYS_NONE;
+        if node.count == 0u {
+            var left: shadowfit_rays_Node;
+            var right: shadowfit_rays_Node;
+            if is_top {
+                left = shadowfit_rays_top[node.first];
+                right = shadowfit_rays_top[node.first + 1u];
+            } else {
+                left = shadowfit_rays_nodes[node.first];
+                right = shadowfit_rays_nodes[node.first + 1u];
+            }
+            let goes_left = shadowfit_rays_meets_within(left, ray, reach);
+            if shadowfit_rays_meets_within(right, ray, reach) {
+                next = node.first + 1u;
+            }
+            if goes_left {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = node.first;
+            }
+        } else if is_top {
+            let root = shadowfit_rays_instances[node.first].root;
+            if root != SHADOWFIT_RAYS_NONE {
+                let inside = shadowfit_rays_in_mesh(node.first, world);
+                let inside_reach = shadowfit_rays_scaled(most, inside);
+                if shadowfit_rays_meets_within(shadowfit_rays_nodes[root], inside, inside_reach) {
+                    ray = inside;
+                    reach = inside_reach;
+                    instance = node.first;
+                    entered = height;
+                    next = root;
+                }
+            }
+        } else {
+            for (var slot = node.first; slot < node.first + node.count; slot++) {
+                let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
+                if met.w >= 0.0 && met.w <= most && met.w < found.distance {
+                    found = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
+                    most = met.w;
+                    reach = shadowfit_rays_scaled(most, ray);
+                }
+            }
+        }
+        if next == SHADOWFIT_RAYS_NONE {
+            if height == 0u {
+                break;
+            }
+            if instance != SHADOWFIT_RAYS_NONE && height == entered {
+                instance = SHADOWFIT_RAYS_NONE;
+                ray = world;
+                reach = shadowfit_rays_scaled(most, world);
+            }
+            height--;
+            next = stack[height];
+        }
+        current = next;
+    }
+    if found.slot != SHADOWFIT_RAYS_NONE {
+        found.normal = shadowfit_rays_normal(found.normal, found.instance, direction);
+    }
+    return found;
+}
+
+// The same for a triangle that another ray has met, alone.
+fn shadowfit_rays_same_surface(
+    origin: vec3<f32>, direction: vec3<f32>, distance: f32, slot: u32, instance: u32) -> shadowfit_RaySurface {
+    let inside = shadowfit_rays_in_mesh(instance, shadowfit_rays_ray(origin, direction));
+    let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], inside);
+    if !(met.w >= 0.0 && met.w <= distance) {
+        return shadowfit_rays_no_surface();
+    }
+    return shadowfit_RaySurface(met.w, shadowfit_rays_normal(met.xyz, instance, direction), slot, instance);
+}
