@@ -214,11 +214,16 @@ fn shadowfit_rays_blocks_any(first: u32, count: u32, instance: u32, ray: shadowf
     return false;
 }
 
-// A node in a word, and NONE where a ray does not meet it. No node is NONE as well.
+// A node in a word; NONE for no node.
+fn shadowfit_rays_packed(node: shadowfit_rays_Node) -> u32 {
+    return node.first | (node.count << SHADOWFIT_RAYS_COUNT_AT);
+}
+
+// A node in a word, or NONE if a ray does not meet it.
 fn shadowfit_rays_child(node: u32, ray: shadowfit_rays_Ray) -> u32 {
     let child = shadowfit_rays_nodes[node];
-    let packed = child.first | (child.count << SHADOWFIT_RAYS_COUNT_AT);
-    return select(SHADOWFIT_RAYS_NONE, packed, shadowfit_rays_meets(child.least, child.most, ray));
+    let meets = shadowfit_rays_meets(child.least, child.most, ray);
+    return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
 }
 
 // Whether anything stands on a ray from a point, relative to the origin of the scene, in metres, along a unit direction.
@@ -230,7 +235,7 @@ fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     // The instance whose mesh the ray is in, and the height of the stack where it was entered.
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = shadowfit_rays_nodes[0].first | (shadowfit_rays_nodes[0].count << SHADOWFIT_RAYS_COUNT_AT);
+    var current = shadowfit_rays_packed(shadowfit_rays_nodes[0]);
     loop {
         let count = current >> SHADOWFIT_RAYS_COUNT_AT;
         var next = SHADOWFIT_RAYS_NONE;

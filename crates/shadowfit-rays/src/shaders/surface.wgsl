@@ -23,15 +23,17 @@ fn shadowfit_rays_normal(normal: vec3<f32>, instance: u32, direction: vec3<f32>)
     return select(unit, -unit, dot(unit, direction) > 0.0);
 }
 
-// Whether a ray meets a box at a distance of at most `most`, in units of the ray's inverses.
-fn shadowfit_rays_meets_within(node: shadowfit_rays_Node, ray: shadowfit_rays_Ray, most: f32) -> bool {
-    let a = (node.least - ray.origin) * ray.inverses;
-    let b = (node.most - ray.origin) * ray.inverses;
+// A node in a word, or NONE if a ray does not meet it at a distance of at most `most`, in units of the ray's inverses.
+fn shadowfit_rays_child_within(node: u32, ray: shadowfit_rays_Ray, most: f32) -> u32 {
+    let child = shadowfit_rays_nodes[node];
+    let a = (child.least - ray.origin) * ray.inverses;
+    let b = (child.most - ray.origin) * ray.inverses;
     let near = min(a, b);
     let far = max(a, b);
     let enter = max(max(near.x, near.y), near.z);
     let leave = min(min(far.x, far.y), far.z);
-    return leave * SHADOWFIT_RAYS_LATER >= max(enter, 0.0) && enter <= most * SHADOWFIT_RAYS_LATER;
+    let meets = leave * SHADOWFIT_RAYS_LATER >= max(enter, 0.0) && enter <= most * SHADOWFIT_RAYS_LATER;
+    return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
 }
 
 // A distance in metres, in units of a ray's inverses.
@@ -68,59 +70,37 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
     var most = distance;
     var ray = world;
     var reach = shadowfit_rays_scaled(most, world);
-    if !shadowfit_rays_meets_within(shadowfit_rays_top[0], ray, reach) {
-        return found;
-    }
     var stack: array<u32, SHADOWFIT_RAYS_STACK>;
     var height = 0u;
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = 0u;
+    var current = shadowfit_rays_packed(shadowfit_rays_nodes[0]);
     loop {
-        var node: shadowfit_rays_Node;
-        let is_top = instance == SHADOWFIT_RAYS_NONE;
-        if is_top {
-            node = shadowfit_rays_top[current];
-        } else {
-            node = shadowfit_rays_nodes[current];
-        }
+        let first = current & SHADOWFIT_RAYS_FIRST;
+        let count = current >> SHADOWFIT_RAYS_COUNT_AT;
         var next = SHADOWFIT_RAYS_NONE;
-        if node.count == 0u {
-            var left: shadowfit_rays_Node;
-            var right: shadowfit_rays_Node;
-            if is_top {
-                left = shadowfit_rays_top[node.first];
-                right = shadowfit_rays_top[node.first + 1u];
-            } else {
-                left = shadowfit_rays_nodes[node.first];
-                right = shadowfit_rays_nodes[node.first + 1u];
-            }
-            let goes_left = shadowfit_rays_meets_within(left, ray, reach);
-            if shadowfit_rays_meets_within(right, ray, reach) {
-                next = node.first + 1u;
-            }
-            if goes_left {
-                if next != SHADOWFIT_RAYS_NONE {
-                    stack[height] = next;
-                    height++;
+        if count == 0u {
+            for (var node = first; node < first + SHADOWFIT_RAYS_WIDTH; node++) {
+                let child = shadowfit_rays_child_within(node, ray, reach);
+                if child != SHADOWFIT_RAYS_NONE {
+                    if next != SHADOWFIT_RAYS_NONE {
+                        stack[height] = next;
+                        height++;
+                    }
+                    next = child;
                 }
-                next = node.first;
             }
-        } else if is_top {
-            let root = shadowfit_rays_instances[node.first].root;
+        } else if instance == SHADOWFIT_RAYS_NONE {
+            let root = shadowfit_rays_instances[first].root;
             if root != SHADOWFIT_RAYS_NONE {
-                let inside = shadowfit_rays_in_mesh(node.first, world);
-                let inside_reach = shadowfit_rays_scaled(most, inside);
-                if shadowfit_rays_meets_within(shadowfit_rays_nodes[root], inside, inside_reach) {
-                    ray = inside;
-                    reach = inside_reach;
-                    instance = node.first;
-                    entered = height;
-                    next = root;
-                }
+                ray = shadowfit_rays_in_mesh(first, world);
+                reach = shadowfit_rays_scaled(most, ray);
+                instance = first;
+                entered = height;
+                next = root;
             }
         } else {
-            for (var slot = node.first; slot < node.first + node.count; slot++) {
+            for (var slot = first; slot < first + count; slot++) {
                 let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
                 if met.w >= 0.0 && met.w <= most && met.w < found.distance {
                     found = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
