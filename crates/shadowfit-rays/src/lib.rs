@@ -29,6 +29,6 @@ pub use placed::{ImageId, MeshId};
 pub use scene::{RayScene, rays_layout};
 pub use wgsl::{RayWgslOptions, rays_wgsl, refit_wgsl};
 
-/// Levels that the shaders' stack can follow: those of the hierarchy of instances and of a mesh together. A balanced
-/// hierarchy of 2^32 triangles has 33.
-pub const MAX_DEPTH: usize = 32;
+/// Nodes that the shaders' stack holds: those of the hierarchy of instances and of a mesh together. A hierarchy needs at most
+/// 1.5 times the binary logarithm of its leaves, whatever its shape.
+pub const STACK: usize = 96;

@@ -33,9 +33,9 @@ pub struct RayMemory {
     pub gpu: u64,
 }
 
-/// Levels up to which a mesh's hierarchy is taken as it was built: what remains of [`MAX_DEPTH`](crate::MAX_DEPTH) holds
-/// millions of instances.
-const MESH_DEPTH: usize = 20;
+/// Stack up to which the children of a mesh's nodes stay in the best order. What remains of [`STACK`](crate::STACK) suffices
+/// for 10¹¹ instances.
+const MESH_STACK: usize = 40;
 /// Nodes for each triangle while the hierarchy is built: two for the tree of single triangles, and one in each of the two
 /// lists between which the builder moves what is not joined yet.
 const NODES_BUILDING: u64 = 4;
@@ -74,7 +74,7 @@ impl RayMesh {
         if corners.len() > u32::MAX as usize / 3 {
             return Err(RayError::Triangles(corners.len()));
         }
-        let (hierarchy, order) = hierarchy::build(&corners, BvhBuildParams::medium_build(), MESH_DEPTH);
+        let (hierarchy, order) = hierarchy::build(&corners, BvhBuildParams::medium_build(), MESH_STACK);
         Ok(Self::of(hierarchy, &order, |triangle| corners[triangle as usize].0))
     }
 
@@ -82,7 +82,9 @@ impl RayMesh {
     /// the corners, which may therefore be others than those that it was built for. The hierarchy must not have split
     /// triangles.
     pub fn from_bvh(bvh: &Bvh2, corners: impl Fn(u32) -> [Vec3; 3]) -> Self {
-        Self::of(Hierarchy::new(bvh), &bvh.primitive_indices, |triangle| Corners::new(corners(triangle)).0)
+        let mut hierarchy = Hierarchy::new(bvh);
+        hierarchy.fit_stack(MESH_STACK);
+        Self::of(hierarchy, &bvh.primitive_indices, |triangle| Corners::new(corners(triangle)).0)
     }
 
     fn of(mut hierarchy: Hierarchy, order: &[u32], corners: impl Fn(u32) -> [Vec3; 3]) -> Self {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::MAX_DEPTH;
+use crate::STACK;
 use crate::cut_out::AlphaImage;
 use crate::deform::{Deforming, RefitPass, VertexBuffer};
 use crate::device::{BUFFERS, caught, check, group, layout, storage};
@@ -45,8 +45,8 @@ pub struct RayScene {
     origin: DVec3,
     instances: Vec<RayInstance>,
     top: TopLevel,
-    /// Levels of the deepest mesh of the instances.
-    mesh_depth: usize,
+    /// Longest stack of the meshes of the instances.
+    mesh_stack: usize,
     /// Those that differ from the last frame's; kept so that frames do not allocate.
     changed: Vec<u32>,
     uploaded: u64,
@@ -96,7 +96,7 @@ impl RayScene {
             refit: None,
             origin: DVec3::ZERO,
             instances: Vec::new(),
-            mesh_depth: 0,
+            mesh_stack: 0,
             changed: Vec::new(),
             uploaded: 0,
         };
@@ -148,14 +148,14 @@ impl RayScene {
     /// [`RayError::NoMesh`], and those of [`Self::add_mesh`]. The mesh has its old shape then.
     pub fn update_mesh(&mut self, id: MeshId, mesh: &RayMesh) -> Result<(), RayError> {
         self.uploaded = 0;
-        let depth = mesh.hierarchy.depth();
-        if self.top.depth() + depth > MAX_DEPTH {
-            return Err(RayError::TooDeep { top: self.top.depth(), mesh: depth, limit: MAX_DEPTH });
+        let stack = mesh.hierarchy.stack;
+        if self.top.stack() + stack > STACK {
+            return Err(RayError::TooDeep { top: self.top.stack(), mesh: stack, limit: STACK });
         }
         let before = self.meshes.get(id).ok_or(RayError::NoMesh)?;
         let bounds = mesh.bounds().unwrap_or_default();
         let placed = if before.has_room_for(mesh) {
-            let placed = Placed { depth, bounds, deforming: None, ..before.ranges() };
+            let placed = Placed { stack, bounds, deforming: None, ..before.ranges() };
             self.write(mesh, &placed);
             placed
         } else {
@@ -169,11 +169,11 @@ impl RayScene {
         if let Some(stored) = self.meshes.get_mut(id) {
             *stored = placed;
         }
-        self.mesh_depth = self.mesh_depth.max(depth);
+        self.mesh_stack = self.mesh_stack.max(stack);
         for (index, instance) in self.instances.iter().enumerate().filter(|(_, instance)| instance.mesh == id) {
             self.top.set(index, instance.placed(root, bounds));
         }
-        self.top.refit(self.mesh_depth);
+        self.top.refit(self.mesh_stack);
         self.upload();
         Ok(())
     }
@@ -321,17 +321,17 @@ impl RayScene {
     /// of these can be kept: not where rays could go deeper than the stack.
     fn find_changed(&mut self, instances: &[RayInstance]) -> Result<bool, RayError> {
         self.changed.clear();
-        let mut mesh_depth = self.mesh_depth;
+        let mut mesh_stack = self.mesh_stack;
         for (index, (instance, before)) in instances.iter().zip(&self.instances).enumerate() {
             if instance != before {
                 let mesh = self.meshes.get(instance.mesh).ok_or(RayError::NoMeshOfInstance(index))?;
-                mesh_depth = mesh_depth.max(mesh.depth);
+                mesh_stack = mesh_stack.max(mesh.stack);
                 self.changed.push(index as u32);
             }
         }
-        let fits = self.top.depth() + mesh_depth <= MAX_DEPTH;
+        let fits = self.top.stack() + mesh_stack <= STACK;
         if fits {
-            self.mesh_depth = mesh_depth;
+            self.mesh_stack = mesh_stack;
         }
         Ok(fits)
     }
@@ -345,25 +345,25 @@ impl RayScene {
             self.top.set(index, placed);
             self.instances[index] = *instance;
         }
-        self.top.refit(self.mesh_depth);
+        self.top.refit(self.mesh_stack);
         self.upload();
     }
 
     /// Sets other instances.
     fn replace_instances(&mut self, instances: &[RayInstance]) -> Result<(), RayError> {
-        let mut mesh_depth = 0;
+        let mut mesh_stack = 0;
         let placed: Result<Vec<Instance>, RayError> = instances
             .iter()
             .enumerate()
             .map(|(index, instance)| {
                 let mesh = self.meshes.get(instance.mesh).ok_or(RayError::NoMeshOfInstance(index))?;
-                mesh_depth = mesh_depth.max(mesh.depth);
+                mesh_stack = mesh_stack.max(mesh.stack);
                 Ok(instance.placed(mesh.root(), mesh.bounds))
             })
             .collect();
         let placed = placed?;
         let top_nodes = self.nodes.take(TopLevel::room(placed.len()))?;
-        let made = TopLevel::new(&placed, mesh_depth, top_nodes.start)
+        let made = TopLevel::new(&placed, mesh_stack, top_nodes.start)
             .and_then(|top| self.instance_records.reserve(top.records()).map(|()| top));
         let bound = self.rebind();
         match bound.and(made) {
@@ -373,7 +373,7 @@ impl RayScene {
                 return Err(error);
             }
         }
-        self.mesh_depth = mesh_depth;
+        self.mesh_stack = mesh_stack;
         self.nodes.give(std::mem::replace(&mut self.top_nodes, top_nodes));
         self.instances.clear();
         self.instances.extend_from_slice(instances);
@@ -387,15 +387,15 @@ impl RayScene {
 
     /// Finds room for a mesh, and uploads it.
     fn place(&mut self, mesh: &RayMesh) -> Result<Placed, RayError> {
-        let depth = mesh.hierarchy.depth();
-        if depth >= MAX_DEPTH {
-            return Err(RayError::TooDeep { top: 1, mesh: depth, limit: MAX_DEPTH });
+        let stack = mesh.hierarchy.stack;
+        if stack > STACK {
+            return Err(RayError::TooDeep { top: 0, mesh: stack, limit: STACK });
         }
         let mut placed = Placed {
             nodes: 0..0,
             triangles: 0..0,
             cut_outs: 0..0,
-            depth,
+            stack,
             bounds: mesh.bounds().unwrap_or_default(),
             deforming: None,
         };

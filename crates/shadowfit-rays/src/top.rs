@@ -7,7 +7,7 @@ use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 
-use crate::MAX_DEPTH;
+use crate::STACK;
 use crate::error::RayError;
 use crate::hierarchy::{self, WIDTH, around};
 use crate::pool::Records;
@@ -46,7 +46,7 @@ pub(crate) struct TopLevel {
     /// Place of the second group in the buffer of nodes.
     base: u32,
     parents: Vec<u32>,
-    depth: usize,
+    stack: usize,
     /// Leaf of each instance.
     leaves: Vec<u32>,
     records: Vec<InstanceRecord>,
@@ -66,9 +66,9 @@ impl TopLevel {
         (instances * 2 / 3 + 1) * WIDTH
     }
 
-    /// Builds the hierarchy of instances whose deepest mesh has a number of levels, for nodes from `base` on. Without
+    /// Builds the hierarchy of instances whose meshes need a stack of up to a length, for nodes from `base` on. Without
     /// instances it has one that is never met.
-    pub(crate) fn new(instances: &[Instance], mesh_depth: usize, base: u32) -> Result<Self, RayError> {
+    pub(crate) fn new(instances: &[Instance], mesh_stack: usize, base: u32) -> Result<Self, RayError> {
         let somewhere = instances.iter().flatten().next().map_or(Vec3::ZERO, |(_, bounds)| bounds[0]);
         let bounds = |instance: &Instance| instance.map_or([somewhere; 2], |(_, bounds)| bounds);
         let record = |instance: &Instance| instance.map_or(HIDDEN, |(record, _)| record);
@@ -77,26 +77,26 @@ impl TopLevel {
         if bounds.is_empty() {
             (bounds, records) = (vec![[somewhere; 2]], vec![HIDDEN]);
         }
-        Self::build(&bounds, records, mesh_depth, base)
+        Self::build(&bounds, records, mesh_stack, base)
     }
 
     /// Builds the same instances' hierarchy again, where they are now.
-    fn rebuilt(&self, mesh_depth: usize) -> Result<Self, RayError> {
+    fn rebuilt(&self, mesh_stack: usize) -> Result<Self, RayError> {
         let bounds: Vec<_> = self.leaves.iter().map(|leaf| self.nodes[*leaf as usize].bounds()).collect();
-        Self::build(&bounds, self.records.clone(), mesh_depth, self.base)
+        Self::build(&bounds, self.records.clone(), mesh_stack, self.base)
     }
 
     fn build(
         bounds: &[[Vec3; 2]],
         records: Vec<InstanceRecord>,
-        mesh_depth: usize,
+        mesh_stack: usize,
         base: u32,
     ) -> Result<Self, RayError> {
         let boxes: Vec<Aabb> = bounds.iter().map(|[least, most]| Aabb::new((*least).into(), (*most).into())).collect();
-        let (mut made, order) = hierarchy::build(&boxes, BUILD, MAX_DEPTH.saturating_sub(mesh_depth));
-        let depth = made.depth();
-        if depth + mesh_depth > MAX_DEPTH {
-            return Err(RayError::TooDeep { top: depth, mesh: mesh_depth, limit: MAX_DEPTH });
+        let (mut made, order) = hierarchy::build(&boxes, BUILD, STACK.saturating_sub(mesh_stack));
+        let stack = made.stack;
+        if stack + mesh_stack > STACK {
+            return Err(RayError::TooDeep { top: stack, mesh: mesh_stack, limit: STACK });
         }
         made.fit(|slots| bounds[order[slots.start] as usize]);
         let (mut parents, mut leaves) = (vec![0; made.nodes.len()], vec![0; records.len()]);
@@ -116,7 +116,7 @@ impl TopLevel {
             nodes,
             base,
             parents,
-            depth,
+            stack,
             leaves,
             records,
             area,
@@ -128,9 +128,9 @@ impl TopLevel {
         Ok(top)
     }
 
-    /// Number of levels.
-    pub(crate) fn depth(&self) -> usize {
-        self.depth
+    /// Stack that a ray needs, beside that of a mesh.
+    pub(crate) fn stack(&self) -> usize {
+        self.stack
     }
 
     /// Number of records.
@@ -157,8 +157,8 @@ impl TopLevel {
     }
 
     /// Fits the boxes above those that have changed, and builds the hierarchy again where a ray through the fitted one
-    /// would cost much more than when it was built. `mesh_depth` is that of the deepest mesh.
-    pub(crate) fn refit(&mut self, mesh_depth: usize) {
+    /// would cost much more than when it was built. `mesh_stack` is the longest one of their meshes.
+    pub(crate) fn refit(&mut self, mesh_stack: usize) {
         // Children come after their parents.
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
@@ -170,7 +170,7 @@ impl TopLevel {
         }
         // A fitted hierarchy is slow and right; the better one may be too deep.
         if self.cost() > self.built_cost * MAX_COST_GROWTH
-            && let Ok(better) = self.rebuilt(mesh_depth)
+            && let Ok(better) = self.rebuilt(mesh_stack)
         {
             *self = better;
         }

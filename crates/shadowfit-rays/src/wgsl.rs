@@ -1,7 +1,7 @@
 //! The WGSL of rays, put together from the pieces in `shaders/`. Every name starts with a prefix, so that the text can be
 //! pasted into any shader.
 
-use crate::MAX_DEPTH;
+use crate::STACK;
 use crate::error::RayError;
 
 /// How the WGSL fits into an engine's shader.
@@ -66,7 +66,7 @@ impl<'a> RayWgslOptions<'a> {
 pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
     let rays = include_str!("shaders/rays.wgsl")
         .replace("GROUP", &options.group.to_string())
-        .replace("MAX_DEPTH", &MAX_DEPTH.to_string());
+        .replace("NODES_ON_STACK", &STACK.to_string());
     let counts = options.counts.unwrap_or(include_str!("shaders/counts.wgsl"));
     let text = [include_str!("shaders/types.wgsl"), &rays, include_str!("shaders/surface.wgsl"), counts].concat();
     if options.prefix == RayWgslOptions::PREFIX {

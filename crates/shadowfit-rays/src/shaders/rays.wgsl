@@ -49,8 +49,8 @@ struct shadowfit_rays_Ray {
     inverses: vec3<f32>,
 }
 
-// Depths are compared with this before anything is uploaded.
-const SHADOWFIT_RAYS_STACK: u32 = 3u * MAX_DEPTHu;
+// What hierarchies need is compared with this before anything is uploaded.
+const SHADOWFIT_RAYS_STACK: u32 = NODES_ON_STACKu;
 // A node in a word has the number of its triangles, or of its instances, in the bits above these.
 const SHADOWFIT_RAYS_FIRST: u32 = 0x7ffffffu;
 const SHADOWFIT_RAYS_COUNT_AT: u32 = 27u;

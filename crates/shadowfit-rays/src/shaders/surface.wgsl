@@ -80,8 +80,9 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
         let count = current >> SHADOWFIT_RAYS_COUNT_AT;
         var next = SHADOWFIT_RAYS_NONE;
         if count == 0u {
-            for (var node = first; node < first + SHADOWFIT_RAYS_WIDTH; node++) {
-                let child = shadowfit_rays_child_within(node, ray, reach);
+            // The first child that is met is the next one: stacks are as long as this order needs.
+            for (var place = SHADOWFIT_RAYS_WIDTH; place > 0u; place--) {
+                let child = shadowfit_rays_child_within(first + place - 1u, ray, reach);
                 if child != SHADOWFIT_RAYS_NONE {
                     if next != SHADOWFIT_RAYS_NONE {
                         stack[height] = next;
