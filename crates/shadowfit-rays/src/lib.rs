@@ -5,6 +5,7 @@
 //! frame, in five storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
 //! has. Positions are in metres, in `f32` relative to an origin that the engine chooses.
 
+mod at_once;
 mod cut_out;
 mod deform;
 mod device;
@@ -19,6 +20,7 @@ mod scene;
 mod top;
 mod wgsl;
 
+pub use at_once::make_at_once;
 pub use cut_out::{AlphaImage, CutMaterial, CutOut, Wrap};
 pub use deform::VertexBuffer;
 pub use error::{RayError, VertexBufferLack};

@@ -94,6 +94,10 @@ pub struct Arguments {
     #[arg(long)]
     pub software: bool,
 
+    /// Prints a table to the standard error at the end: the time of each step of the start and of each line of the script.
+    #[arg(long, requires_all = ["headless", "script"])]
+    pub timings: bool,
+
     /// Prints to the standard error when the window is ready, and the frame time now and then.
     #[arg(long)]
     pub log_frames: bool,

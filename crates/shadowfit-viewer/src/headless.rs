@@ -10,7 +10,7 @@ use egui::{Pos2, RawInput, Rect, vec2};
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit_egui::Artefact;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
-use shadowfit_render::Gpu;
+use shadowfit_render::{Gpu, own_time};
 use shadowfit_study::make_folder;
 
 use crate::cli::Arguments;
@@ -19,6 +19,7 @@ use crate::interface::{Canvas, Interface, InterfaceInput};
 use crate::saved::Saved;
 use crate::source::SceneSource;
 use crate::stage::Stage;
+use crate::timings::Timings;
 use crate::viewer::{Renewals, Start, Viewer, compared_with};
 
 /// Number of pictures of a scene.
@@ -100,23 +101,29 @@ impl Drop for Progress {
 
 /// Plays a script without a window; the files that it saves are put into the folder.
 fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
+    let mut timings = Timings::start();
     let start = Start::new(arguments)?.saving_into(folder);
     let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    timings.step("graphics device");
     gpu.keep_faults();
     let mut renewals = Renewals::default();
     let mut stage = Stage::empty(gpu, SAMPLES)?;
     stage.read_depths();
     stage.wait_for_rays();
+    timings.step("renderer");
     let mut viewer = Viewer::new(stage, FORMAT, start, None);
     let mut size = arguments.size();
     let mut canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
     let mut clock = 0.0;
+    timings.step("interface");
     while !viewer.has_played() && !viewer.window_requests.quit {
         let begin = Instant::now();
         let gpu = viewer.stage.gpu().clone();
-        gpu.unless_lost(|| {
-            let (layout, _) = viewer.frame(input(size, clock), FRAME);
-            viewer.paint(&layout, &canvas.view, size);
+        let (_, own) = own_time(|| {
+            gpu.unless_lost(|| {
+                let (layout, _) = viewer.frame(input(size, clock), FRAME);
+                viewer.paint(&layout, &canvas.view, size);
+            })
         });
         clock += f64::from(FRAME);
         if let Some(why) = gpu.lost() {
@@ -133,9 +140,22 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
         }
         if viewer.is_waiting() {
             // A software driver draws on the cores that the awaited thread needs.
-            std::thread::sleep((3 * begin.elapsed()).max(Duration::from_millis(5)));
+            let share = if viewer.stage.gpu().is_software() { 3 * begin.elapsed() } else { Duration::ZERO };
+            std::thread::sleep(share.max(Duration::from_millis(5)));
         }
+        timings.frame(viewer.player.place().as_deref().unwrap_or("random actions"), own);
     }
+    let ended = end(&mut viewer);
+    drop((viewer, canvas));
+    timings.step("end");
+    if arguments.timings {
+        eprint!("{}", timings.table());
+    }
+    ended
+}
+
+/// Returns the error that a script ended with.
+fn end(viewer: &mut Viewer) -> Result<()> {
     match viewer.failure.take() {
         Some(failure) => Err(failure),
         None if viewer.player.failed => Err(anyhow!("the script did not end as it should")),

@@ -37,6 +37,8 @@ mod source;
 mod stage;
 #[cfg(not(target_family = "wasm"))]
 mod store;
+#[cfg(not(target_family = "wasm"))]
+mod timings;
 mod tuning;
 mod undo;
 mod view_search;

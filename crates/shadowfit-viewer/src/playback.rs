@@ -35,13 +35,22 @@ pub(crate) struct Player {
     /// The line that is being played: file, number and text.
     place: String,
     ongoing: Option<Ongoing>,
+    /// Whether lines show verdicts of other frames than those that are awaited or saved.
+    plots: bool,
     /// Whether a line could not be done, so that the script ends with an error.
     pub(crate) failed: bool,
 }
 
 impl Player {
     pub(crate) fn new(lines: Vec<Line>) -> Self {
-        Self { lines: lines.into(), ..Self::default() }
+        let plots = lines.is_empty() || lines.iter().any(|line| plots(&line.step));
+        Self { lines: lines.into(), plots, ..Self::default() }
+    }
+
+    /// Whether the verdicts of this frame are shown, unless it is saved: a line awaits them, or a later one saves what is
+    /// plotted of every frame.
+    pub(crate) fn needs_verdicts(&self) -> bool {
+        self.plots || matches!(self.ongoing, Some(Ongoing::Await(Awaited::Judged, _)))
     }
 
     pub(crate) fn is_done(&self) -> bool {
@@ -122,6 +131,15 @@ impl Player {
     }
 }
 
+/// Whether a step shows verdicts of every frame, as the plots of the window do, or may lead to anything, as a click does.
+fn plots(step: &Step) -> bool {
+    match step {
+        Step::Run(command) => matches!(command, Command::SaveWindow(_) | Command::SaveFigures(_)),
+        Step::Wait(_) | Step::Frames(_) | Step::Await(_) | Step::Resize(_) => false,
+        _ => true,
+    }
+}
+
 /// Starts a step; returns the part that is left for the next frames.
 fn start(step: Step, effects: &mut Vec<Effect>) -> Option<Ongoing> {
     match step {
@@ -198,6 +216,27 @@ mod tests {
         ];
         let seen: Vec<usize> = play(steps, 12, &Activity::default()).iter().map(Vec::len).collect();
         assert_eq!(seen, [1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn verdicts_are_needed_where_a_line_awaits_them_and_in_every_frame_where_the_window_is_saved() {
+        let steps = |last| {
+            let picture = Step::Run(Command::Screenshot(Some("a.png".into())));
+            vec![Step::Frames(1), Step::Await(Awaited::Judged), picture, Step::Run(last)]
+        };
+        let needs = |last| {
+            let mut player = player(steps(last));
+            let frame = |player: &mut Player| {
+                let saves = player.advance(FRAME, &Activity { is_judged: true, ..Activity::default() });
+                (player.needs_verdicts(), !saves.is_empty())
+            };
+            (0..4 + SETTLING).map(|_| frame(&mut player)).collect::<Vec<_>>()
+        };
+        let unseen = (false, false);
+        let alone = [unseen, (true, false), unseen, unseen, unseen, unseen, unseen, (false, true)];
+        assert_eq!(needs(Command::Quit), alone);
+        assert!(needs(Command::SaveWindow("b.png".into())).iter().all(|(needs, _)| *needs));
+        assert!(player(Vec::new()).needs_verdicts(), "without a script");
     }
 
     #[test]

@@ -98,6 +98,8 @@ pub struct Stage {
     artefact: ArtefactShow,
     why: why::PixelQuestion,
     reads_depths: bool,
+    /// Whether nothing shows the verdicts of the next pictures.
+    is_unseen: bool,
     sample: Option<SampleShow>,
     /// Number of the file's camera whose lens the settings have taken.
     followed: Option<u32>,
@@ -141,6 +143,7 @@ impl Stage {
             artefact: ArtefactShow::default(),
             why: why::PixelQuestion::default(),
             reads_depths: false,
+            is_unseen: false,
             sample: None,
         })
     }
@@ -211,6 +214,12 @@ impl Stage {
     /// From now on, each picture waits for its rays: for pictures that are made one by one.
     pub fn wait_for_rays(&mut self) {
         self.side.live.waits = true;
+    }
+
+    /// Leaves the next pictures without verdicts where each picture [waits](Self::wait_for_rays) for its own: nothing
+    /// shows them.
+    pub(crate) fn set_unseen(&mut self, is_unseen: bool) {
+        self.is_unseen = is_unseen;
     }
 
     /// The scene on show.
@@ -452,6 +461,7 @@ impl Stage {
             scissor: None,
             clock: self.clock,
             blink,
+            is_unseen: self.is_unseen,
         };
         (&mut self.side, shot)
     }

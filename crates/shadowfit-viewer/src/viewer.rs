@@ -319,6 +319,8 @@ impl Viewer {
                 Effect::Print(text) => eprintln!("{text}"),
             }
         }
+        let saves = self.commands.iter().any(|request| matches!(request.command, Command::Screenshot(_)));
+        self.stage.set_unseen(!saves && !self.player.needs_verdicts());
     }
 
     /// Takes the results of background work.

@@ -169,6 +169,18 @@ fn shadowfit_rays_weights(triangle: shadowfit_rays_Triangle, point: vec3<f32>) -
     return vec2<f32>(dot(cross(to_point, edge2), normal), dot(cross(edge1, to_point), normal)) / area;
 }
 
+// Whether a ray in the space of a mesh ends at a point of a triangle: not in a hole, and not where an engine's own test lets
+// it pass.
+fn shadowfit_rays_ends(slot: u32, instance: u32, ray: shadowfit_rays_Ray, distance: f32) -> bool {
+    let triangle = shadowfit_rays_triangles[slot];
+    let weights = shadowfit_rays_weights(triangle, ray.origin + ray.direction * distance);
+    if triangle.cut_out != 0u && !shadowfit_rays_is_opaque(shadowfit_rays_cut_outs[triangle.cut_out - 1u], weights) {
+        return false;
+    }
+    let custom = shadowfit_rays_instances[instance].custom;
+    return shadowfit_rays_counts(shadowfit_RayHit(instance, custom, triangle.index, slot, weights, distance));
+}
+
 // Whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle
 // Intersection", 1997, in the form of the obvhs crate: a weight of minus zero misses).
 fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
@@ -197,12 +209,7 @@ fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> b
     if sides != 0u && (determinant > 0.0) == (sides == 1u) {
         return false;
     }
-    let weights = shadowfit_rays_weights(triangle, ray.origin + ray.direction * distance);
-    if triangle.cut_out != 0u && !shadowfit_rays_is_opaque(shadowfit_rays_cut_outs[triangle.cut_out - 1u], weights) {
-        return false;
-    }
-    let custom = shadowfit_rays_instances[instance].custom;
-    return shadowfit_rays_counts(shadowfit_RayHit(instance, custom, triangle.index, slot, weights, distance));
+    return shadowfit_rays_ends(slot, instance, ray, distance);
 }
 
 fn shadowfit_rays_blocks_any(first: u32, count: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {

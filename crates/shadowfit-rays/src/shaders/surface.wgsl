@@ -61,8 +61,7 @@ fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray
     return vec4<f32>(n, select(SHADOWFIT_RAYS_FAR, dot(n, c) * inverse_determinant, is_hit));
 }
 
-// The first triangle that a ray meets within a distance, in metres. Holes of cut-outs, sides and an engine's own test of hits
-// do not count.
+// The first triangle that a ray meets within a distance, in metres. Both sides of triangles count.
 // origin: relative to the origin of the scene, in metres. direction: of unit length.
 fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32) -> shadowfit_RaySurface {
     var found = shadowfit_rays_no_surface();
@@ -103,7 +102,7 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
         } else {
             for (var slot = first; slot < first + count; slot++) {
                 let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
-                if met.w >= 0.0 && met.w <= most && met.w < found.distance {
+                if met.w >= 0.0 && met.w <= most && shadowfit_rays_ends(slot, instance, ray, met.w) {
                     found = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
                     most = met.w;
                     reach = shadowfit_rays_scaled(most, ray);
@@ -135,7 +134,7 @@ fn shadowfit_rays_same_surface(
     origin: vec3<f32>, direction: vec3<f32>, distance: f32, slot: u32, instance: u32) -> shadowfit_RaySurface {
     let inside = shadowfit_rays_in_mesh(instance, shadowfit_rays_ray(origin, direction));
     let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], inside);
-    if !(met.w >= 0.0 && met.w <= distance) {
+    if !(met.w >= 0.0 && met.w <= distance) || !shadowfit_rays_ends(slot, instance, inside, met.w) {
         return shadowfit_rays_no_surface();
     }
     return shadowfit_RaySurface(met.w, shadowfit_rays_normal(met.xyz, instance, direction), slot, instance);

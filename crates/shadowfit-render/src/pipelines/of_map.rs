@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use shadowfit_rays::make_at_once;
 use shadowfit_scene::Casting;
 use shadowfit_wgpu::ShadowMap;
 
@@ -15,6 +16,7 @@ use crate::probe::PROBE_FORMAT;
 use crate::renderer::NORMAL_FORMAT;
 use crate::uniform::InsetVertex;
 use crate::unrolled::Numbering;
+use crate::wait::making;
 use crate::{Overlay, shaders};
 
 /// What the parts of a scene are drawn as.
@@ -80,14 +82,20 @@ impl MapPipelines {
         let is_judged = matches!(drawn, Drawn::Shaded(overlay) if overlay.is_judged());
         let groups = [&layouts.frame, map.receiver_layout(), &layouts.material, judged];
         let groups = &groups[..if is_judged { 4 } else { 3 }];
+        let mut keys: Vec<PartKey> = Vec::new();
         for key in parts.iter().map(PartKey::of) {
-            if self.parts.contains_key(&(drawn, key)) {
-                continue;
+            if !self.parts.contains_key(&(drawn, key)) && !keys.contains(&key) {
+                keys.push(key);
             }
-            let module = self.modules.entry(drawn).or_insert_with(|| maker.drawn(drawn, map));
-            let pipeline = maker.part(&maker.layout(groups), module, (drawn, key));
-            self.parts.insert((drawn, key), pipeline);
         }
+        if keys.is_empty() {
+            return;
+        }
+        let module = &*self.modules.entry(drawn).or_insert_with(|| maker.drawn(drawn, map));
+        let layout = maker.layout(groups);
+        let make = |key: &PartKey| maker.part(&layout, module, (drawn, *key));
+        let made = making(|| make_at_once(device, &keys, make));
+        self.parts.extend(keys.into_iter().map(|key| (drawn, key)).zip(made));
     }
 
     /// Pipeline that [`Self::add`] has made for a part.

@@ -1,5 +1,7 @@
 //! The pass that judges a picture in three steps and sums it in a fourth, and the texture that it fills.
 
+use shadowfit_rays::make_at_once;
+
 use super::error::GpuTruthError;
 use super::input::GpuJudgeInput;
 use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
@@ -28,7 +30,8 @@ const CLASSES: wgpu::BindingType = wgpu::BindingType::StorageTexture {
 #[derive(Debug)]
 pub struct GpuJudge {
     layout: wgpu::BindGroupLayout,
-    pipelines: [wgpu::ComputePipeline; 3],
+    /// Of the three steps, in their order.
+    pipelines: Vec<wgpu::ComputePipeline>,
     uniform: wgpu::Buffer,
     target: Option<Target>,
     tally: TallyPass,
@@ -51,7 +54,9 @@ impl GpuJudge {
         let layout = group_layout(device, "judged picture", [UNIFORM, TEXTURE, STORAGE, CLASSES]);
         let (scene, slots) = (shadowfit_rays::rays_layout(device), slots_layout(device));
         let passes = [("trace", shader::truth()), ("rows", shader::rows()), ("classify", shader::classes())];
-        let pipelines = passes.map(|pass| pipeline(device, &[Some(&scene), Some(&layout), Some(&slots)], pass));
+        let layouts = [Some(&scene), Some(&layout), Some(&slots)];
+        let make = |(entry, wgsl): &(&str, String)| pipeline(device, &layouts, (entry, wgsl.clone()));
+        let pipelines = make_at_once(device, &passes, make);
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("judge"),
             size: size_of::<JudgeUniform>() as u64,
@@ -107,7 +112,6 @@ impl GpuJudge {
         ];
         let group = group(device, "judged picture", &self.layout, resources);
         let squares = size.map(|side| side.div_ceil(SQUARE));
-        let [trace, rows, classify] = &self.pipelines;
         self.pictures += 1;
         let is_summed = self.tally.has_room();
         self.tally.clear(encoder);
@@ -118,7 +122,7 @@ impl GpuJudge {
         for (number, group) in (0..).zip([scene, &group, slots]) {
             pass.set_bind_group(number, group, &[]);
         }
-        for (pipeline, [x, y]) in [(trace, squares), (rows, [size[1], 1]), (classify, squares)] {
+        for (pipeline, [x, y]) in self.pipelines.iter().zip([squares, [size[1], 1], squares]) {
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(x, y, 1);
         }

@@ -202,6 +202,9 @@ impl Live {
         if shot.scene.ready_rays().is_none() && !self.pose_rays(shot) {
             return Ok(false);
         }
+        if self.waits && shot.is_unseen {
+            return Ok(false);
+        }
         if self.by == JudgedBy::Gpu {
             return self.judge_on_gpu(evaluator, shot, (view, key), maps, size);
         }

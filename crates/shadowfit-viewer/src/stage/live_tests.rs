@@ -80,6 +80,19 @@ fn gpu_a_picture_that_is_waited_for_has_its_figures_at_once() {
 }
 
 #[test]
+fn gpu_a_picture_whose_verdicts_nothing_shows_is_judged_once_they_are_shown() {
+    for on_gpu in [true, false] {
+        let (mut stage, target) = stage(on_gpu);
+        stage.wait_for_rays();
+        for is_unseen in [true, false] {
+            stage.set_unseen(is_unseen);
+            draw(&mut stage, &target);
+            assert_eq!(stage.is_judged(), !is_unseen, "on the GPU: {on_gpu}");
+        }
+    }
+}
+
+#[test]
 fn gpu_a_view_that_stands_still_is_judged_again_when_its_maps_change() {
     let (mut stage, target) = stage(false);
     // Tight maps follow whatever was seen, where windows stay while they serve.

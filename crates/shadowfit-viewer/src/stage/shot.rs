@@ -24,6 +24,8 @@ pub(super) struct Shot<'a> {
     pub(super) clock: f32,
     /// Strength of blinking marks at this time, 0..=1.
     pub(super) blink: f32,
+    /// Whether nothing shows the verdicts of this picture.
+    pub(super) is_unseen: bool,
 }
 
 impl Shot<'_> {

@@ -1,6 +1,6 @@
 //! The pass itself: what it needs of a device, its pipelines, and a frame of it.
 
-use shadowfit_rays::RayScene;
+use shadowfit_rays::{RayScene, make_at_once};
 
 use super::any_hit::AnyHit;
 use super::error::ResolveError;
@@ -364,20 +364,20 @@ impl Pipelines {
         any_hit: Option<&AnyHit>,
     ) -> Self {
         let [layout, trace_layout] = [false, true].map(|read_only| layout(device, shape, read_only));
-        let classify = (shader::classify(descriptor, shape), "classify");
         let counts = any_hit.map(|any_hit| any_hit.wgsl.as_str());
-        let trace = (shader::trace(descriptor, shape, counts), "trace");
         let own = any_hit.and_then(|any_hit| any_hit.layout.as_ref());
         let traced: Vec<_> = [receiver, &trace_layout, rays].into_iter().chain(own).map(Some).collect();
-        Self {
-            classify: pipeline(device, &[Some(receiver), Some(&layout)], classify),
-            arguments: pipeline(device, &[Some(arguments)], (shader::arguments(descriptor), "count_groups")),
-            select: pipeline(device, &[Some(select)], (shader::select(), "select_pixels")),
-            trace: pipeline(device, &traced, trace),
-            key: (*descriptor, shape),
-            layout,
-            trace_layout,
-        }
+        let steps = [
+            (vec![Some(receiver), Some(&layout)], shader::classify(descriptor, shape), "classify"),
+            (vec![Some(arguments)], shader::arguments(descriptor), "count_groups"),
+            (vec![Some(select)], shader::select(), "select_pixels"),
+            (traced, shader::trace(descriptor, shape, counts), "trace"),
+        ];
+        let make = |(layouts, wgsl, entry): &(Vec<_>, String, &str)| pipeline(device, layouts, (wgsl.clone(), entry));
+        let mut made = make_at_once(device, &steps, make).into_iter();
+        let [classify, arguments, select, trace] =
+            steps.each_ref().map(|step| made.next().unwrap_or_else(|| make(step)));
+        Self { classify, arguments, select, trace, key: (*descriptor, shape), layout, trace_layout }
     }
 
     /// Lists the pixels of a picture that rays are traced for, as many as its budget keeps, and counts their workgroups.

@@ -1,0 +1,49 @@
+//! Pipelines made at the same time: a driver compiles a large shader for up to seconds, on the thread that asks for it.
+
+#[cfg(not(target_family = "wasm"))]
+use std::thread;
+
+#[cfg(not(target_family = "wasm"))]
+use crate::device::caught;
+
+/// Stack of a thread that compiles, in bytes: as large as a main thread's, since compilers of shaders recurse.
+#[cfg(not(target_family = "wasm"))]
+const STACK: usize = 8 << 20;
+
+/// Makes a thing of each kind at the same time, on up to a thread for each core, and returns them in the order of the
+/// kinds. Browsers and OpenGL make one after the other.
+///
+/// `make` may run twice for a kind: where the device refuses it on a thread, it runs again on this one, so that error
+/// scopes and handlers of this thread see the error.
+pub fn make_at_once<K, T>(device: &wgpu::Device, kinds: &[K], make: impl Fn(&K) -> T + wgpu::WasmNotSync) -> Vec<T>
+where
+    K: wgpu::WasmNotSync,
+    T: wgpu::WasmNotSend,
+{
+    #[cfg(target_family = "wasm")]
+    {
+        let _ = device;
+        kinds.iter().map(make).collect()
+    }
+    #[cfg(not(target_family = "wasm"))]
+    {
+        let cores = thread::available_parallelism().map_or(1, Into::into);
+        // OpenGL's context belongs to one thread at a time.
+        let one_by_one = device.adapter_info().backend == wgpu::Backend::Gl;
+        if one_by_one || kinds.len().min(cores) <= 1 {
+            return kinds.iter().map(make).collect();
+        }
+        let make = &make;
+        let on_thread = |kind| move || caught(device, || make(kind)).ok();
+        let mut made = Vec::new();
+        for some in kinds.chunks(cores) {
+            let found: Vec<Option<T>> = thread::scope(|scope| {
+                let spawn = |kind| thread::Builder::new().stack_size(STACK).spawn_scoped(scope, on_thread(kind)).ok();
+                let threads: Vec<_> = some.iter().map(spawn).collect();
+                threads.into_iter().map(|thread| thread?.join().ok().flatten()).collect()
+            });
+            made.extend(found.into_iter().zip(some).map(|(found, kind)| found.unwrap_or_else(|| make(kind))));
+        }
+        made
+    }
+}
