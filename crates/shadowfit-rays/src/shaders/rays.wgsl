@@ -181,6 +181,37 @@ fn shadowfit_rays_ends(slot: u32, instance: u32, ray: shadowfit_rays_Ray, distan
     return shadowfit_rays_counts(shadowfit_RayHit(instance, custom, triangle.index, slot, weights, distance));
 }
 
+// The surface that a ray starts on: nearer than `reach` metres, triangles in its plane do not count.
+struct shadowfit_rays_Start {
+    // Unit normal, in world space.
+    normal: vec3<f32>,
+    reach: f32,
+}
+
+// Of the ray that is being traced.
+var<private> shadowfit_rays_start: shadowfit_rays_Start;
+
+// Cosine of the greatest angle between the normals of triangles in one plane.
+const SHADOWFIT_RAYS_SAME_PLANE: f32 = 0.9999;
+
+// The unit normal in world space, against a ray, of an instance's triangle whose normal in its mesh is of any length.
+fn shadowfit_rays_normal(normal: vec3<f32>, instance: u32, direction: vec3<f32>) -> vec3<f32> {
+    let placed = shadowfit_rays_instances[instance];
+    let world = placed.row_x.xyz * normal.x + placed.row_y.xyz * normal.y + placed.row_z.xyz * normal.z;
+    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
+    let unit = normalize(world / max(max(abs(world.x), abs(world.y)), abs(world.z)));
+    return select(unit, -unit, dot(unit, direction) > 0.0);
+}
+
+// Whether a triangle with a normal of any length in its mesh, met at a distance, belongs to the surface that the ray starts on.
+fn shadowfit_rays_is_start(normal: vec3<f32>, instance: u32, distance: f32) -> bool {
+    let start = shadowfit_rays_start;
+    if distance >= start.reach {
+        return false;
+    }
+    return dot(shadowfit_rays_normal(normal, instance, -start.normal), start.normal) > SHADOWFIT_RAYS_SAME_PLANE;
+}
+
 // Whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle
 // Intersection", 1997, in the form of the obvhs crate: a weight of minus zero misses).
 fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
@@ -202,6 +233,9 @@ fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> b
     let signs = (bitcast<u32>(u) | bitcast<u32>(v) | bitcast<u32>(w)) & 0x80000000u;
     let distance = dot(n, c) * inverse_determinant;
     if signs != 0u || !(distance >= 0.0 && distance < SHADOWFIT_RAYS_FAR) {
+        return false;
+    }
+    if shadowfit_rays_is_start(n, instance, distance) {
         return false;
     }
     // Rays go toward the light: it sees the front where the normal goes along with them.
@@ -299,4 +333,14 @@ fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
         current = next;
     }
     return false;
+}
+
+// The same for a ray that starts on a surface, or beneath it by rounding: nearer than `reach` metres, triangles whose unit
+// normal is `normal`, or its opposite, do not block it.
+fn shadowfit_rays_blocked_above(
+    origin: vec3<f32>, direction: vec3<f32>, normal: vec3<f32>, reach: f32) -> bool {
+    shadowfit_rays_start = shadowfit_rays_Start(normal, reach);
+    let is_blocked = shadowfit_rays_blocked(origin, direction);
+    shadowfit_rays_start.reach = 0.0;
+    return is_blocked;
 }

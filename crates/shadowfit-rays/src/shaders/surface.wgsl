@@ -14,15 +14,6 @@ fn shadowfit_rays_no_surface() -> shadowfit_RaySurface {
     return shadowfit_RaySurface(SHADOWFIT_RAYS_FAR, vec3<f32>(0.0), SHADOWFIT_RAYS_NONE, SHADOWFIT_RAYS_NONE);
 }
 
-// The unit normal in world space, against a ray, of an instance's triangle whose normal in its mesh is of any length.
-fn shadowfit_rays_normal(normal: vec3<f32>, instance: u32, direction: vec3<f32>) -> vec3<f32> {
-    let placed = shadowfit_rays_instances[instance];
-    let world = placed.row_x.xyz * normal.x + placed.row_y.xyz * normal.y + placed.row_z.xyz * normal.z;
-    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
-    let unit = normalize(world / max(max(abs(world.x), abs(world.y)), abs(world.z)));
-    return select(unit, -unit, dot(unit, direction) > 0.0);
-}
-
 // A node in a word, or NONE if a ray does not meet it at a distance of at most `most`, in units of the ray's inverses.
 fn shadowfit_rays_child_within(node: u32, ray: shadowfit_rays_Ray, most: f32) -> u32 {
     let child = shadowfit_rays_nodes[node];
@@ -61,10 +52,12 @@ fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray
     return vec4<f32>(n, select(SHADOWFIT_RAYS_FAR, dot(n, c) * inverse_determinant, is_hit));
 }
 
-// The first triangle that a ray meets within a distance, in metres. Both sides of triangles count.
+// The first triangle that a ray meets within a distance, in metres. Both sides of triangles count. If it meets holes alone, the
+// one that is nearest to the middle counts: pictures decide by smaller images what is a hole.
 // origin: relative to the origin of the scene, in metres. direction: of unit length.
 fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32) -> shadowfit_RaySurface {
     var found = shadowfit_rays_no_surface();
+    var hole = found;
     let world = shadowfit_rays_ray(origin, direction);
     var most = distance;
     var ray = world;
@@ -79,16 +72,30 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
         let count = current >> SHADOWFIT_RAYS_COUNT_AT;
         var next = SHADOWFIT_RAYS_NONE;
         if count == 0u {
-            // The first child that is met is the next one: stacks are as long as this order needs.
-            for (var place = SHADOWFIT_RAYS_WIDTH; place > 0u; place--) {
-                let child = shadowfit_rays_child_within(first + place - 1u, ray, reach);
-                if child != SHADOWFIT_RAYS_NONE {
-                    if next != SHADOWFIT_RAYS_NONE {
-                        stack[height] = next;
-                        height++;
-                    }
-                    next = child;
+            let met = vec4<u32>(
+                shadowfit_rays_child_within(first, ray, reach), shadowfit_rays_child_within(first + 1u, ray, reach),
+                shadowfit_rays_child_within(first + 2u, ray, reach), shadowfit_rays_child_within(first + 3u, ray, reach));
+            next = met.w;
+            if met.z != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
                 }
+                next = met.z;
+            }
+            if met.y != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = met.y;
+            }
+            if met.x != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = met.x;
             }
         } else if instance == SHADOWFIT_RAYS_NONE {
             let root = shadowfit_rays_instances[first].root;
@@ -102,10 +109,16 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
         } else {
             for (var slot = first; slot < first + count; slot++) {
                 let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
-                if met.w >= 0.0 && met.w <= most && shadowfit_rays_ends(slot, instance, ray, met.w) {
-                    found = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
+                if !(met.w >= 0.0 && met.w <= most) {
+                    continue;
+                }
+                let surface = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
+                if shadowfit_rays_ends(slot, instance, ray, met.w) {
+                    found = surface;
                     most = met.w;
                     reach = shadowfit_rays_scaled(most, ray);
+                } else if abs(met.w - 0.5 * distance) < abs(hole.distance - 0.5 * distance) {
+                    hole = surface;
                 }
             }
         }
@@ -122,6 +135,9 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
             next = stack[height];
         }
         current = next;
+    }
+    if found.slot == SHADOWFIT_RAYS_NONE {
+        found = hole;
     }
     if found.slot != SHADOWFIT_RAYS_NONE {
         found.normal = shadowfit_rays_normal(found.normal, found.instance, direction);

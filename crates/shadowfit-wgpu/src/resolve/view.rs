@@ -29,8 +29,9 @@ pub struct ResolveView<'a> {
     pub budget: Option<u32>,
     /// The bind group of the pass's [`AnyHit`](super::AnyHit), if that has a layout.
     pub any_hit: Option<&'a wgpu::BindGroup>,
-    /// Rays start at least this far above the surface, in metres. Where maps or boxes of receivers reach kilometres away they
-    /// start farther along the light, since positions in large triangles are rounded by more. Default: 0.001.
+    /// Rays start at least this far above the surface, in metres. Where maps or boxes of receivers reach kilometres away,
+    /// triangles in the plane of the surface are ignored near the start, because positions in large triangles are rounded by
+    /// more than this. Default: 0.001.
     pub ray_offset: f32,
 }
 

@@ -147,9 +147,10 @@ fn lit_at(unsure: Unsure, start: Start, in_sun: vec2<f32>) -> f32 {
     let aside = in_sun * resolve.sun_tangent;
     let beside = unsure.across.x * aside.x + unsure.across.y * aside.y;
     let ray = normalize(shadowfit_receiver.to_light + beside);
-    // Farther than large triangles are rounded by, along the ray: this moves no edge of a shadow.
-    let farther = max(resolve.vertex_rounding - start.height, 0.0) / max(dot(start.normal, ray), SHADOWFIT_MIN_COSINE);
-    return select(1.0, 0.0, shadowfit_rays_blocked(point + ray * farther, ray));
+    // Points of large triangles may lie deeper than their rays start above them.
+    let beneath = max(resolve.vertex_rounding - start.height, 0.0);
+    let reach = beneath / max(dot(start.normal, ray), SHADOWFIT_MIN_COSINE);
+    return select(1.0, 0.0, shadowfit_rays_blocked_above(point, ray, start.normal, reach));
 }
 
 // What the threads of a workgroup find: of each pixel the start of its first ray and what the map has in the way, then of each
