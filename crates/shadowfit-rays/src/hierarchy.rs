@@ -242,9 +242,9 @@ mod tests {
     use super::*;
     use obvhs::aabb::Aabb;
 
-    /// Boxes along a line, `apart` metres from each other.
-    fn boxes(apart: f32) -> Vec<Aabb> {
-        (0..200u8).map(|x| Aabb::from_point((Vec3::X * f32::from(x) * apart).into())).collect()
+    /// Boxes along a diagonal.
+    fn boxes(place: impl Fn(f32) -> f32) -> Vec<Aabb> {
+        (0..200u8).map(|number| Aabb::from_point((Vec3::ONE * place(number.into())).into())).collect()
     }
 
     const PARAMS: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 2, ..BvhBuildParams::medium_build() };
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn hierarchies_have_every_box_once_in_few_levels_and_children_after_their_parents() {
         for apart in [1.0, 0.0] {
-            let (mut hierarchy, order) = build(&boxes(apart), PARAMS, 40);
+            let (mut hierarchy, order) = build(&boxes(|number| number * apart), PARAMS, 40);
             assert!(hierarchy.levels.len() <= MAX_LEVELS, "{apart}: {}", hierarchy.levels.len());
             let nodes = hierarchy.nodes.clone();
             let leaves = nodes.iter().filter(|node| node.count > 0);
@@ -260,10 +260,10 @@ mod tests {
             met.sort_unstable();
             assert!(met.into_iter().eq(0..200));
             hierarchy.fit(|slots| {
-                let points = order[slots].iter().map(|index| Vec3::X * *index as f32);
+                let points = order[slots].iter().map(|index| Vec3::ONE * *index as f32);
                 points.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |bounds, at| union(bounds, [at; 2]))
             });
-            assert_eq!(hierarchy.nodes[0].bounds(), [Vec3::ZERO, Vec3::X * 199.0]);
+            assert_eq!(hierarchy.nodes[0].bounds(), [Vec3::ZERO, Vec3::ONE * 199.0]);
             let is_after = |(index, node): (usize, &NodeRecord)| node.count > 0 || node.first as usize > index;
             assert!(hierarchy.nodes.iter().enumerate().all(is_after));
         }
@@ -286,7 +286,9 @@ mod tests {
 
     #[test]
     fn the_stack_of_a_ray_is_known_and_another_order_of_children_shortens_it() {
-        let [largest_first, shortest_first] = [40, 0].map(|most| build(&boxes(1.0), PARAMS, most).0);
+        // Each one farther from the others than these are from each other, so that nodes have nodes on one side alone.
+        let lopsided = boxes(|number| 1.1_f32.powf(number));
+        let [largest_first, shortest_first] = [200, 0].map(|most| build(&lopsided, PARAMS, most).0);
         for hierarchy in [&largest_first, &shortest_first] {
             assert_eq!(walk(hierarchy), (hierarchy.stack, 200));
         }

@@ -278,14 +278,13 @@ fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     var entered = 0u;
     var current = shadowfit_rays_packed(shadowfit_rays_nodes[0]);
     loop {
-        let count = current >> SHADOWFIT_RAYS_COUNT_AT;
-        var next = SHADOWFIT_RAYS_NONE;
-        if count == 0u {
-            let first = current & SHADOWFIT_RAYS_FIRST;
+        // Down to a leaf first: the rays of a subgroup then test triangles together.
+        while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {
+            let first = current;
             let met = vec4<u32>(
                 shadowfit_rays_child(first, ray), shadowfit_rays_child(first + 1u, ray),
                 shadowfit_rays_child(first + 2u, ray), shadowfit_rays_child(first + 3u, ray));
-            next = met.w;
+            var next = met.w;
             if met.z != SHADOWFIT_RAYS_NONE {
                 if next != SHADOWFIT_RAYS_NONE {
                     stack[height] = next;
@@ -307,16 +306,30 @@ fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
                 }
                 next = met.x;
             }
-        } else if instance == SHADOWFIT_RAYS_NONE {
-            let index = current & SHADOWFIT_RAYS_FIRST;
-            let root = shadowfit_rays_instances[index].root;
+            if next == SHADOWFIT_RAYS_NONE {
+                if height == 0u {
+                    return false;
+                }
+                if instance != SHADOWFIT_RAYS_NONE && height == entered {
+                    instance = SHADOWFIT_RAYS_NONE;
+                    ray = world;
+                }
+                height--;
+                next = stack[height];
+            }
+            current = next;
+        }
+        let first = current & SHADOWFIT_RAYS_FIRST;
+        var next = SHADOWFIT_RAYS_NONE;
+        if instance == SHADOWFIT_RAYS_NONE {
+            let root = shadowfit_rays_instances[first].root;
             if root != SHADOWFIT_RAYS_NONE {
-                ray = shadowfit_rays_in_mesh(index, world);
-                instance = index;
+                ray = shadowfit_rays_in_mesh(first, world);
+                instance = first;
                 entered = height;
                 next = root;
             }
-        } else if shadowfit_rays_blocks_any(current & SHADOWFIT_RAYS_FIRST, count, instance, ray) {
+        } else if shadowfit_rays_blocks_any(first, current >> SHADOWFIT_RAYS_COUNT_AT, instance, ray) {
             return true;
         }
         if next == SHADOWFIT_RAYS_NONE {
