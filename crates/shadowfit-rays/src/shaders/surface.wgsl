@@ -33,9 +33,16 @@ fn shadowfit_rays_scaled(distance: f32, ray: shadowfit_rays_Ray) -> f32 {
     return distance * max(max(size.x, size.y), size.z);
 }
 
-// The distance at which a ray in the space of a mesh meets a triangle, and twice its area times the normal; FAR if it
-// misses.
-fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray) -> vec4<f32> {
+// Where a ray in the space of a mesh meets the plane of a triangle.
+struct shadowfit_rays_Met {
+    // Of any length.
+    normal: vec3<f32>,
+    // In metres; SHADOWFIT_RAYS_FAR for a ray in the plane.
+    distance: f32,
+    is_inside: bool,
+}
+
+fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray) -> shadowfit_rays_Met {
     let e1 = triangle.a - triangle.b;
     let e2 = triangle.c - triangle.a;
     let n = cross(e1, e2);
@@ -43,13 +50,12 @@ fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray
     let r = cross(ray.direction, c);
     let determinant = dot(n, ray.direction);
     if determinant == 0.0 {
-        return vec4<f32>(n, SHADOWFIT_RAYS_FAR);
+        return shadowfit_rays_Met(n, SHADOWFIT_RAYS_FAR, false);
     }
     let inverse_determinant = 1.0 / determinant;
     let u = dot(r, e2) * inverse_determinant;
     let v = dot(r, e1) * inverse_determinant;
-    let is_hit = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
-    return vec4<f32>(n, select(SHADOWFIT_RAYS_FAR, dot(n, c) * inverse_determinant, is_hit));
+    return shadowfit_rays_Met(n, dot(n, c) * inverse_determinant, u >= 0.0 && v >= 0.0 && u + v <= 1.0);
 }
 
 // The first triangle that a ray meets within a distance, in metres. Both sides of triangles count. If it meets holes alone, the
@@ -109,15 +115,15 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
         } else {
             for (var slot = first; slot < first + count; slot++) {
                 let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
-                if !(met.w >= 0.0 && met.w <= most) {
+                if !(met.is_inside && met.distance >= 0.0 && met.distance <= most) {
                     continue;
                 }
-                let surface = shadowfit_RaySurface(met.w, met.xyz, slot, instance);
-                if shadowfit_rays_ends(slot, instance, ray, met.w) {
+                let surface = shadowfit_RaySurface(met.distance, met.normal, slot, instance);
+                if shadowfit_rays_ends(slot, instance, ray, met.distance) {
                     found = surface;
-                    most = met.w;
+                    most = met.distance;
                     reach = shadowfit_rays_scaled(most, ray);
-                } else if abs(met.w - 0.5 * distance) < abs(hole.distance - 0.5 * distance) {
+                } else if abs(met.distance - 0.5 * distance) < abs(hole.distance - 0.5 * distance) {
                     hole = surface;
                 }
             }
@@ -145,13 +151,10 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
     return found;
 }
 
-// The same for a triangle that another ray has met, alone.
-fn shadowfit_rays_same_surface(
-    origin: vec3<f32>, direction: vec3<f32>, distance: f32, slot: u32, instance: u32) -> shadowfit_RaySurface {
+// Where a ray meets the plane of one triangle: its normal is a unit one, against the ray.
+fn shadowfit_rays_plane(origin: vec3<f32>, direction: vec3<f32>, slot: u32, instance: u32) -> shadowfit_rays_Met {
     let inside = shadowfit_rays_in_mesh(instance, shadowfit_rays_ray(origin, direction));
-    let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], inside);
-    if !(met.w >= 0.0 && met.w <= distance) || !shadowfit_rays_ends(slot, instance, inside, met.w) {
-        return shadowfit_rays_no_surface();
-    }
-    return shadowfit_RaySurface(met.w, shadowfit_rays_normal(met.xyz, instance, direction), slot, instance);
+    var met = shadowfit_rays_met(shadowfit_rays_triangles[slot], inside);
+    met.normal = shadowfit_rays_normal(met.normal, instance, direction);
+    return met;
 }

@@ -10,6 +10,12 @@ use crate::caught::caught;
 /// were on it before some were left out.
 pub(super) const COUNTS: usize = 4;
 
+/// Bytes of a pixel on a list: `Listed` in WGSL.
+const LISTED: u64 = 12;
+
+/// Where the arguments of the pass that looks for triangles begin, behind those of the pass that traces, in bytes.
+pub(super) const SURFACE_GROUPS: u64 = 16;
+
 /// Textures and buffers of a picture's size.
 #[derive(Debug)]
 pub(super) struct Target {
@@ -17,7 +23,7 @@ pub(super) struct Target {
     /// For the passes to write to.
     pub(super) factors: wgpu::TextureView,
     pub(super) list: wgpu::Buffer,
-    /// Workgroups of the pass that traces.
+    /// Workgroups of the passes that trace and look for triangles.
     pub(super) groups: wgpu::Buffer,
     pub(super) group: wgpu::BindGroup,
     pub(super) arguments: wgpu::BindGroup,
@@ -97,7 +103,7 @@ impl Target {
             let list = list(device, size);
             let groups = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("shadowfit resolve groups"),
-                size: 16,
+                size: 2 * SURFACE_GROUPS,
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
                 mapped_at_creation: false,
             });
@@ -173,7 +179,7 @@ fn list(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Buffer {
     let pixels = (u64::from(width) * u64::from(height)).next_multiple_of(u64::from(TRACE_THREADS));
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("shadowfit resolve list"),
-        size: (COUNTS as u64 + pixels) * 4,
+        size: COUNTS as u64 * 4 + pixels * LISTED,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })

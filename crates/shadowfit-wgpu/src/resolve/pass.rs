@@ -4,7 +4,7 @@ use shadowfit_rays::{RayScene, make_at_once};
 
 use super::any_hit::AnyHit;
 use super::error::ResolveError;
-use super::group::{COUNTS, FLOATS, Kept, Layouts, Target, factors};
+use super::group::{COUNTS, FLOATS, Kept, Layouts, SURFACE_GROUPS, Target, factors};
 use super::pipeline::{module, pipeline};
 use super::pyramid::{BOUNDS, Pyramids};
 use super::result::{EdgeResult, ResolveCounts, WhyFiltered};
@@ -60,6 +60,7 @@ struct Pipelines {
     classify: wgpu::ComputePipeline,
     arguments: wgpu::ComputePipeline,
     select: wgpu::ComputePipeline,
+    surfaces: wgpu::ComputePipeline,
     trace: wgpu::ComputePipeline,
 }
 
@@ -255,6 +256,7 @@ impl ResolvePass {
         let is_soft = sun.map().descriptor().filter.is_soft();
         let traced = kept.map_or(&target.list, |kept| &kept.list);
         let classify = self.bind(&pipelines.layout, (target, &target.list), view);
+        let surfaces = self.bind(&pipelines.layout, (target, traced), view);
         let trace = self.bind(&pipelines.trace_layout, (target, traced), view);
         for list in [&target.list, traced] {
             encoder.clear_buffer(list, 0, Some(COUNTS as u64 * 4));
@@ -265,14 +267,18 @@ impl ResolvePass {
             pyramids.renew(&mut pass, sun, &receiver);
         }
         pipelines.list(&mut pass, (target, kept), [&receiver, &classify], source.resolve.size);
-        pass.set_pipeline(&pipelines.trace);
-        pass.set_bind_group(0, &receiver, &[]);
-        pass.set_bind_group(1, &trace, &[]);
-        pass.set_bind_group(2, rays.group(), &[]);
-        if let Some(group) = view.any_hit {
-            pass.set_bind_group(AnyHit::GROUP, group, &[]);
+        for (pipeline, group, arguments) in
+            [(&pipelines.surfaces, &surfaces, SURFACE_GROUPS), (&pipelines.trace, &trace, 0)]
+        {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &receiver, &[]);
+            pass.set_bind_group(1, group, &[]);
+            pass.set_bind_group(2, rays.group(), &[]);
+            if let Some(group) = view.any_hit {
+                pass.set_bind_group(AnyHit::GROUP, group, &[]);
+            }
+            pass.dispatch_workgroups_indirect(&target.groups, arguments);
         }
-        pass.dispatch_workgroups_indirect(&target.groups, 0);
         drop(pass);
         self.recordings += 1;
         if let Some(counts) = self.counts.iter_mut().find(|counts| counts.is_free()) {
@@ -366,18 +372,20 @@ impl Pipelines {
         let [layout, trace_layout] = [false, true].map(|read_only| layout(device, shape, read_only));
         let counts = any_hit.map(|any_hit| any_hit.wgsl.as_str());
         let own = any_hit.and_then(|any_hit| any_hit.layout.as_ref());
-        let traced: Vec<_> = [receiver, &trace_layout, rays].into_iter().chain(own).map(Some).collect();
+        let [found, traced] = [&layout, &trace_layout]
+            .map(|list| [receiver, list, rays].into_iter().chain(own).map(Some).collect::<Vec<_>>());
         let steps = [
             (vec![Some(receiver), Some(&layout)], shader::classify(descriptor, shape), "classify"),
             (vec![Some(arguments)], shader::arguments(descriptor), "count_groups"),
             (vec![Some(select)], shader::select(), "select_pixels"),
+            (found, shader::surfaces(descriptor, shape, counts), "find_surfaces"),
             (traced, shader::trace(descriptor, shape, counts), "trace"),
         ];
         let make = |(layouts, wgsl, entry): &(Vec<_>, String, &str)| pipeline(device, layouts, (wgsl.clone(), entry));
         let mut made = make_at_once(device, &steps, make).into_iter();
-        let [classify, arguments, select, trace] =
+        let [classify, arguments, select, surfaces, trace] =
             steps.each_ref().map(|step| made.next().unwrap_or_else(|| make(step)));
-        Self { classify, arguments, select, trace, key: (*descriptor, shape), layout, trace_layout }
+        Self { classify, arguments, select, surfaces, trace, key: (*descriptor, shape), layout, trace_layout }
     }
 
     /// Lists the pixels of a picture that rays are traced for, as many as its budget keeps, and counts their workgroups.

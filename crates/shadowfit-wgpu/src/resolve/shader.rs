@@ -40,13 +40,14 @@ pub(super) struct Shape {
     pub(super) normals: Option<NormalEncoding>,
 }
 
-/// The WGSL of the passes that classify pixels, count workgroups, leave pixels out, trace rays, and bound the depths of maps
-/// for suns with a radius, without an engine's own test of hits: entry points `classify`, `count_groups`, `select_pixels`, `trace`, `gather_blocks` and
-/// `join_blocks`. `samples`: those of the depth texture per pixel.
-pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 6] {
+/// Returns the WGSL of the passes that classify pixels, count workgroups, leave pixels out, look for triangles, trace rays, and
+/// bound the depths of maps for suns with a radius, without an engine's own test of hits. Their entry points are `classify`,
+/// `count_groups`, `select_pixels`, `find_surfaces`, `trace`, `gather_blocks` and `join_blocks`. `samples`: those of the depth texture per pixel.
+pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 7] {
     let shape = Shape { samples, normals };
     let [blocks, levels] = pyramid(descriptor);
-    [classify(descriptor, shape), arguments(descriptor), select(), trace(descriptor, shape, None), blocks, levels]
+    let [surfaces, trace] = [surfaces, trace].map(|wgsl| wgsl(descriptor, shape, None));
+    [classify(descriptor, shape), arguments(descriptor), select(), surfaces, trace, blocks, levels]
 }
 
 /// WGSL that reads what a [`ResolvePass`](super::ResolvePass) found, after that of [`receiver_wgsl`]:
@@ -94,7 +95,9 @@ pub(super) fn pyramid(descriptor: &ShadowMapDescriptor) -> [String; 2] {
 
 pub(super) fn arguments(descriptor: &ShadowMapDescriptor) -> String {
     let pixels = TRACE_THREADS / descriptor.edges.samples().max(1);
-    let constants = format!("const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst PIXELS: u32 = {pixels}u;\n");
+    let constants = format!(
+        "const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst PIXELS: u32 = {pixels}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n"
+    );
     let list = LIST.replace("LIST_COUNT", "u32");
     [&constants, &list, include_str!("../shaders/resolve_arguments.wgsl")].concat()
 }
@@ -107,25 +110,37 @@ pub(super) fn select() -> String {
 }
 
 /// `counts`: an engine's own test of hits.
-pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
+pub(super) fn surfaces(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
+    let constants = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
+    let pass = include_str!("../shaders/resolve_surfaces.wgsl");
+    [&starts(descriptor, shape, counts), &constants, pass].concat()
+}
+
+/// The list, and where rays start. `descriptor`: that of the look-up.
+fn starts(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
+    let list = LIST.replace("LIST_COUNT", "u32");
+    [&look_up(descriptor), &rays, &shared(shape), &list, include_str!("../shaders/resolve_start.wgsl")].concat()
+}
+
+/// `counts`: an engine's own test of hits.
+pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let is_soft = descriptor.filter.is_soft();
     let points = descriptor.edges.samples().max(1);
     let threads = format!(
         "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\n",
         TRACE_THREADS / points
     );
-    let list = LIST.replace("LIST_COUNT", "u32");
     // Whatever the filter, rays to a sun with a radius are compared with casters at their distance.
     let filter = if is_soft { FilterKind::Pcss } else { descriptor.filter };
-    let look_up = look_up(&ShadowMapDescriptor { filter, ..*descriptor });
+    let starts = starts(&ShadowMapDescriptor { filter, ..*descriptor }, shape, counts);
     let estimate = if is_soft {
         include_str!("../shaders/resolve_estimate_sun.wgsl")
     } else {
         include_str!("../shaders/resolve_estimate_area.wgsl")
     };
     let pass = include_str!("../shaders/resolve_trace.wgsl");
-    [&look_up, &rays, &shared(shape), &list, &threads, estimate, pass].concat()
+    [&starts, &threads, estimate, pass].concat()
 }
 
 /// The look-up into the maps, for positions relative to the eye. Nothing is resolved while two sets of maps are mixed:

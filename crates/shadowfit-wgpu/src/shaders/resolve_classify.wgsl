@@ -225,6 +225,6 @@ fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocat
     }
     workgroupBarrier();
     if verdict == UNSURE {
-        list.pixels[first_slot + slot] = id.x | (id.y << 16u);
+        list.pixels[first_slot + slot].pixel = id.x | (id.y << 16u);
     }
 }

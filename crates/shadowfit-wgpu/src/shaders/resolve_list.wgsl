@@ -7,6 +7,18 @@ struct List {
     filtered: LIST_COUNT,
     // Of a list from which some were left out: how many there were before. Otherwise 0.
     unsure: u32,
+    pixels: array<Listed>,
+}
+
+struct Listed {
     // Column, and row in the upper half.
-    pixels: array<u32>,
+    pixel: u32,
+    // The triangle of its first ray, once it is looked for: its place among those of the rays, or SHADOWFIT_RAYS_NONE, and its
+    // instance.
+    slot: u32,
+    instance: u32,
+}
+
+fn pixel_of(listed: Listed) -> vec2<i32> {
+    return vec2<i32>(i32(listed.pixel & 0xffffu), i32(listed.pixel >> 16u));
 }

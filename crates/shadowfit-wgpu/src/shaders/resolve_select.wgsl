@@ -13,7 +13,7 @@ struct KeptList {
     facing: u32,
     filtered: u32,
     unsure: u32,
-    pixels: array<u32>,
+    pixels: array<Listed>,
 }
 
 struct Budget {
@@ -49,8 +49,8 @@ fn select_pixels(
     if index >= all.count {
         return;
     }
-    let packed = all.pixels[index];
+    let packed = all.pixels[index].pixel;
     if noise(vec2<u32>(packed & 0xffffu, packed >> 16u)) * f32(all.count) < f32(budget.pixels) {
-        kept.pixels[atomicAdd(&kept.count, 1u)] = packed;
+        kept.pixels[atomicAdd(&kept.count, 1u)].pixel = packed;
     }
 }

@@ -1,101 +1,69 @@
-// Third resolve pass: the rays of the pixels on the list.
+// Fourth resolve pass: the rays of the pixels on the list.
 
 @group(1) @binding(4) var<storage, read> list: List;
 
-// The least that Vulkan and Direct3D allow: 16 steps in a pixel.
-const MOST_SNAP: f32 = 0.03125;
-// Share of the way to another point of a pixel by which its depth may differ from that of the pixel's plane.
-const BEND: f32 = 0.5;
-
-// A point of a pixel's surface.
-struct Start {
-    // Relative to the eye, in metres.
-    position: vec3<f32>,
-    // Unit geometric normal on the side of the eye.
-    normal: vec3<f32>,
-    // Distance above the surface at which rays start, in metres.
-    height: f32,
-    // Where it lies in the pixel, from its first sample, in pixels.
-    place: vec2<f32>,
-    // The triangle: its place among those of the rays, and its instance; SHADOWFIT_RAYS_NONE where none was found.
+// A triangle on which the first ray of a pixel starts.
+struct Triangle {
+    // Its place among those of the rays; SHADOWFIT_RAYS_NONE where none was found.
     slot: u32,
     instance: u32,
 }
 
-fn is_exact(start: Start) -> bool {
-    return start.slot != SHADOWFIT_RAYS_NONE;
+// Whether a pixel lies so near to the plane of another one that rays which start on the plane between them start above the
+// surface: by half of their height, since points may lie aside along both axes. step: from the other one.
+fn is_on_plane(pixel: vec2<i32>, step: vec2<i32>, surface: Surface) -> bool {
+    let found = depth_at(pixel + step);
+    let off = found - surface.depth - dot(surface.steps, vec2<f32>(step));
+    let beneath = abs(off * dot(moved(resolve.world_from_pixel[2], surface), surface.normal)) * resolve.point_reach;
+    return found != 0.0 && beneath <= 0.5 * height_at(surface.position);
 }
 
-// Relative to the eye, in metres. at: in pixels. depth: minus the far plane's.
-fn position_at(at: vec2<f32>, depth: f32) -> vec3<f32> {
-    let homogeneous = resolve.world_from_pixel * vec4<f32>(at, depth, 1.0);
-    return homogeneous.xyz / homogeneous.w;
+// Whether a surface goes on to a neighbour of its pixel as the pixel's plane does. Two pixels are on any plane that follows
+// from them, however the surface bends between them: it takes a third one in line.
+fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
+    return is_on_plane(pixel, axis, surface)
+        && (is_on_plane(pixel, -axis, surface) || is_on_plane(pixel, 2 * axis, surface));
 }
 
-// A part of a line of sight on which the surface lies.
-struct Sight {
-    // By the depth buffer, relative to the eye, in metres.
-    middle: vec3<f32>,
-    // Unit direction away from the eye.
-    direction: vec3<f32>,
-    // How far the surface may lie before and behind the middle, in metres.
-    reach: f32,
+// Whether the surface goes on to a place in its pixel, from the first sample, in pixels.
+fn reaches(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> bool {
+    let across = select(vec2<i32>(-1, 0), vec2<i32>(1, 0), place.x > 0.0);
+    let down = select(vec2<i32>(0, -1), vec2<i32>(0, 1), place.y > 0.0);
+    return (place.x == 0.0 || goes_on(pixel, across, surface)) && (place.y == 0.0 || goes_on(pixel, down, surface));
 }
 
-// Of a place in a pixel. Depths are rounded, and belong to triangles whose corners were moved.
-fn sight_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Sight {
-    // Beyond half the depth there is the far plane.
-    let farthest = 0.5 * abs(surface.depth);
-    let depth = surface.depth + clamp(dot(surface.steps, place), -farthest, farthest);
-    let steps = surface.most_steps;
-    let off = ROUNDINGS * rounding(depth) + MOST_SNAP * (steps.x + steps.y) + BEND * dot(steps, abs(place));
-    let least = min(off, 0.5 * abs(depth));
-    let at = vec2<f32>(pixel) + sample_place(0u) + place;
-    let middle = position_at(at, depth);
-    let one = position_at(at, depth - least);
-    let other = position_at(at, depth + least);
-    let is_near = dot(other - one, resolve.forward) > 0.0;
-    let before = select(other, one, is_near);
-    let reach = length(middle - before) + POSITION_ROUNDING * (length(middle) + length(resolve.eye));
-    return Sight(middle, normalize(select(one - other, other - one, is_near)), reach);
-}
-
-// Where a line of sight begins, relative to the origin of the rays.
-fn begin_of(sight: Sight) -> vec3<f32> {
-    return sight.middle - sight.direction * sight.reach + resolve.eye;
-}
-
-fn start_on(sight: Sight, met: shadowfit_RaySurface, place: vec2<f32>) -> Start {
-    let position = sight.middle + sight.direction * (met.distance - sight.reach);
-    return Start(position, met.normal, height_at(position), place, met.slot, met.instance);
-}
-
-// The point that the eye sees at a place in a pixel. By the depth buffer, at the first sample, where there is no triangle.
-fn start_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Start {
-    let sight = sight_at(pixel, surface, place);
-    let met = shadowfit_rays_surface(begin_of(sight), sight.direction, 2.0 * sight.reach);
-    if met.slot != SHADOWFIT_RAYS_NONE {
-        return start_on(sight, met, place);
-    }
+// By the depth buffer, at the first sample.
+fn start_by_depth(surface: Surface) -> Start {
     let height = max(height_at(surface.position), abs(dot(surface.off, surface.normal)));
-    return Start(surface.position, surface.normal, height, vec2<f32>(0.0), met.slot, met.instance);
+    return Start(surface.position, surface.normal, height, vec2<f32>(0.0), false);
 }
 
-// The same of another point of the pixel: mostly it lies on the same triangle, and where there is none it is the same point.
-fn start_beside(pixel: vec2<i32>, surface: Surface, place: vec2<f32>, first: Start) -> Start {
+// The point that the eye sees at a place in a pixel: on the triangle of the first one, or on its plane where the surface goes
+// on as a plane, and else the first one.
+fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<f32>) -> Start {
+    if triangle.slot == SHADOWFIT_RAYS_NONE {
+        return start_by_depth(surface);
+    }
     let sight = sight_at(pixel, surface, place);
-    let begin = begin_of(sight);
-    var met = shadowfit_rays_no_surface();
-    if is_exact(first) {
-        met = shadowfit_rays_same_surface(begin, sight.direction, 2.0 * sight.reach, first.slot, first.instance);
+    let met = shadowfit_rays_plane(begin_of(sight), sight.direction, triangle.slot, triangle.instance);
+    let is_near = met.distance >= 0.0 && met.distance <= 2.0 * sight.reach;
+    let is_first = all(place == resolve.points[0].xy);
+    if is_near && (is_first || met.is_inside || reaches(pixel, surface, place)) {
+        let position = sight.middle + sight.direction * (met.distance - sight.reach);
+        return Start(position, met.normal, height_at(position), place, true);
     }
-    if met.slot == SHADOWFIT_RAYS_NONE {
-        met = shadowfit_rays_surface(begin, sight.direction, 2.0 * sight.reach);
+    if is_first {
+        return start_by_depth(surface);
     }
-    if met.slot == SHADOWFIT_RAYS_NONE {
-        return first;
-    }
-    return start_on(sight, met, place);
+    return start_at_first(pixel, surface, triangle);
+}
+
+fn start_at_first(pixel: vec2<i32>, surface: Surface, triangle: Triangle) -> Start {
+    let place = resolve.points[0].xy;
+    let sight = sight_at(pixel, surface, place);
+    let met = shadowfit_rays_plane(begin_of(sight), sight.direction, triangle.slot, triangle.instance);
+    let position = sight.middle + sight.direction * (met.distance - sight.reach);
+    return Start(position, met.normal, height_at(position), place, true);
 }
 
 // Directions across the light, of unit length.
@@ -128,19 +96,20 @@ fn traced(factor: f32) -> f32 {
 struct Unsure {
     pixel: vec2<i32>,
     surface: Surface,
+    triangle: Triangle,
     across: Across,
 }
 
 fn unsure_at(index: u32) -> Unsure {
-    let packed = list.pixels[index];
-    let pixel = vec2<i32>(i32(packed & 0xffffu), i32(packed >> 16u));
+    let listed = list.pixels[index];
+    let pixel = pixel_of(listed);
     let surface = surface_of(pixel, depth_at(pixel));
-    return Unsure(pixel, surface, across_light(pixel));
+    return Unsure(pixel, surface, Triangle(listed.slot, listed.instance), across_light(pixel));
 }
 
 // Whether the light reaches a point of a pixel: 1 or 0.
 fn lit_at(unsure: Unsure, start: Start, in_sun: vec2<f32>) -> f32 {
-    if is_exact(start) && dot(start.normal, shadowfit_receiver.to_light) <= 0.0 {
+    if start.is_exact && dot(start.normal, shadowfit_receiver.to_light) <= 0.0 {
         return 0.0;
     }
     let point = start.position + start.normal * start.height + resolve.eye;
@@ -153,10 +122,8 @@ fn lit_at(unsure: Unsure, start: Start, in_sun: vec2<f32>) -> f32 {
     return select(1.0, 0.0, shadowfit_rays_blocked_above(point, ray, start.normal, reach));
 }
 
-// What the threads of a workgroup find: of each pixel the start of its first ray and what the map has in the way, then of each
-// ray whether light reaches its point, what the map says of it, its part of what the map says of the whole pixel, and whether
-// the point lies off the plane.
-var<workgroup> starts: array<Start, PIXELS>;
+// What the threads of a workgroup find: of each pixel what the map has in the way, then of each ray whether light reaches its
+// point, what the map says of it, its part of what the map says of the whole pixel, and whether the point lies off the plane.
 var<workgroup> casters: array<vec2<f32>, PIXELS>;
 var<workgroup> found: array<vec4<f32>, TRACE_THREADS>;
 
@@ -169,10 +136,7 @@ fn is_off(surface: Surface, start: Start, place: vec2<f32>) -> bool {
 
 fn found_by(unsure: Unsure, at: u32, of_group: u32) -> vec4<f32> {
     let ray = resolve.points[at];
-    var start = starts[of_group];
-    if at != 0u {
-        start = start_beside(unsure.pixel, unsure.surface, ray.xy, start);
-    }
+    let start = start_at(unsure.pixel, unsure.surface, unsure.triangle, ray.xy);
     let map = estimate_of(unsure, casters[of_group]);
     var part = 0.0;
     for (var look_up = at; map.is_known && look_up < LOOK_UPS; look_up += POINTS) {
@@ -197,7 +161,6 @@ fn trace(
     if is_ray {
         unsure = unsure_at(index);
         if at == 0u {
-            starts[of_group] = start_at(unsure.pixel, unsure.surface, resolve.points[0].xy);
             casters[of_group] = casters_of(unsure);
         }
     }

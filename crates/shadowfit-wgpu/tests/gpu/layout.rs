@@ -167,9 +167,9 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
         }
     );
     let unknown = layout!("Unknown" = UnknownUniform { least, maps, most, is_filtered });
-    let [classify, _, select, trace, blocks, _] =
+    let [classify, _, select, surfaces, trace, blocks, _] =
         resolve_wgsl(&ShadowMapDescriptor::default(), 4, None).map(|source| parse("resolve", &source));
-    for module in [classify, trace] {
+    for module in [classify, surfaces, trace] {
         assert_same(&module, &resolve);
         assert_same(&module, &unknown);
         let (members, _) = reflected(&module, "Resolve");

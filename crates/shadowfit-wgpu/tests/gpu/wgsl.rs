@@ -109,11 +109,11 @@ static MODULES: LazyLock<Vec<Shader>> = LazyLock::new(|| {
 /// Returns the modules of the resolve passes, with another first binding for every kind.
 fn resolve_modules(number: u32, kind: &Kind) -> Vec<Shader> {
     let map = ShadowMapDescriptor { first_binding: number % 3, ..kind.map };
-    let [classify, _, _, trace, blocks, levels] = resolve_wgsl(&map, kind.samples, kind.normals);
+    let [classify, _, _, surfaces, trace, blocks, levels] = resolve_wgsl(&map, kind.samples, kind.normals);
     let mut passes = vec![("classify", classify), ("trace", trace)];
-    // The pyramids do not depend on the filter.
+    // These do not depend on the filter.
     if map.filter == FilterKind::default() {
-        passes.extend([("blocks", blocks), ("levels", levels)]);
+        passes.extend([("surfaces", surfaces), ("blocks", blocks), ("levels", levels)]);
     }
     passes
         .into_iter()

@@ -132,24 +132,49 @@ impl Twin {
         let reach = (middle - near).length() + POSITION_ROUNDING * (middle.length() + self.eye.length());
         let direction = (far - near).normalize();
         let begin = middle - direction * reach + self.eye;
-        let mut hit = None;
-        tracer.for_each_hit_within(begin, direction, 2.0 * reach, |other| {
-            if first.is_some_and(|first| first.triangle == Some(other.triangle)) {
-                hit = Some(other);
-            }
-        });
-        let Some(hit) = hit.or_else(|| tracer.first_hit_within(begin, direction, 2.0 * reach)) else {
+        let triangle = match first {
+            None => tracer.first_hit_within(begin, direction, 2.0 * reach).map(|hit| hit.triangle),
+            Some(first) => first.triangle,
+        };
+        let Some(triangle) = triangle else {
             let position = surface.position;
             let height = self.height_at(position).max(dot(surface.off, surface.normal).abs());
             let above = position + surface.normal * height;
-            let by_depth = Start { position, above, normal: surface.normal, place: Vec2::ZERO, triangle: None };
-            return first.unwrap_or(by_depth);
+            return Start { position, above, normal: surface.normal, place: Vec2::ZERO, triangle: None };
         };
-        let position = middle + direction * (hit.distance - reach);
-        let normal = tracer.normal(hit.triangle);
+        let mut is_inside = false;
+        tracer.for_each_hit_within(begin, direction, 2.0 * reach, |hit| is_inside |= hit.triangle == triangle);
+        let normal = tracer.normal(triangle);
+        let distance = dot(normal, tracer.corners(triangle)[0] - begin) / dot(normal, direction);
+        let is_near = (0.0..=2.0 * reach).contains(&distance);
+        if let Some(first) = first.filter(|_| !(is_near && (is_inside || self.reaches([x, y], surface, place)))) {
+            return first;
+        }
+        let position = middle + direction * (distance - reach);
         let normal = if dot(normal, direction) > 0.0 { -normal } else { normal };
         let above = position + normal * self.height_at(position);
-        Start { position, above, normal, place, triangle: Some(hit.triangle) }
+        Start { position, above, normal, place, triangle: Some(triangle) }
+    }
+
+    /// Whether a pixel leaves the plane of another one by so little that rays from between them start above the surface.
+    fn is_on_plane(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], surface: &Surface) -> bool {
+        let found = self.depth_at([x + right, y + down]);
+        let off = found - surface.depth - (surface.steps.x * right as f32 + surface.steps.y * down as f32);
+        let up = dot(Self::moved(self.world_from_pixel[2], surface), surface.normal);
+        found != 0.0 && (off * up).abs() * self.point_reach <= 0.5 * self.height_at(surface.position)
+    }
+
+    /// Whether the surface goes on to a neighbour as the pixel's plane does.
+    fn goes_on(&self, pixel: [i32; 2], axis: [i32; 2], surface: &Surface) -> bool {
+        let is_on_plane = |steps: i32| self.is_on_plane(pixel, axis.map(|side| side * steps), surface);
+        is_on_plane(1) && (is_on_plane(-1) || is_on_plane(2))
+    }
+
+    /// Whether the surface goes on to a place in its pixel, in pixels from its first sample.
+    fn reaches(&self, pixel: [i32; 2], surface: &Surface, place: Vec2) -> bool {
+        let [across, down] = [place.x, place.y].map(|side| if side > 0.0 { 1 } else { -1 });
+        (place.x == 0.0 || self.goes_on(pixel, [across, 0], surface))
+            && (place.y == 0.0 || self.goes_on(pixel, [0, down], surface))
     }
 
     /// Two directions across the light (T. Duff et al., "Building an orthonormal basis, revisited", 2017).
