@@ -62,13 +62,30 @@ const SHADOWFIT_RAYS_PARALLEL: f32 = 1e-29;
 // A box ends by this factor later than f32 finds: four roundings (T. Ize, "Robust BVH Ray Traversal", 2013).
 const SHADOWFIT_RAYS_LATER: f32 = 1.0000005;
 
-// Those of the instances, of which the root comes first, and those of the meshes.
-@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_nodes: array<shadowfit_rays_Node>;
+// The nodes of the instances, of which the root comes first, and of the meshes. Each is a shadowfit_rays_Node by its bytes:
+// NVIDIA's driver does not join the loads of a structure's members, and rays take an eighth longer with them.
+@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_nodes: array<array<vec4<u32>, 2>>;
 @group(GROUP) @binding(1) var<storage, read> shadowfit_rays_instances: array<shadowfit_rays_Instance>;
-@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_triangles: array<shadowfit_rays_Triangle>;
+// Each is a shadowfit_rays_Triangle.
+@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_triangles: array<array<vec4<u32>, 3>>;
 @group(GROUP) @binding(3) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
 // Of each image its width, its height, and four texels a word, the first one lowest.
 @group(GROUP) @binding(4) var<storage, read> shadowfit_rays_images: array<u32>;
+
+fn shadowfit_rays_node(index: u32) -> shadowfit_rays_Node {
+    let least = shadowfit_rays_nodes[index][0];
+    let most = shadowfit_rays_nodes[index][1];
+    return shadowfit_rays_Node(bitcast<vec3<f32>>(least.xyz), least.w, bitcast<vec3<f32>>(most.xyz), most.w);
+}
+
+// The triangle at a place among those of the scene.
+fn shadowfit_rays_triangle(slot: u32) -> shadowfit_rays_Triangle {
+    let a = shadowfit_rays_triangles[slot][0];
+    let b = shadowfit_rays_triangles[slot][1];
+    let c = shadowfit_rays_triangles[slot][2];
+    return shadowfit_rays_Triangle(
+        bitcast<vec3<f32>>(a.xyz), a.w, bitcast<vec3<f32>>(b.xyz), b.w, bitcast<vec3<f32>>(c.xyz), c.w);
+}
 
 fn shadowfit_rays_ray(origin: vec3<f32>, direction: vec3<f32>) -> shadowfit_rays_Ray {
     let size = abs(direction);
@@ -172,7 +189,7 @@ fn shadowfit_rays_weights(triangle: shadowfit_rays_Triangle, point: vec3<f32>) -
 // Whether a ray in the space of a mesh ends at a point of a triangle: not in a hole, and not where an engine's own test lets
 // it pass.
 fn shadowfit_rays_ends(slot: u32, instance: u32, ray: shadowfit_rays_Ray, distance: f32) -> bool {
-    let triangle = shadowfit_rays_triangles[slot];
+    let triangle = shadowfit_rays_triangle(slot);
     let weights = shadowfit_rays_weights(triangle, ray.origin + ray.direction * distance);
     if triangle.cut_out != 0u && !shadowfit_rays_is_opaque(shadowfit_rays_cut_outs[triangle.cut_out - 1u], weights) {
         return false;
@@ -215,7 +232,7 @@ fn shadowfit_rays_is_start(normal: vec3<f32>, instance: u32, distance: f32) -> b
 // Whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle
 // Intersection", 1997, in the form of the obvhs crate: a weight of minus zero misses).
 fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
-    let triangle = shadowfit_rays_triangles[slot];
+    let triangle = shadowfit_rays_triangle(slot);
     let e1 = triangle.a - triangle.b;
     let e2 = triangle.c - triangle.a;
     // Opposite to the normal of the front.
@@ -262,7 +279,7 @@ fn shadowfit_rays_packed(node: shadowfit_rays_Node) -> u32 {
 
 // A node in a word, or NONE if a ray does not meet it.
 fn shadowfit_rays_child(node: u32, ray: shadowfit_rays_Ray) -> u32 {
-    let child = shadowfit_rays_nodes[node];
+    let child = shadowfit_rays_node(node);
     let meets = shadowfit_rays_meets(child.least, child.most, ray);
     return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
 }
@@ -276,7 +293,7 @@ fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     // The instance whose mesh the ray is in, and the height of the stack where it was entered.
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = shadowfit_rays_packed(shadowfit_rays_nodes[0]);
+    var current = shadowfit_rays_packed(shadowfit_rays_node(0));
     loop {
         // Down to a leaf first: the rays of a subgroup then test triangles together.
         while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {

@@ -16,7 +16,7 @@ fn shadowfit_rays_no_surface() -> shadowfit_RaySurface {
 
 // A node in a word, or NONE if a ray does not meet it at a distance of at most `most`, in units of the ray's inverses.
 fn shadowfit_rays_child_within(node: u32, ray: shadowfit_rays_Ray, most: f32) -> u32 {
-    let child = shadowfit_rays_nodes[node];
+    let child = shadowfit_rays_node(node);
     let a = (child.least - ray.origin) * ray.inverses;
     let b = (child.most - ray.origin) * ray.inverses;
     let near = min(a, b);
@@ -72,16 +72,15 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
     var height = 0u;
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = shadowfit_rays_packed(shadowfit_rays_nodes[0]);
+    var current = shadowfit_rays_packed(shadowfit_rays_node(0));
     loop {
-        let first = current & SHADOWFIT_RAYS_FIRST;
-        let count = current >> SHADOWFIT_RAYS_COUNT_AT;
-        var next = SHADOWFIT_RAYS_NONE;
-        if count == 0u {
+        // Down to a leaf first, as in shadowfit_rays_blocked; NONE at the end.
+        while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {
+            let first = current;
             let met = vec4<u32>(
                 shadowfit_rays_child_within(first, ray, reach), shadowfit_rays_child_within(first + 1u, ray, reach),
                 shadowfit_rays_child_within(first + 2u, ray, reach), shadowfit_rays_child_within(first + 3u, ray, reach));
-            next = met.w;
+            var next = met.w;
             if met.z != SHADOWFIT_RAYS_NONE {
                 if next != SHADOWFIT_RAYS_NONE {
                     stack[height] = next;
@@ -103,7 +102,28 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
                 }
                 next = met.x;
             }
-        } else if instance == SHADOWFIT_RAYS_NONE {
+            if next == SHADOWFIT_RAYS_NONE {
+                if height == 0u {
+                    current = SHADOWFIT_RAYS_NONE;
+                    break;
+                }
+                if instance != SHADOWFIT_RAYS_NONE && height == entered {
+                    instance = SHADOWFIT_RAYS_NONE;
+                    ray = world;
+                    reach = shadowfit_rays_scaled(most, world);
+                }
+                height--;
+                next = stack[height];
+            }
+            current = next;
+        }
+        if current == SHADOWFIT_RAYS_NONE {
+            break;
+        }
+        let first = current & SHADOWFIT_RAYS_FIRST;
+        let count = current >> SHADOWFIT_RAYS_COUNT_AT;
+        var next = SHADOWFIT_RAYS_NONE;
+        if instance == SHADOWFIT_RAYS_NONE {
             let root = shadowfit_rays_instances[first].root;
             if root != SHADOWFIT_RAYS_NONE {
                 ray = shadowfit_rays_in_mesh(first, world);
@@ -114,7 +134,7 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
             }
         } else {
             for (var slot = first; slot < first + count; slot++) {
-                let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
+                let met = shadowfit_rays_met(shadowfit_rays_triangle(slot), ray);
                 if !(met.is_inside && met.distance >= 0.0 && met.distance <= most) {
                     continue;
                 }
@@ -154,7 +174,7 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
 // Where a ray meets the plane of one triangle: its normal is a unit one, against the ray.
 fn shadowfit_rays_plane(origin: vec3<f32>, direction: vec3<f32>, slot: u32, instance: u32) -> shadowfit_rays_Met {
     let inside = shadowfit_rays_in_mesh(instance, shadowfit_rays_ray(origin, direction));
-    var met = shadowfit_rays_met(shadowfit_rays_triangles[slot], inside);
+    var met = shadowfit_rays_met(shadowfit_rays_triangle(slot), inside);
     met.normal = shadowfit_rays_normal(met.normal, instance, direction);
     return met;
 }
