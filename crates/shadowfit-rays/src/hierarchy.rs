@@ -1,6 +1,6 @@
 //! Hierarchies of four children a node, breadth first: the nodes of a level stand together and children come after their
-//! parents, so that one dispatch refits a level and one backward sweep refits all levels. A ray's time is mostly the
-//! latency of its loads, and a node of four halves their number.
+//! parents, so that one dispatch refits a level and one backward sweep refits all levels. The loads of nodes bound the time
+//! of a ray, and four children halve their number.
 
 use glam::Vec3;
 use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
@@ -80,7 +80,7 @@ impl Part {
     fn of_range(node: NodeRecord, [first, end]: [u32; 2], per_leaf: u32) -> Self {
         let length = end - first;
         let (count, range) = if length <= per_leaf { (length, 0) } else { (0, length) };
-        Self { node: NodeRecord { first, count, ..node }, size: f64::from(length), range }
+        Self { node: NodeRecord { count, first, ..node }, size: f64::from(length), range }
     }
 
     /// Both halves of its primitives.

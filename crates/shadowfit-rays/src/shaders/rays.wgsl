@@ -63,7 +63,7 @@ const SHADOWFIT_RAYS_PARALLEL: f32 = 1e-29;
 const SHADOWFIT_RAYS_LATER: f32 = 1.0000005;
 
 // The nodes of the instances, of which the root comes first, and of the meshes. Each is a shadowfit_rays_Node by its bytes:
-// NVIDIA's driver does not join the loads of a structure's members, and rays take an eighth longer with them.
+// NVIDIA's driver does not join the loads of a structure's members, and rays take up to a sixth longer with them.
 @group(GROUP) @binding(0) var<storage, read> shadowfit_rays_nodes: array<array<vec4<u32>, 2>>;
 @group(GROUP) @binding(1) var<storage, read> shadowfit_rays_instances: array<shadowfit_rays_Instance>;
 // Each is a shadowfit_rays_Triangle.
