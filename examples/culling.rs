@@ -16,14 +16,15 @@ use clap::{Parser, ValueEnum};
 use glam::{DVec3, Vec3};
 use shadowfit::Clusters;
 use shadowfit::{FittedMap, ShadowFitter};
-use shadowfit_render::{
-    AdapterChoice, Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer,
-};
+use shadowfit_adapter::AdapterOptions;
+use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{NamedTechnique, PreparedScene, View};
 use shadowfit_truth::peers::Scenarios;
 use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor};
 
+#[path = "shared/adapter.rs"]
+mod adapter;
 #[path = "shared/geometry.rs"]
 mod geometry;
 
@@ -46,9 +47,8 @@ struct Args {
     /// Frames of each path
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     frames: u32,
-    /// Draw on the software adapter, whatever GPU there is
-    #[arg(long)]
-    software: bool,
+    #[command(flatten)]
+    adapter: AdapterOptions,
 }
 
 /// What is culled as a whole.
@@ -71,8 +71,7 @@ struct Sums {
 fn main() -> Result<()> {
     let args = Args::parse();
     let scenarios = Scenarios::read(&args.scenarios)?;
-    let choice = if args.software { AdapterChoice::Software } else { AdapterChoice::Any };
-    let gpu = pollster::block_on(Gpu::headless(choice))?;
+    let gpu = adapter::open(&args.adapter);
     println!("| scene | technique | casters by map: stored | swept | thousand triangles by map: stored | swept |");
     println!("|---|---|---:|---:|---:|---:|");
     for scene in 0..scenarios.scenes.len() {

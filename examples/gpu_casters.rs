@@ -6,15 +6,19 @@
 //! cargo run --release --example gpu_casters
 //! ```
 
+#[path = "shared/adapter.rs"]
+mod adapter;
 #[path = "gpu_casters/engine.rs"]
 mod engine;
 #[path = "gpu_casters/town.rs"]
 mod town;
 
 use anyhow::Result;
+use clap::Parser;
 use glam::{DVec3, Vec3};
 use shadowfit::{Boxes, PerspectiveCamera, Technique};
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_adapter::AdapterOptions;
+use shadowfit_render::Gpu;
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
 
 use engine::{Draws, GpuCasters};
@@ -27,8 +31,15 @@ const WALKING_SPEED: f32 = 1.4;
 /// The way the sun's light travels.
 const SUNLIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 
+#[derive(Parser)]
+#[command(about = "Walks through a town whose casters the GPU finds")]
+struct Args {
+    #[command(flatten)]
+    adapter: AdapterOptions,
+}
+
 fn main() -> Result<()> {
-    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Any))?;
+    let gpu = adapter::open(&Args::parse().adapter);
     let technique = Technique::default().with_max_distance(80.0);
     let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique)?;
     let mut town = Town::new(20);

@@ -2,15 +2,20 @@
 //! the most memory until then. One line a file, as a row of a table.
 //!
 //! ```sh
-//! cargo run --release --example scene_growth -- big.glb bigger.glb
+//! cargo run --release --example scene_growth -- --software big.glb bigger.glb
 //! ```
 
+#[path = "shared/adapter.rs"]
+mod adapter;
+
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use shadowfit_render::{AdapterChoice, Gpu, RenderTarget};
+use clap::Parser;
+use shadowfit_adapter::AdapterOptions;
+use shadowfit_render::RenderTarget;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::load_gltf;
 use shadowfit_study::PreparedScene;
@@ -23,21 +28,31 @@ const SAMPLES: u32 = 4;
 /// Frames at rest and under way, of which the median is told.
 const FRAMES: usize = 9;
 
+#[derive(Parser)]
+#[command(about = "Measures the cost of scenes as they grow")]
+struct Args {
+    /// glTF files
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    adapter: AdapterOptions,
+}
+
 fn main() -> Result<()> {
+    let args = Args::parse();
     println!(
         "| scene | triangles | nodes | load s | ready s | rays s | first frame ms | frame ms | moving ms | peak MiB |"
     );
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
-    for file in std::env::args().skip(1) {
-        measure(Path::new(&file)).with_context(|| file.clone())?;
+    for file in &args.scenes {
+        measure(file, &args.adapter).with_context(|| file.display().to_string())?;
     }
     Ok(())
 }
 
-fn measure(file: &Path) -> Result<()> {
+fn measure(file: &Path, adapter: &AdapterOptions) -> Result<()> {
     // From here on, the most memory is counted anew.
     let _ = fs::write("/proc/self/clear_refs", "5");
-    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software))?;
+    let gpu = adapter::open(adapter);
     let mut stage = Stage::new(gpu.clone(), default_scene(), SAMPLES)?;
     let (load, scene) = timed(|| load_gltf(file));
     let scene = scene?;

@@ -8,7 +8,7 @@ use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::{Class, Judged};
 use shadowfit_viewer::{Artefact, Stage};
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [320, 180];
@@ -23,7 +23,7 @@ const TECHNIQUES: [&str; 3] = ["windows-4", "calm-4", "xna-1"];
 const CURED: f64 = 0.001;
 
 fn stage(technique: &str) -> Stage {
-    let mut stage = Stage::new(software_gpu(), default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(test_gpu(), default_scene(), 1).expect("the default scene");
     stage.settings.technique = Technique::preset(technique).expect("a preset");
     stage
 }

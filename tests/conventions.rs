@@ -13,7 +13,7 @@ use shadowfit_truth::{Tracer, TruthSettings};
 use shadowfit_viewer::Stage;
 use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor};
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// The depth conventions that wgpu draws.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
@@ -154,7 +154,7 @@ fn the_core_the_shadow_map_and_the_list_of_techniques_recommend_the_same_one() {
 
 #[test]
 fn gpu_the_viewer_starts_with_the_recommended_technique() {
-    let stage = Stage::new(software_gpu(), builtin::default_scene(), 1).expect("the default scene");
+    let stage = Stage::new(test_gpu(), builtin::default_scene(), 1).expect("the default scene");
     let start = stage.settings.technique;
     assert_eq!(start, with_extent_of(&Technique::default(), &start));
 }

@@ -7,7 +7,7 @@ use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::Class;
 use shadowfit_viewer::{Artefact, Stage};
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [320, 180];
@@ -19,7 +19,7 @@ const KINDS: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::S
 
 /// The default scene where a caster stands between the sun and the view.
 fn stage() -> Stage {
-    let mut stage = Stage::new(software_gpu(), default_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(test_gpu(), default_scene(), 1).expect("the default scene");
     stage.show_artefact(Artefact::ClippingHole);
     stage
 }

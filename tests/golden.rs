@@ -13,9 +13,10 @@ use shadowfit_classics::{SAMPLES, Sample};
 use shadowfit_params::tool::{InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_testing::golden_gpu;
 use shadowfit_viewer::{Artefact, Stage};
 
-use crate::support::{software_gpu, workspace};
+use crate::support::workspace;
 
 /// Size of every golden, in pixels.
 const SIZE: [u32; 2] = [320, 180];
@@ -122,7 +123,7 @@ fn shadows_in_coarse_formats_are_as_they_were() {
 #[test]
 fn every_classic_sample_is_as_it_was() {
     for sample in &SAMPLES {
-        let mut stage = Stage::new(software_gpu(), sample.scene(), SAMPLES_PER_PIXEL).expect("the sample's scene");
+        let mut stage = Stage::new(golden_gpu(), sample.scene(), SAMPLES_PER_PIXEL).expect("the sample's scene");
         stage.wait_for_rays();
         stage.set_sample(sample, None);
         check_sized(&mut stage, &sample_golden(sample), sample_size(sample));
@@ -173,7 +174,7 @@ fn the_comparison_sees_a_missing_shadow_and_forgives_rounding() {
 
 fn stage() -> Stage {
     let mut stage =
-        Stage::new(software_gpu(), default_scene(), SAMPLES_PER_PIXEL).expect("the default scene can be shown");
+        Stage::new(golden_gpu(), default_scene(), SAMPLES_PER_PIXEL).expect("the default scene can be shown");
     stage.settings.view.play = false;
     stage.set_home();
     stage

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::support::example_program;
+use crate::support::{adapter_name, example_program};
 
 #[test]
 fn a_quick_run_of_growth_has_every_row_and_draws_every_curve() {
@@ -10,7 +10,7 @@ fn a_quick_run_of_growth_has_every_row_and_draws_every_curve() {
     std::fs::create_dir_all(&folder).expect("a folder");
     let tables = folder.join("growth.md");
     let mut growth = Command::new(example_program("growth"));
-    growth.arg("--quick").arg("--out").arg(&tables).arg("--pictures").arg(&folder);
+    growth.args(["--quick", "--adapter", adapter_name()]).arg("--out").arg(&tables).arg("--pictures").arg(&folder);
     let output = growth.output().expect("the example starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = std::fs::read_to_string(&tables).expect("the tables");

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
-use crate::support::{NOTES, SCENE_WITH_NOTES, example_program};
+use crate::support::{NOTES, SCENE_WITH_NOTES, adapter_name, example_program};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -13,8 +13,10 @@ const INTERRUPTED: i32 = 130;
 const PATH: &str = "near = 0.1\nfar = 60.0\nlight = { azimuth_deg = 40.0, elevation_deg = 45.0 }\n\
     [[keys]]\neye = [5.0, 3.0, 6.0]\ntarget = [0.0, 1.0, 0.0]\n\
     [[keys]]\neye = [4.0, 3.0, 6.5]\ntarget = [0.0, 1.0, 0.0]\n";
-/// Small pictures on the software adapter.
-const SMALL: [&str; 3] = ["--software", "--size", "96x54"];
+/// Small pictures on the tests' adapter.
+fn small() -> [&'static str; 4] {
+    ["--adapter", adapter_name(), "--size", "96x54"]
+}
 
 /// Folder with the files of one test, removed at the end.
 struct Scratch(PathBuf);
@@ -44,7 +46,7 @@ impl Scratch {
     }
 
     fn report(&self, arguments: &[&str]) -> Output {
-        self.command(&[arguments, &SMALL].concat()).output().expect("the report starts")
+        self.command(&[arguments, &small()].concat()).output().expect("the report starts")
     }
 
     fn json(&self, name: &str) -> serde_json::Value {
@@ -231,7 +233,7 @@ fn what_is_finished_at_ctrl_c_is_written_and_said_to_be_a_part() {
     let scratch = Scratch::new("stopped");
     scratch.file("long.toml", &format!("frames_per_key = 3000\n{PATH}"));
     let arguments = ["courtyard", "--path", "long.toml", "--technique", "xna-1", "--resolution", "256", "-o", "out"];
-    let mut command = scratch.command(&[&arguments[..], &SMALL].concat());
+    let mut command = scratch.command(&[&arguments[..], &small()].concat());
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the report starts");
     // The folder is made when the first frame is about to be measured.
     while !scratch.0.join("out/pictures").is_dir() {

@@ -1,4 +1,4 @@
-//! What several of these tests need: the software adapter, the viewer as a program, the collection of scenes.
+//! What several of these tests need: the device, the viewer as a program, the collection of scenes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,8 +7,9 @@ use shadowfit::PerspectiveCamera;
 use shadowfit::glam::Vec3;
 use shadowfit_scene::{Lens, Scene};
 use shadowfit_study::View;
-/// The software adapter's device, lent to one test after another.
-pub(crate) use shadowfit_testing::renderer_gpu as software_gpu;
+use shadowfit_testing::package_folder;
+/// The tests' device, lent to one test after another, and the name of its adapter for programs.
+pub(crate) use shadowfit_testing::{adapter_name, renderer_gpu as test_gpu};
 
 /// A glTF file of two triangles, with lines that are skipped and an image that is missing.
 pub(crate) const SCENE_WITH_NOTES: &str = r#"{
@@ -46,8 +47,8 @@ pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {
 }
 
 /// The folder of the workspace.
-pub(crate) fn workspace() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+pub(crate) fn workspace() -> PathBuf {
+    package_folder(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// The collection of scenes beside the workspace, or `None` with a word about it.

@@ -11,6 +11,8 @@
 //! 1.5 m/s and turns by 10° a second, 60 frames a second, and every tenth node bobs by half a metre once a second. Times
 //! are medians by the GPU's clock, from the begin of a frame's first shadow pass to the end of the last one.
 
+#[path = "../shared/adapter.rs"]
+mod adapter;
 #[path = "../shared/cuboid.rs"]
 mod cuboid;
 mod day;
@@ -32,7 +34,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_adapter::AdapterOptions;
+use shadowfit_render::Gpu;
 use shadowfit_study::{check_place, write_whole};
 
 use scene::BenchScene;
@@ -49,9 +52,8 @@ struct Args {
     /// Where the tables are written, as Markdown
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Draw on the software adapter, whatever GPU there is
-    #[arg(long)]
-    software: bool,
+    #[command(flatten)]
+    adapter: AdapterOptions,
     /// Width and height of the maps, in texels; some are drawn at half of it
     #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(512..=8192))]
     map: u32,
@@ -101,8 +103,7 @@ const SOFTWARE_FRAMES: usize = 5;
 fn main() -> Result<()> {
     let args = Args::parse();
     args.out.iter().try_for_each(|out| check_place(out))?;
-    let choice = if args.software { AdapterChoice::Software } else { AdapterChoice::Any };
-    let gpu = pollster::block_on(Gpu::headless(choice))?;
+    let gpu = adapter::open(&args.adapter);
     ensure!(
         gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY),
         "{} cannot time its passes: it has no timestamp queries",

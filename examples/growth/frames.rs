@@ -1,16 +1,16 @@
 //! Frames of `SunShadows` with more and more casters, some of which move, on the CPU.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::Vec3;
 use shadowfit::{Aabb, BoxTree, Boxes, FitInput, Seen, Technique, Windows};
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_render::Gpu;
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
 
 use crate::picture::{Curve, Picture, grouped};
 use crate::table::{Table, ms};
 use crate::times::{LEAD, Times, timed};
 use crate::town::Town;
-use crate::{Extent, Found};
+use crate::{Extent, Found, adapter};
 
 /// What moves in a frame, and whether the camera walks.
 struct Way {
@@ -65,7 +65,7 @@ impl Halves {
 
 /// Times by the number of casters.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
-    let gpu = open()?;
+    let gpu = adapter::open(&extent.adapter);
     let technique = Technique::default();
     let curves_of = |make: fn(String, usize) -> Curve, handed: &str| -> Vec<Curve> {
         let curve = |(place, way): (usize, &Way)| make(format!("{}, {handed}", way.name), place);
@@ -126,7 +126,7 @@ fn sizes(extent: &Extent) -> Vec<usize> {
 
 /// Times by the number of maps and by their sides.
 pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
-    let gpu = open()?;
+    let gpu = adapter::open(&extent.adapter);
     let town = Town::new(CASTERS.min(extent.largest));
     let seen = town.seen(extent.frames, &Technique::default())?;
     let numbers = NUMBERS.map(|number| (number, SIDE));
@@ -168,12 +168,6 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
             curves: curves.to_vec(),
         }],
     })
-}
-
-/// Any device: nothing is drawn with it.
-fn open() -> Result<Gpu> {
-    pollster::block_on(Gpu::headless(AdapterChoice::Any))
-        .context("`SunShadows` needs a device, if only to own its maps")
 }
 
 /// What walks share.

@@ -9,6 +9,8 @@
 //! Times are of one core and of the CPU alone: where a graphics device is needed nothing is drawn with it, and a
 //! software adapter will do. A time is the shortest of some rounds, so that other work on the machine counts little.
 
+#[path = "../shared/adapter.rs"]
+mod adapter;
 #[path = "../shared/cuboid.rs"]
 mod cuboid;
 mod culling;
@@ -27,6 +29,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Parser, ValueEnum};
+use shadowfit_adapter::AdapterOptions;
 use shadowfit_study::{check_place, make_folder, write_whole};
 
 use picture::Picture;
@@ -47,6 +50,8 @@ struct Args {
     /// A few frames of small worlds, to see that all of it works
     #[arg(long)]
     quick: bool,
+    #[command(flatten)]
+    adapter: AdapterOptions,
     /// Only these parts
     #[arg(long, value_enum, num_args = 1..)]
     only: Vec<Part>,
@@ -84,11 +89,17 @@ struct Extent {
     rounds: usize,
     /// Largest world, in boxes.
     largest: usize,
+    /// The device that owns the maps. Nothing is drawn with it.
+    adapter: AdapterOptions,
 }
 
 impl Extent {
-    const FULL: Self = Self { frames: 40, rounds: 3, largest: 1_000_000 };
-    const QUICK: Self = Self { frames: 3, rounds: 1, largest: 1_000 };
+    fn new(is_quick: bool, adapter: AdapterOptions) -> Self {
+        if is_quick {
+            return Self { frames: 3, rounds: 1, largest: 1_000, adapter };
+        }
+        Self { frames: 40, rounds: 3, largest: 1_000_000, adapter }
+    }
 
     /// Numbers of boxes, a tenth of each other.
     fn sizes(&self) -> impl Iterator<Item = usize> {
@@ -105,7 +116,7 @@ struct Found {
 
 fn main() -> Result<()> {
     let args = Args::parse();
-    let extent = if args.quick { Extent::QUICK } else { Extent::FULL };
+    let extent = Extent::new(args.quick, args.adapter);
     args.out.iter().try_for_each(|out| check_place(out))?;
     args.pictures.iter().try_for_each(|folder| make_folder(folder))?;
     let mut text = String::new();

@@ -3,8 +3,9 @@
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
 use shadowfit::settings::{BiasSettings, Edges, FilterKind, MapFormat, SoftRadius, Softness};
+use shadowfit_adapter::AdapterOptions;
 use shadowfit_params::{self as params, Inputs};
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_render::Gpu;
 use shadowfit_study::{Judging, NamedTechnique};
 
 use crate::inputs::InputArgs;
@@ -56,15 +57,13 @@ pub(crate) struct Drawing {
     /// Compare factors with the light on the area of each pixel, by N x N points of it
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=16))]
     area: u32,
-    /// Draw on the software adapter, whatever GPU there is
-    #[arg(long)]
-    software: bool,
+    #[command(flatten)]
+    adapter: AdapterOptions,
 }
 
 impl Drawing {
     pub(crate) fn gpu(&self) -> Result<Gpu> {
-        let choice = if self.software { AdapterChoice::Software } else { AdapterChoice::Any };
-        Ok(pollster::block_on(Gpu::headless(choice))?)
+        Ok(pollster::block_on(Gpu::headless(&self.adapter.choice()))?)
     }
 
     pub(crate) fn judging(&self) -> Judging {

@@ -259,6 +259,7 @@ mod tests {
     use std::path::Path;
 
     use clap::Parser;
+    use shadowfit_testing::adapter_name;
 
     use super::*;
 
@@ -285,7 +286,8 @@ mod tests {
         fs::write(&scene, FAR_AWAY).expect("written");
         let prepare = |option: &str, value: &str| {
             let scene = scene.to_str().expect("text");
-            let line = Line::parse_from(["report", scene, "--software", "--size", "96x54", option, value]);
+            let line =
+                Line::parse_from(["report", scene, "--adapter", adapter_name(), "--size", "96x54", option, value]);
             line.job.prepare().expect("a job")
         };
         let first = prepare("--camera", "1");

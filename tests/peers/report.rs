@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use shadowfit::Preset;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios};
 
-use crate::support::{assets, example_program, peers};
+use crate::support::{adapter_name, assets, example_program, peers};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -215,7 +215,7 @@ fn assert_refused(output: &Output, words: &[&str]) {
 #[test]
 fn gpu_fits_are_drawn_and_their_pictures_stand_in_the_same_rows() {
     let scratch = Scratch::new("drawn");
-    let small = ["--software", "--size", "160x90"];
+    let small = ["--adapter", adapter_name(), "--size", "160x90"];
     let mut arguments = vec!["scenarios.json", "fit.json", "--triangles", ".", "-o", "out"];
     arguments.extend(small);
     let output = scratch.report(&arguments);
@@ -239,7 +239,7 @@ fn gpu_a_perspective_map_is_measured_and_its_picture_refused_with_the_reason() {
     warped.frames[0].maps[0].view_proj[3] = 0.001;
     scratch.fit("fit.json", &warped);
     let arguments = ["scenarios.json", "fit.json", "--triangles", ".", "-o", "out"];
-    let refused = scratch.report(&[&arguments[..], &["--software"]].concat());
+    let refused = scratch.report(&[&arguments[..], &["--adapter", adapter_name()]].concat());
     let message = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(REFUSED), "{message}");
     assert!(message.contains("fit.json: cannot be drawn") && message.contains("perspective"), "{message}");
@@ -283,7 +283,7 @@ fn gpu_the_default_technique_has_at_most_half_of_the_wrong_pixels_of_bevys_fit()
     let assets = assets.to_str().expect("a plain name");
     let fitted = scratch.peer_fit(&["part.json", "--fit", Preset::RECOMMENDED, "--assets", assets, "-o", "ours.json"]);
     assert!(fitted.status.success(), "{}", String::from_utf8_lossy(&fitted.stderr));
-    let small = ["--stride", "32", "--size", "320x180", "--software"];
+    let small = ["--stride", "32", "--size", "320x180", "--adapter", adapter_name()];
     let whole = [&["part.json", "bevy.json", "ours.json", "--assets", assets, "-o", "out"][..], &small].concat();
     let output = scratch.report(&whole);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

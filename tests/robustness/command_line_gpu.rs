@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::support::{NOTES, SCENE_WITH_NOTES, assets, files_below, viewer_program};
+use crate::support::{
+    NOTES, SCENE_WITH_NOTES, adapter_name, assets, example_program, files_below, test_gpu, viewer_program,
+};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -58,7 +60,10 @@ impl Drop for Scratch {
 /// Runs the viewer in `folder` with small pictures and small maps.
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(viewer_program());
-    command.current_dir(folder).args(["--software", "--size", "64x36", "--set", "map.resolution=256"]).args(arguments);
+    command
+        .current_dir(folder)
+        .args(["--adapter", adapter_name(), "--size", "64x36", "--set", "map.resolution=256"])
+        .args(arguments);
     command.output().expect("the viewer starts")
 }
 
@@ -139,7 +144,7 @@ fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
     for size in ["0x0", "64", "axb", "99999x10", "-5x9"] {
         let output = Command::new(viewer_program())
             .current_dir(&scratch.0)
-            .args(["--software", "--headless", "out", &format!("--size={size}")])
+            .args(["--adapter", adapter_name(), "--headless", "out", &format!("--size={size}")])
             .output()
             .expect("the viewer starts");
         let message = String::from_utf8_lossy(&output.stderr);
@@ -147,6 +152,25 @@ fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
         assert!(message.contains(size) && message.contains("1280x720"), "{size}: {message}");
     }
     assert!(scratch.files().is_empty());
+}
+
+#[test]
+fn an_adapter_that_the_machine_lacks_ends_each_program_with_exit_code_2_and_a_list_of_adapters() {
+    let scratch = Scratch::new("adapter");
+    let present = test_gpu().name();
+    for (program, arguments) in [
+        ("viewer", &["--headless", "out"][..]),
+        ("report", &["courtyard", "-o", "out"]),
+        ("growth", &["--quick", "--only", "frames"]),
+    ] {
+        let mut command = Command::new(example_program(program));
+        command.current_dir(&scratch.0).args(arguments).args(["--adapter", "no such adapter"]);
+        let output = command.output().expect("the program starts");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{program}: {message}");
+        assert!(message.contains("\"no such adapter\"") && message.contains(&present), "{program}: {message}");
+    }
+    assert!(scratch.files().is_empty(), "{:?}", scratch.files());
 }
 
 #[test]
@@ -185,7 +209,7 @@ fn the_picture_set_is_whole_and_what_was_saved_stays_as_it_was() {
     std::fs::write(&kept, text).expect("written");
     let mut command = Command::new(viewer_program());
     command.current_dir(&scratch.0).env("XDG_CONFIG_HOME", scratch.0.join("config"));
-    command.args(["--software", "--size", "96x64", "--headless", "out"]);
+    command.args(["--adapter", adapter_name(), "--size", "96x64", "--headless", "out"]);
     let output = command.output().expect("the viewer starts");
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{message}");

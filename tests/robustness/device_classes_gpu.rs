@@ -9,7 +9,7 @@ use shadowfit_render::{Gpu, RenderTarget, Wanted};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_viewer::{Artefact, Stage};
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [64, 36];
@@ -37,7 +37,7 @@ struct Class {
 
 impl Class {
     fn new(lacks: &'static str, wanted: &Wanted) -> Self {
-        let gpu = pollster::block_on(Gpu::of_adapter(software_gpu().adapter, wanted)).expect("a device with less");
+        let gpu = pollster::block_on(Gpu::of_adapter(test_gpu().adapter, wanted)).expect("a device with less");
         gpu.keep_faults();
         let mut stage = Stage::new(gpu, default_scene(), 4).expect("the default scene");
         stage.wait_for_rays();

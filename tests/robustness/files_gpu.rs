@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use crate::support::{example_program, files_below, viewer_program};
+use crate::support::{adapter_name, example_program, files_below, viewer_program};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -55,7 +55,7 @@ impl Drop for Mounted {
 
 fn viewer(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(viewer_program());
-    command.current_dir(folder).args(["--software", "--size", "64x36"]).args(arguments);
+    command.current_dir(folder).args(["--adapter", adapter_name(), "--size", "64x36"]).args(arguments);
     command
 }
 
@@ -97,7 +97,7 @@ fn a_read_only_folder_is_refused_before_anything_is_measured_or_drawn() {
     let output = assert_refused(viewer(&scratch.0, &["--headless", "disk"]), &reason);
     assert!(output.stdout.is_empty(), "no picture is begun");
     for command in [&[][..], &["tune"]] {
-        let report = [command, &["courtyard", "--software", "--size", "96x54", "-o", "disk"]].concat();
+        let report = [command, &["courtyard", "--adapter", adapter_name(), "--size", "96x54", "-o", "disk"]].concat();
         let output = assert_refused(example("report", &scratch.0, &report), &reason);
         assert!(output.stdout.is_empty());
     }
@@ -111,7 +111,7 @@ fn folders_and_files_that_are_in_the_way_are_named() {
     for folder in ["occupied", "occupied/below"] {
         let words = [folder, "part of the path is a file"];
         assert_refused(viewer(&scratch.0, &["--headless", folder]), &words);
-        let report = ["courtyard", "--software", "--size", "96x54", "-o", folder];
+        let report = ["courtyard", "--adapter", adapter_name(), "--size", "96x54", "-o", folder];
         assert_refused(example("report", &scratch.0, &report), &words);
     }
     let script = "await loaded\nwindow folder\n";

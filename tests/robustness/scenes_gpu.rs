@@ -8,7 +8,7 @@ use shadowfit_study::PrepareError;
 use shadowfit_truth::PictureTally;
 use shadowfit_viewer::{Artefact, Stage, StageError};
 
-use crate::support::{assets, files_below, software_gpu};
+use crate::support::{assets, files_below, test_gpu};
 
 /// Size of the pictures, in pixels: small, since the driver draws on the CPU.
 const SIZE: [u32; 2] = [64, 36];
@@ -65,7 +65,7 @@ fn every_scene_of_the_collection_is_drawn_and_judged() {
     let Some(folder) = assets() else { return };
     let files = scenes(&folder);
     assert!(files.len() > 40, "{} scenes", files.len());
-    let mut stage = Stage::new(software_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
+    let mut stage = Stage::new(test_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
     let (mut drawn, mut empty) = (0, Vec::new());
     for file in files {
         let name = file.strip_prefix(&folder).unwrap_or(&file).display().to_string();
@@ -95,7 +95,7 @@ fn every_scene_of_the_collection_is_drawn_and_judged() {
 #[test]
 fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
     let Some(folder) = assets() else { return };
-    let mut stage = Stage::new(software_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
+    let mut stage = Stage::new(test_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
     for name in WITH_ARTEFACTS {
         stage.set_scene(load(&folder.join(name))).unwrap_or_else(|error| panic!("{name}: {error}"));
         // Animations move on before anything is shown.
@@ -125,7 +125,7 @@ fn moves(stage: &mut Stage, seconds: f32) -> bool {
 
 #[test]
 fn the_default_scene_walks_and_stands_still_when_stopped() {
-    let mut stage = Stage::new(software_gpu(), shadowfit_scene::builtin::default_scene(), 1).expect("a scene");
+    let mut stage = Stage::new(test_gpu(), shadowfit_scene::builtin::default_scene(), 1).expect("a scene");
     assert!(moves(&mut stage, 1.0) && !moves(&mut stage, 0.0));
     stage.animation = usize::MAX;
     assert!(!moves(&mut stage, 1.0), "an animation that the scene lacks moves it");
@@ -134,7 +134,7 @@ fn the_default_scene_walks_and_stands_still_when_stopped() {
 #[test]
 fn skins_and_morph_targets_of_real_scenes_move_the_picture() {
     let Some(folder) = assets() else { return };
-    let mut stage = Stage::new(software_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
+    let mut stage = Stage::new(test_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
     for (name, seconds) in [
         ("fox/Fox.glb", 0.3),
         ("morph_stress/MorphStressTest.gltf", 0.7),

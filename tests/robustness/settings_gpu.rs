@@ -10,7 +10,7 @@ use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Mesh, Scene};
 use shadowfit_viewer::{Artefact, Stage};
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [64, 36];
@@ -111,7 +111,7 @@ fn light_scene() -> Scene {
 }
 
 fn stage() -> Stage {
-    let mut stage = Stage::new(software_gpu(), light_scene(), 1).expect("the default scene");
+    let mut stage = Stage::new(test_gpu(), light_scene(), 1).expect("the default scene");
     // Small maps: what is tested here does not depend on their size.
     stage.settings.technique.fit.resolution = UVec2::splat(256);
     stage.set_home();

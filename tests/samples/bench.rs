@@ -6,7 +6,7 @@ use shadowfit_render::passes::material_layout;
 use shadowfit_render::{Gpu, RenderTarget};
 use shadowfit_study::PreparedScene;
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// A sample, ready to be drawn one sample a pixel.
 pub(super) struct Bench {
@@ -18,7 +18,7 @@ pub(super) struct Bench {
 
 impl Bench {
     pub(super) fn new(id: &str) -> Self {
-        let gpu = software_gpu();
+        let gpu = test_gpu();
         let sample = Sample::find(id).unwrap_or_else(|| panic!("there is no sample {id}"));
         let scene = PreparedScene::new(&gpu, &material_layout(&gpu.device), sample.scene()).expect("a scene");
         let drawer = SampleDrawer::new(&gpu, 1);

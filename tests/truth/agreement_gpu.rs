@@ -9,7 +9,7 @@ use shadowfit_scene::{Scene, load_gltf};
 use shadowfit_study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, View};
 
 use super::shapes::NO_BIAS;
-use crate::support::{assets, software_gpu};
+use crate::support::{assets, test_gpu};
 
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [240, 135];
@@ -61,7 +61,7 @@ fn techniques() -> [Technique; 2] {
 fn assert_agreement(scene: Scene) {
     let name = scene.name.clone();
     let judging = Judging { size: SIZE, crawl: false, ..Judging::default() };
-    let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
+    let mut comparison = Comparison::new(test_gpu(), scene, judging).expect("a scene");
     for technique in techniques() {
         comparison.add(technique).expect("a technique");
     }

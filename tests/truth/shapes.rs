@@ -8,7 +8,7 @@ use shadowfit_scene::Scene;
 use shadowfit_study::{Comparison, Judging, SharedTruth, View};
 use shadowfit_truth::PictureTally;
 
-use crate::support::software_gpu;
+use crate::support::test_gpu;
 
 /// Size of the judged pictures, in pixels.
 pub(super) const SIZE: [u32; 2] = [480, 270];
@@ -90,7 +90,7 @@ impl Arrangement {
         let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
         let mut scene = Scene::from_objects("shapes", &self.objects);
         scene.nodes.iter_mut().for_each(|node| node.rest.translation = away.as_dvec3());
-        let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
+        let mut comparison = Comparison::new(test_gpu(), scene, judging).expect("a scene");
         comparison.add(*technique).expect("a technique");
         let camera = PerspectiveCamera { eye: self.camera.eye + away.as_dvec3(), ..self.camera };
         let view = View { camera: camera.into(), direction: self.direction, is_first: true };

@@ -10,7 +10,7 @@ use shadowfit_study::{Comparison, Judging, SharedTruth, View};
 use shadowfit_truth::PictureTally;
 
 use super::shapes::{floor, solid};
-use crate::support::{software_gpu, start_view};
+use crate::support::{start_view, test_gpu};
 
 const SIZE: [u32; 2] = [160, 90];
 
@@ -34,7 +34,7 @@ fn comparison(scene: Scene) -> Comparison {
 
 fn comparison_of(scene: Scene, technique: Technique) -> Comparison {
     let judging = Judging { size: SIZE, crawl: false, ..Judging::default() };
-    let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
+    let mut comparison = Comparison::new(test_gpu(), scene, judging).expect("a scene");
     comparison.add(technique).expect("a technique");
     comparison
 }
@@ -181,7 +181,7 @@ fn area_errors(technique: Technique, sun_radius: f32, height: f32, samples: u32)
     }
     let judging =
         Judging { area: 8, sun_radius: f64::from(sun_radius), size: SIZE, crawl: false, ..Judging::default() };
-    let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
+    let mut comparison = Comparison::new(test_gpu(), scene, judging).expect("a scene");
     for edges in [Edges::Filtered, Edges::Traced { samples }] {
         comparison.add(technique.with_edges(edges)).expect("a technique");
     }

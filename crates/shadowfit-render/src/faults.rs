@@ -157,7 +157,7 @@ mod tests {
     use crate::AdapterChoice;
 
     fn gpu() -> Gpu {
-        pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter")
+        pollster::block_on(Gpu::headless(&AdapterChoice::Software)).expect("the software adapter")
     }
 
     /// A buffer whose usages exclude each other.

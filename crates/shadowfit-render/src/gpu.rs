@@ -1,20 +1,11 @@
-//! Opening a GPU: any adapter for people, the software adapter for pictures that must be the same
-//! everywhere.
+//! Opens a device of the chosen adapter.
 
 use core::fmt;
 use std::sync::{Arc, Mutex};
 
-use crate::faults::{Faults, watched};
+use shadowfit_adapter::{AdapterChoice, AdapterError};
 
-/// Which adapter to open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AdapterChoice {
-    /// The fastest one.
-    #[default]
-    Any,
-    /// A software rasteriser (Mesa lavapipe, WARP), even if a GPU is present.
-    Software,
-}
+use crate::faults::{Faults, watched};
 
 /// An opened device with all that is needed to draw.
 #[derive(Clone, Debug)]
@@ -49,20 +40,16 @@ impl Default for Wanted {
 /// Why no GPU could be opened, with what to do about it.
 #[derive(Debug)]
 pub enum GpuError {
-    /// No adapter, hardware or software.
-    NoAdapter(String),
-    /// No software adapter.
-    NoSoftwareAdapter,
+    /// The machine has no such adapter.
+    Adapter(AdapterError),
     /// The adapter refused to open a device.
     Device(wgpu::RequestDeviceError),
 }
 
 impl fmt::Display for GpuError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let hint = "On Debian or Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1` brings a software one.";
         match self {
-            Self::NoAdapter(reason) => write!(f, "no graphics adapter was found ({reason}). {hint}"),
-            Self::NoSoftwareAdapter => write!(f, "no software graphics adapter was found. {hint}"),
+            Self::Adapter(error) => error.fmt(f),
             Self::Device(error) => write!(f, "the graphics adapter could not be opened: {error}"),
         }
     }
@@ -70,13 +57,19 @@ impl fmt::Display for GpuError {
 
 impl core::error::Error for GpuError {}
 
+impl From<AdapterError> for GpuError {
+    fn from(error: AdapterError) -> Self {
+        Self::Adapter(error)
+    }
+}
+
 impl Gpu {
     /// Opens an adapter without a window.
     ///
     /// # Errors
     ///
     /// [`GpuError`] if there is no such adapter or it cannot be opened.
-    pub async fn headless(choice: AdapterChoice) -> Result<Self, GpuError> {
+    pub async fn headless(choice: &AdapterChoice) -> Result<Self, GpuError> {
         let instance = Self::instance();
         #[cfg(all(target_family = "wasm", feature = "webgl"))]
         {
@@ -87,21 +80,14 @@ impl Gpu {
                 return Self::for_surface(choice, &instance, &surface).await;
             }
         }
-        let adapter = match choice {
-            AdapterChoice::Any => any_adapter(&instance, None).await?,
-            AdapterChoice::Software => software_adapter(&instance, None).await?,
-        };
+        let adapter = choice.find(&instance, None).await?;
         Self::of_adapter(adapter, &Wanted::default()).await
     }
 
     /// Opens the graphics API: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others. In browsers the features
     /// of this crate name it. With both of them it is WebGPU, unless the browser has none.
     pub fn instance() -> wgpu::Instance {
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        let of_browser = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
-        let usual = if cfg!(target_family = "wasm") { of_browser } else { wgpu::Backends::PRIMARY };
-        descriptor.backends = wgpu::Backends::from_env().unwrap_or(usual);
-        wgpu::Instance::new(descriptor)
+        shadowfit_adapter::instance()
     }
 
     /// Opens an adapter that can draw to `surface`.
@@ -110,14 +96,11 @@ impl Gpu {
     ///
     /// [`GpuError`] if there is no such adapter or it cannot be opened.
     pub async fn for_surface(
-        choice: AdapterChoice,
+        choice: &AdapterChoice,
         instance: &wgpu::Instance,
         surface: &wgpu::Surface<'_>,
     ) -> Result<Self, GpuError> {
-        let adapter = match choice {
-            AdapterChoice::Any => any_adapter(instance, Some(surface)).await?,
-            AdapterChoice::Software => software_adapter(instance, Some(surface)).await?,
-        };
+        let adapter = choice.find(instance, Some(surface)).await?;
         Self::of_adapter(adapter, &Wanted::default()).await
     }
 
@@ -198,30 +181,4 @@ pub(crate) fn is_opengl(device: &wgpu::Device) -> bool {
 pub(crate) struct Unreported {
     _validation: wgpu::ErrorScopeGuard,
     _memory: wgpu::ErrorScopeGuard,
-}
-
-async fn any_adapter(
-    instance: &wgpu::Instance,
-    surface: Option<&wgpu::Surface<'_>>,
-) -> Result<wgpu::Adapter, GpuError> {
-    instance
-        .request_adapter(&wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            compatible_surface: surface,
-            ..Default::default()
-        })
-        .await
-        .map_err(|error| GpuError::NoAdapter(error.to_string()))
-}
-
-async fn software_adapter(
-    instance: &wgpu::Instance,
-    surface: Option<&wgpu::Surface<'_>>,
-) -> Result<wgpu::Adapter, GpuError> {
-    let adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
-    let fits = |adapter: &wgpu::Adapter| {
-        adapter.get_info().device_type == wgpu::DeviceType::Cpu
-            && surface.is_none_or(|surface| adapter.is_surface_supported(surface))
-    };
-    adapters.into_iter().find(fits).ok_or(GpuError::NoSoftwareAdapter)
 }

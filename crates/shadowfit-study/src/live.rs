@@ -33,6 +33,11 @@ pub(crate) struct LiveInput<'a> {
 }
 
 impl LiveTruth {
+    /// Whether a device can judge pictures. Without enough storage buffers, as with WebGL2's limits, threads do it.
+    pub fn runs_on(gpu: &Gpu) -> bool {
+        GpuJudge::runs_with(&gpu.device.limits())
+    }
+
     /// Uploads the rays of a scene.
     ///
     /// # Errors

@@ -1,8 +1,13 @@
 //! The device that tests draw with.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// An open device of the software adapter.
+use shadowfit_adapter::AdapterChoice;
+
+/// Environment variable that chooses the adapter of every test that draws: `software`, `any` or a part of a name.
+pub const ADAPTER: &str = "SHADOWFIT_ADAPTER";
+
+/// An open device of the tests' adapter.
 #[derive(Clone, Debug)]
 pub struct TestGpu {
     /// Adapter of the device.
@@ -43,51 +48,82 @@ impl<T: Clone> Drop for Lent<T> {
     }
 }
 
-/// Returns the software adapter's device with depth clamp and the default limits of WebGPU. Tests that run after each other
-/// in a process use the same device: a test that loses the device, measures its memory or replaces its error handler opens
-/// its own with [`open_software_gpu`]. Call it in the test's own thread.
-///
-/// Tests use the software adapter even beside a real GPU, because its pictures are nearly the same on every machine.
+/// Returns the choice of the environment variable [`ADAPTER`]. Without it tests draw on the software adapter even beside a
+/// GPU, because its pictures are nearly the same on every machine.
 ///
 /// # Panics
 ///
-/// If the machine has no software adapter. `cargo xtask test` leaves out the tests that draw on such machines.
-pub fn software_gpu() -> TestGpu {
+/// If the variable is empty.
+pub fn adapter_choice() -> &'static AdapterChoice {
+    static CHOICE: LazyLock<AdapterChoice> = LazyLock::new(|| {
+        let text = std::env::var_os(ADAPTER).map_or("software".into(), |text| text.to_string_lossy().into_owned());
+        text.parse().unwrap_or_else(|error| panic!("{ADAPTER}: {error}"))
+    });
+    &CHOICE
+}
+
+/// Returns the text of [`adapter_choice`], for the option `--adapter` of programs that tests start.
+pub fn adapter_name() -> &'static str {
+    static NAME: LazyLock<String> = LazyLock::new(|| adapter_choice().to_string());
+    &NAME
+}
+
+/// Returns the step, in pixels, to which an adapter rounds the corners of triangles. Vulkan guarantees 1/16, and graphics APIs
+/// tell tests no more. Drivers use 1/256, except `SwiftShader`.
+pub fn subpixel_step(info: &wgpu::AdapterInfo) -> f32 {
+    if info.name.contains("SwiftShader") { 1.0 / 16.0 } else { 1.0 / 256.0 }
+}
+
+/// Returns the step, in texels, to which an adapter rounds the position that a linear filter takes its weights from. Vulkan
+/// guarantees 1/16. Drivers use 1/256, except `SwiftShader`: its positions have 16 bits, which leaves 1/128 in a texture of 512
+/// texels.
+pub fn filter_step(info: &wgpu::AdapterInfo) -> f32 {
+    if info.name.contains("SwiftShader") { 1.0 / 128.0 } else { 1.0 / 256.0 }
+}
+
+/// Returns the tests' device with depth clamp and the default limits of WebGPU, or the limits of an adapter that has less.
+/// Tests that run after each other in a process use the same device: a test that loses the device, measures its memory or
+/// replaces its error handler opens its own with [`open_test_gpu`]. Call it in the test's own thread.
+///
+/// # Panics
+///
+/// If the machine lacks the adapter of [`ADAPTER`]. `cargo xtask test` leaves out the tests that draw on machines without
+/// any adapter.
+pub fn test_gpu() -> TestGpu {
     static FREE: Mutex<Vec<TestGpu>> = Mutex::new(Vec::new());
     std::thread_local! {
         static LENT: Lent<TestGpu> =
-            Lent::new(&FREE, || open_software_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()));
+            Lent::new(&FREE, || open_test_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()));
     }
     LENT.with(Lent::get)
 }
 
-/// Opens the software adapter again, with these features, if the adapter has them, and these limits.
+/// Opens the tests' adapter again, with these features, if the adapter has them, and these limits, or lower ones of the
+/// adapter.
 ///
 /// # Panics
 ///
-/// If the machine has no software adapter.
-pub fn open_software_gpu(features: wgpu::Features, required_limits: wgpu::Limits) -> TestGpu {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
-    let instance = wgpu::Instance::new(descriptor);
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-    let adapter = adapters.into_iter().find(is_software).expect("a software adapter, such as Mesa's lavapipe");
+/// If the machine lacks the adapter of [`ADAPTER`].
+pub fn open_test_gpu(features: wgpu::Features, required_limits: wgpu::Limits) -> TestGpu {
+    let instance = shadowfit_adapter::instance();
+    let adapter = pollster::block_on(adapter_choice().find(&instance, None));
+    let adapter = adapter.unwrap_or_else(|error| panic!("this test draws. {ADAPTER}={}: {error}", adapter_name()));
     let descriptor = wgpu::DeviceDescriptor {
         required_features: adapter.features() & features,
-        required_limits,
+        required_limits: required_limits.or_worse_values_from(&adapter.limits()),
         ..Default::default()
     };
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
+    let device = pollster::block_on(adapter.request_device(&descriptor));
+    let (device, queue) = device.unwrap_or_else(|error| panic!("{}: {error}", adapter.get_info().name));
     TestGpu { adapter, device, queue }
 }
 
-/// Returns the software adapter as the renderer opens it, lent to one test after another like [`software_gpu`]. A test that
-/// must not share it calls [`open_renderer_gpu`].
+/// Returns the tests' device as the renderer opens it, lent to one test after another like [`test_gpu`]. A test that must
+/// not share it calls [`open_renderer_gpu`].
 ///
 /// # Panics
 ///
-/// If the machine has no software adapter.
+/// If the machine lacks the adapter of [`ADAPTER`].
 #[cfg(feature = "render")]
 pub fn renderer_gpu() -> shadowfit_render::Gpu {
     static FREE: Mutex<Vec<shadowfit_render::Gpu>> = Mutex::new(Vec::new());
@@ -97,16 +133,33 @@ pub fn renderer_gpu() -> shadowfit_render::Gpu {
     LENT.with(Lent::get)
 }
 
-/// Opens the software adapter again, as the renderer does, or the fastest one if `SHADOWFIT_ADAPTER` is `any`: for single
-/// tests that are right on every GPU and slow on the software adapter.
+/// Opens the tests' adapter again, as the renderer does.
 ///
 /// # Panics
 ///
-/// If the machine has no such adapter.
+/// If the machine lacks the adapter of [`ADAPTER`].
 #[cfg(feature = "render")]
 pub fn open_renderer_gpu() -> shadowfit_render::Gpu {
-    use shadowfit_render::{AdapterChoice, Gpu};
-    let is_any = std::env::var_os("SHADOWFIT_ADAPTER").is_some_and(|adapter| adapter == "any");
-    let choice = if is_any { AdapterChoice::Any } else { AdapterChoice::Software };
-    pollster::block_on(Gpu::headless(choice)).unwrap_or_else(|error| panic!("this test draws, and {error}"))
+    opened(adapter_choice())
+}
+
+/// Returns the software adapter as the renderer opens it, for golden pictures. They are the same on every machine,
+/// whatever [`ADAPTER`] says.
+///
+/// # Panics
+///
+/// If the machine has no software adapter.
+#[cfg(feature = "render")]
+pub fn golden_gpu() -> shadowfit_render::Gpu {
+    static FREE: Mutex<Vec<shadowfit_render::Gpu>> = Mutex::new(Vec::new());
+    std::thread_local! {
+        static LENT: Lent<shadowfit_render::Gpu> = Lent::new(&FREE, || opened(&AdapterChoice::Software));
+    }
+    LENT.with(Lent::get)
+}
+
+#[cfg(feature = "render")]
+fn opened(choice: &AdapterChoice) -> shadowfit_render::Gpu {
+    let gpu = pollster::block_on(shadowfit_render::Gpu::headless(choice));
+    gpu.unwrap_or_else(|error| panic!("this test draws. {ADAPTER}={choice}: {error}"))
 }

@@ -1,9 +1,11 @@
 //! Code that the tests of several crates share.
 //!
-//! Opening a device takes longer than many tests that draw. [`software_gpu`] therefore lends a device to one test after
+//! Opening a device takes longer than many tests that draw. [`test_gpu`] therefore lends a device to one test after
 //! another, and `cargo xtask test` runs the tests that draw in one process per test binary.
 
+mod folder;
 mod gpu;
+mod lacking;
 #[cfg(feature = "wgsl")]
 pub mod layout;
 pub mod pairs;
@@ -11,6 +13,10 @@ pub mod read_back;
 #[cfg(feature = "wgsl")]
 pub mod wgsl;
 
-pub use gpu::{Lent, TestGpu, open_software_gpu, software_gpu};
+pub use folder::package_folder;
+pub use gpu::{
+    ADAPTER, Lent, TestGpu, adapter_choice, adapter_name, filter_step, open_test_gpu, subpixel_step, test_gpu,
+};
 #[cfg(feature = "render")]
-pub use gpu::{open_renderer_gpu, renderer_gpu};
+pub use gpu::{golden_gpu, open_renderer_gpu, renderer_gpu};
+pub use lacking::lacking;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
 use shadowfit::Technique;
+use shadowfit_adapter::{AdapterChoice, AdapterOptions};
 use shadowfit_classics::{SAMPLES, SampleValues};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
-use shadowfit_render::AdapterChoice;
 #[cfg(not(target_family = "wasm"))]
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
@@ -90,9 +90,9 @@ pub struct Arguments {
     #[arg(long)]
     pub no_play: bool,
 
-    /// Draws with the software adapter even if there is a GPU.
-    #[arg(long)]
-    pub software: bool,
+    /// Graphics adapter.
+    #[command(flatten)]
+    pub adapter: AdapterOptions,
 
     /// Prints a table to the standard error at the end: the time of each step of the start and of each line of the script.
     #[arg(long, requires_all = ["headless", "script"])]
@@ -174,7 +174,7 @@ impl Arguments {
 
     /// The adapter that the arguments ask for.
     pub fn adapter(&self) -> AdapterChoice {
-        if self.software { AdapterChoice::Software } else { AdapterChoice::Any }
+        self.adapter.choice()
     }
 
     /// Applies the `--technique`, `--set` and `--no-play` arguments, in this order. A preset keeps the shadow distance

@@ -1,8 +1,7 @@
 //! The tables of docs/VIEWER.md, which list keys and actions as the viewer has them.
 
-use std::path::Path;
-
 use shadowfit_egui::{KEYS, KeyGroup, KeyHelp, KeyLayout, key_table};
+use shadowfit_testing::package_folder;
 
 use crate::script::ACTIONS;
 
@@ -12,7 +11,7 @@ fn cell(text: &str) -> String {
 }
 
 fn assert_docs_hold(table: &str) {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/VIEWER.md");
+    let page = package_folder(env!("CARGO_MANIFEST_DIR")).join("../../docs/VIEWER.md");
     let text = std::fs::read_to_string(page).expect("docs/VIEWER.md can be read");
     assert!(text.contains(table), "put this table into docs/VIEWER.md in place of the old one:\n\n{table}");
 }

@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     if let Some(file) = &arguments.scene {
         scene.warnings(file).for_each(|warning| eprintln!("{warning}"));
     }
-    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     let mut stage = Stage::new(gpu, scene, SAMPLES)?;
     let mut settings = stage.settings;
     stage.choose_camera(arguments.settings(), &mut settings);
@@ -103,7 +103,7 @@ impl Drop for Progress {
 fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let mut timings = Timings::start();
     let start = Start::new(arguments)?.saving_into(folder);
-    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     timings.step("graphics device");
     gpu.keep_faults();
     let mut renewals = Renewals::default();
@@ -128,7 +128,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
         clock += f64::from(FRAME);
         if let Some(why) = gpu.lost() {
             renewals.next(&why)?;
-            let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+            let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
             gpu.keep_faults();
             canvas = Canvas::new(&gpu.device, size, FORMAT);
             viewer.move_to(gpu, FORMAT, &why)?;

@@ -24,7 +24,7 @@ impl Measuring {
     pub(crate) fn start(&mut self, adapter: AdapterChoice, (sample, values, camera, seconds): Task) {
         let (sender, result) = channel();
         let work = move || async move {
-            let measured = match Gpu::headless(adapter).await {
+            let measured = match Gpu::headless(&adapter).await {
                 Ok(gpu) => SampleFigures::measure_async(gpu, sample, &values, &camera, seconds).await,
                 Err(error) => Err(error.into()),
             };

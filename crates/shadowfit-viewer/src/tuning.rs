@@ -191,7 +191,7 @@ fn without_figures(what: &str) -> Tune<'_> {
 
 impl Task {
     async fn run(self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tuned> {
-        let gpu = Gpu::headless(self.adapter).await?;
+        let gpu = Gpu::headless(&self.adapter).await?;
         let scene = Scene::clone(&self.scene);
         let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
         let mut comparison = Comparison::new(gpu, scene, judging)?;

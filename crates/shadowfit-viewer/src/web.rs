@@ -105,7 +105,7 @@ impl Page {
         let instance = Gpu::instance();
         let target = wgpu::SurfaceTarget::OffscreenCanvas(canvas.clone());
         let surface = instance.create_surface(target).context("the page cannot be drawn on")?;
-        let gpu = Gpu::for_surface(AdapterChoice::Any, &instance, &surface).await?;
+        let gpu = Gpu::for_surface(&AdapterChoice::Any, &instance, &surface).await?;
         watch(&gpu);
         let mut configuration = surface
             .get_default_config(&gpu.adapter, canvas.width().max(1), canvas.height().max(1))

@@ -145,7 +145,7 @@ impl Running {
         let arguments = &start.arguments;
         let window = open_window(event_loop, arguments.size())?;
         let adapter = arguments.adapter();
-        let (surface, gpu) = Surface::new(window.clone(), adapter)?;
+        let (surface, gpu) = Surface::new(window.clone(), &adapter)?;
         gpu.keep_faults();
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::empty(gpu, samples)?;
@@ -246,7 +246,7 @@ impl Running {
         if let Ok(place) = self.window.outer_position() {
             window.set_outer_position(place);
         }
-        let opened = Surface::new(window.clone(), self.adapter);
+        let opened = Surface::new(window.clone(), &self.adapter);
         let (surface, gpu) = opened.context("the graphics device was lost, and there is no other")?;
         gpu.keep_faults();
         let lost = self.viewer.stage.gpu().clone();
@@ -271,7 +271,7 @@ impl Running {
 
 impl Surface {
     /// The surface of a window, and a device that draws on it.
-    fn new(window: Arc<Window>, adapter: AdapterChoice) -> Result<(Self, Gpu)> {
+    fn new(window: Arc<Window>, adapter: &AdapterChoice) -> Result<(Self, Gpu)> {
         let instance = Gpu::instance();
         let handle = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
         let gpu = pollster::block_on(Gpu::for_surface(adapter, &instance, &handle))?;

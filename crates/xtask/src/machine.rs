@@ -22,6 +22,8 @@ pub(crate) enum Part {
     VulkanDriver,
     /// The manifest of Mesa's software driver (lavapipe); the golden images are rendered on it.
     SoftwareDriver,
+    /// `SwiftShader`'s Vulkan driver, a second software implementation, which comes with Chromium.
+    SwiftShader,
     /// One of [`WINDOW_LIBRARIES`].
     WindowLibrary(&'static str),
     /// The virtual X server.
@@ -93,6 +95,7 @@ impl Machine {
             Part::VulkanLoader => libraries.has("libvulkan.so.1"),
             Part::VulkanDriver => !drivers.is_empty(),
             Part::SoftwareDriver => drivers.iter().any(|name| is_software_driver(name)),
+            Part::SwiftShader => swiftshader_manifest().is_some(),
             Part::WindowLibrary(name) => libraries.has(name),
             Part::Xvfb => in_path("Xvfb"),
             Part::Xdotool => in_path("xdotool"),
@@ -141,6 +144,7 @@ fn all_parts() -> impl Iterator<Item = Part> {
         Part::VulkanLoader,
         Part::VulkanDriver,
         Part::SoftwareDriver,
+        Part::SwiftShader,
         Part::Xvfb,
         Part::Xdotool,
         Part::Import,
@@ -213,6 +217,12 @@ fn vulkan_manifests() -> Vec<String> {
         .collect()
 }
 
+/// The manifest of `SwiftShader`'s driver in the folder of Debian's Chromium.
+pub(crate) fn swiftshader_manifest() -> Option<PathBuf> {
+    let folders = ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/opt/google/chrome"];
+    folders.iter().map(|folder| Path::new(folder).join("vk_swiftshader_icd.json")).find(|file| file.is_file())
+}
+
 fn name_of(path: &Path) -> Option<String> {
     path.file_name().map(|name| name.to_string_lossy().into_owned())
 }
@@ -269,7 +279,7 @@ mod tests {
     #[test]
     fn a_window_test_needs_every_tool_and_library() {
         assert!(Machine::complete(Display::None).can_test_window());
-        let others = [Part::SoftwareDriver, Part::Libudev, Part::Chromium, Part::Node, Part::Npm];
+        let others = [Part::SoftwareDriver, Part::SwiftShader, Part::Libudev, Part::Chromium, Part::Node, Part::Npm];
         for part in all_parts().filter(|part| !others.contains(part)) {
             let mut machine = Machine::complete(Display::None);
             machine.parts.remove(&part);

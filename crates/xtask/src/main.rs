@@ -7,6 +7,8 @@
 #[cfg(feature = "tools")]
 mod bench;
 mod bevy;
+#[cfg(feature = "tools")]
+mod bundle;
 mod ci;
 #[cfg(test)]
 mod docs;
@@ -59,6 +61,17 @@ enum Task {
         all: bool,
         /// Parts of the paths of the tests to run; without doc tests, page and Bevy.
         names: Vec<String>,
+        /// Draws on this machine's GPU instead of the software adapter, without golden pictures and the window.
+        #[arg(long)]
+        gpu: bool,
+    },
+    /// Write the tests and the examples as programs, with a runner that needs no Rust, for machines without a toolchain.
+    Bundle {
+        /// Folder of the bundle, new or empty.
+        folder: std::path::PathBuf,
+        /// Builds OpenGL in, too: run with `WGPU_BACKEND=gl`.
+        #[arg(long)]
+        gles: bool,
     },
     /// Lint, document and test the package for Bevy.
     Bevy,
@@ -108,9 +121,9 @@ fn main() -> ExitCode {
     let cli = Cli::try_parse().unwrap_or_else(|error| refuse(&error));
     let result = match cli.task {
         Task::Run { args } => run::run(&args),
-        Task::Test { quick: true, names, .. } => test::test(Tier::Quick, &names),
-        Task::Test { all: true, names, .. } => test::test(Tier::All, &names),
-        Task::Test { names, .. } => test::test(Tier::Standard, &names),
+        Task::Test { quick, all, names, gpu } => test::test(Tier::new(quick, all), &names, gpu),
+        #[cfg(feature = "tools")]
+        Task::Bundle { folder, gles } => bundle::bundle(&folder, gles),
         Task::Bevy => green::unless_unchanged(green::Suite::Bevy, bevy::check_and_test),
         Task::Ci => ci::ci(),
         #[cfg(feature = "tools")]
@@ -125,7 +138,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "tools")]
         Task::Web { build, port, .. } => web::web(build.as_deref(), port),
         #[cfg(not(feature = "tools"))]
-        Task::Generate | Task::Gallery { .. } | Task::Bench { .. } | Task::Web { .. } => {
+        Task::Bundle { .. } | Task::Generate | Task::Gallery { .. } | Task::Bench { .. } | Task::Web { .. } => {
             process::run(process::with_tools().args(std::env::args_os().skip(1)))
         }
     };
@@ -162,7 +175,7 @@ mod tests {
 
     #[test]
     fn every_task_but_the_viewer_has_help_of_its_own() {
-        for task in ["test", "bevy", "generate", "ci", "gallery", "bench", "web", "golden"] {
+        for task in ["test", "bundle", "bevy", "generate", "ci", "gallery", "bench", "web", "golden"] {
             let asked = Cli::try_parse_from(["xtask", task, "--help"]).err().map(|error| error.kind());
             assert_eq!(asked, Some(clap::error::ErrorKind::DisplayHelp), "{task}");
         }

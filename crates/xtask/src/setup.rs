@@ -19,6 +19,8 @@ pub(crate) enum Purpose {
     Page,
     /// Running the tests: the software driver of the golden images, and the tools of the window test.
     Test,
+    /// Drawing on a second software driver, too.
+    SecondDriver,
     /// Running all tests: those of the page, too.
     TestAll,
 }
@@ -86,6 +88,9 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     }
     if matches!(purpose, Purpose::TestAll | Purpose::Page) {
         needs.extend(PAGE_TOOLS);
+    }
+    if purpose == Purpose::SecondDriver {
+        needs.push((Part::SwiftShader, "chromium"));
     }
     needs.extend([(Part::Libudev, "libudev-dev"), (Part::Libudev, "pkg-config")]);
     needs.into_iter().filter(|&(part, _)| !machine.has(part)).map(|(_, package)| package).collect()
@@ -183,6 +188,14 @@ mod tests {
         for purpose in [Purpose::Pictures, Purpose::Test] {
             assert_eq!(missing_packages(purpose, &machine), ["mesa-vulkan-drivers"]);
         }
+    }
+
+    #[test]
+    fn the_second_software_driver_comes_with_chromium() {
+        let mut machine = Machine::complete(Display::None);
+        machine.parts.remove(&Part::SwiftShader);
+        assert_eq!(missing_packages(Purpose::SecondDriver, &machine), ["chromium"]);
+        assert!(missing_packages(Purpose::Test, &machine).is_empty());
     }
 
     #[test]

@@ -6,14 +6,15 @@
 //! Tests with `own_process` in their path measure or limit their process, so they count among the others.
 
 use std::collections::BTreeMap;
-use std::process::Command;
+use std::iter;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::bevy;
 use crate::ci::portability;
-use crate::machine::{Machine, Part};
+use crate::machine::{self, Machine, Part};
 use crate::process;
 use crate::rustdoc;
 use crate::setup::{self, Purpose};
@@ -34,8 +35,9 @@ const OWN_PROCESS: &str = "own_process";
 const PROGRAMS: [&str; 4] = ["growth", "peer_fit", "report", "viewer"];
 
 /// Packages of the quick tier. None of them links egui or winit.
-const QUICK_PACKAGES: [&str; 7] = [
+const QUICK_PACKAGES: [&str; 8] = [
     "shadowfit",
+    "shadowfit-adapter",
     "shadowfit-params",
     "shadowfit-rays",
     "shadowfit-scene",
@@ -61,6 +63,19 @@ const LONG_RUNS: [(&str, &str); 4] = [
     ("SHADOWFIT_SCENE_SWITCHES", "200"),
 ];
 
+/// The environment variable that chooses the adapter of every test that draws.
+const ADAPTER: &str = "SHADOWFIT_ADAPTER";
+
+/// Tests that need the software driver, by a part of their paths, and why.
+const SOFTWARE_ONLY: [(&str, &str); 2] = [
+    ("golden", "golden pictures are those of the software driver"),
+    ("window::", "the window's virtual X server shows what the software driver draws"),
+];
+
+/// Tests of pixels that a second software driver draws too: one file for each way in which drivers differ, in half a minute.
+const SECOND_DRIVER: [&str; 5] =
+    ["clamp_gpu", "exact_counts_gpu", "fade_gpu", "wrap_gpu::float", "cached_maps_gpu::gpu_reversed"];
+
 /// The tiers, for people who named another one.
 pub(crate) const TIERS: &str = "The tiers of tests are:\n  \
     cargo xtask test --quick  the libraries without the viewer: unit and property tests, WGSL, some pictures\n  \
@@ -78,6 +93,18 @@ pub(crate) enum Tier {
     All,
 }
 
+impl Tier {
+    pub(crate) const fn new(is_quick: bool, is_all: bool) -> Self {
+        if is_quick {
+            Self::Quick
+        } else if is_all {
+            Self::All
+        } else {
+            Self::Standard
+        }
+    }
+}
+
 /// Tests that are left out, and why.
 struct LeftOut {
     /// Part of their paths.
@@ -85,11 +112,12 @@ struct LeftOut {
     reason: String,
 }
 
-/// Runs the tests of a tier; with `names` (parts of paths) only those, without doc tests, page and Bevy.
+/// Runs the tests of a tier; with `names` (parts of paths) only those, without doc tests, page and Bevy. With `gpu` they
+/// draw on this machine's GPU.
 ///
 /// # Errors
 /// When a test fails, and, where a GPU is required, when none is there.
-pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
+pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     let purpose = match tier {
         Tier::Quick => Purpose::Pictures,
         Tier::Standard => Purpose::Test,
@@ -100,7 +128,10 @@ pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
     if setup::gpu_is_required() && !left_out.is_empty() {
         bail!("{} is set, and {}", setup::REQUIRE_GPU, left_out[0].reason);
     }
-    let suite = Suite { tier, features: setup::features(&machine), left_out };
+    let mut suite = Suite { tier, features: setup::features(&machine), left_out, adapter: None };
+    if gpu {
+        suite.draw_on(suite.hardware_adapter()?);
+    }
     if tier != Tier::Quick {
         // The tests that start a program would otherwise start the one of an earlier build.
         let mut programs = process::cargo("build");
@@ -113,6 +144,7 @@ pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
         process::run(&mut programs)?;
     }
     if !names.is_empty() {
+        suite.say_left_out();
         return suite.named(names);
     }
     let mut report = Report::default();
@@ -121,14 +153,15 @@ pub(crate) fn test(tier: Tier, names: &[String]) -> Result<()> {
     }
     report.run("tests that share a device", || process::run(&mut suite.sharing()));
     report.run("all other tests", || suite.others());
+    if tier != Tier::Quick && suite.adapter.is_none() {
+        report.run("tests of pixels on SwiftShader", || suite.on_second_driver());
+    }
     if tier == Tier::All {
         report.run("tests of the core with the oldest glam", portability::suite_with_oldest_glam);
         report.run("lints and tests of bevy-shadowfit", bevy::check_and_test);
         report.run("tests of the page", || process::run(process::with_tools().args(["web", "--test", "--long"])));
     }
-    for LeftOut { name_part, reason } in &suite.left_out {
-        println!("SKIPPED: tests with `{name_part}` in their path: {reason}");
-    }
+    suite.say_left_out();
     report.finish()
 }
 
@@ -141,7 +174,8 @@ pub(crate) fn golden() -> Result<()> {
     if !machine.has(Part::SoftwareDriver) {
         bail!("the golden images are rendered on Mesa's software driver, which is missing here");
     }
-    let suite = Suite { tier: Tier::Standard, features: setup::features(&machine), left_out: Vec::new() };
+    let suite =
+        Suite { tier: Tier::Standard, features: setup::features(&machine), left_out: Vec::new(), adapter: None };
     process::run(suite.in_one_process(&["golden"]).env(UPDATE_GOLDENS, "1"))?;
     println!("look at the new pictures before committing them: git status, git diff --stat");
     Ok(())
@@ -152,19 +186,47 @@ struct Suite {
     tier: Tier,
     features: &'static [&'static str],
     left_out: Vec<LeftOut>,
+    /// Name of the adapter that the tests draw on, unless it is the one of the environment.
+    adapter: Option<String>,
 }
 
 impl Suite {
+    /// Returns the name of the first adapter of this machine that is no software rasteriser.
+    fn hardware_adapter(&self) -> Result<String> {
+        process::run(process::cargo("build").args(self.packages()).args(["--example", "adapters"]))?;
+        let program = format!("debug/examples/adapters{}", std::env::consts::EXE_SUFFIX);
+        let mut adapters = Command::new(process::target_folder().join(program));
+        let output = adapters.arg("--hardware").stderr(Stdio::inherit()).output().context("the example adapters")?;
+        ensure!(output.status.success(), "`--gpu` needs a GPU. Without it, tests draw on the software adapter");
+        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    }
+
+    /// Lets the tests draw on an adapter, without the tests that need the software driver.
+    fn draw_on(&mut self, adapter: String) {
+        println!("tests draw on {adapter}");
+        let needing_software = SOFTWARE_ONLY.map(|(name_part, why)| LeftOut { name_part, reason: why.to_owned() });
+        self.left_out.extend(needing_software);
+        self.adapter = Some(adapter);
+    }
+
+    fn say_left_out(&self) {
+        for LeftOut { name_part, reason } in &self.left_out {
+            println!("SKIPPED: tests with `{name_part}` in their path: {reason}");
+        }
+    }
+
+    /// The packages with their features.
+    fn packages(&self) -> Vec<&'static str> {
+        if self.tier == Tier::Quick {
+            let packages = QUICK_PACKAGES.iter().flat_map(|package| ["--package", package]);
+            return packages.chain(["--features", QUICK_FEATURES]).collect();
+        }
+        iter::once("--workspace").chain(self.features.iter().copied()).collect()
+    }
+
     /// The packages with their features, and the kinds of targets that hold tests.
     fn targets(&self) -> Vec<&'static str> {
-        let mut targets = Vec::new();
-        if self.tier == Tier::Quick {
-            targets.extend(QUICK_PACKAGES.iter().flat_map(|package| ["--package", package]));
-            targets.extend(["--features", QUICK_FEATURES]);
-        } else {
-            targets.push("--workspace");
-            targets.extend(self.features);
-        }
+        let mut targets = self.packages();
         targets.extend(["--lib", "--bins", "--tests", "--no-fail-fast"]);
         targets
     }
@@ -181,6 +243,20 @@ impl Suite {
     /// The tests that share a device or the texts of WGSL, in one process per binary.
     fn sharing(&self) -> Command {
         self.in_one_process(if self.tier == Tier::Quick { &QUICK_SHARING } else { &SHARING })
+    }
+
+    /// A few tests of pixels on `SwiftShader`, which Chromium brings. Where a GPU is required, Chromium is installed and its
+    /// absence is a failure.
+    fn on_second_driver(&self) -> Result<()> {
+        if setup::gpu_is_required() {
+            setup::prepare(Purpose::SecondDriver)?;
+        }
+        let Some(manifest) = machine::swiftshader_manifest() else {
+            println!("SKIPPED: tests of pixels on SwiftShader: Debian's package chromium, which has it, is missing");
+            return Ok(());
+        };
+        let mut command = self.in_one_process(&SECOND_DRIVER);
+        process::run(command.env("VK_DRIVER_FILES", manifest).env(ADAPTER, "SwiftShader"))
     }
 
     /// Tests with any of `parts` in their paths, in one process per binary.
@@ -223,6 +299,7 @@ impl Suite {
         }
         let mut command = process::cargo("test");
         command.args(self.targets()).arg("--").args(names);
+        command.args(self.left_out.iter().flat_map(|tests| ["--skip", tests.name_part]));
         process::run(&mut self.prepared(command))
     }
 
@@ -246,6 +323,9 @@ impl Suite {
     /// Sets the environment of the tests.
     fn prepared(&self, mut command: Command) -> Command {
         process::with_driver_for_tests(&mut command);
+        if let Some(name) = &self.adapter {
+            command.env(ADAPTER, name);
+        }
         if self.tier == Tier::All {
             for (variable, value) in LONG_RUNS {
                 if std::env::var_os(variable).is_none() {
@@ -305,7 +385,7 @@ mod tests {
     use crate::machine::Display;
 
     fn suite(machine: &Machine, tier: Tier) -> Suite {
-        Suite { tier, features: &[], left_out: left_out(machine, tier) }
+        Suite { tier, features: &[], left_out: left_out(machine, tier), adapter: None }
     }
 
     #[test]
@@ -331,6 +411,18 @@ mod tests {
         machine.parts.remove(&Part::Xdotool);
         assert!(suite(&machine, Tier::Standard).filter_of_others().ends_with(" & not (test(window::))"));
         assert!(suite(&machine, Tier::Quick).left_out.is_empty());
+    }
+
+    #[test]
+    fn on_a_gpu_golden_pictures_and_the_window_are_left_out_and_the_tests_get_its_name() {
+        let mut suite = suite(&Machine::complete(Display::None), Tier::Standard);
+        suite.draw_on("Some GPU".into());
+        assert!(suite.filter_of_others().ends_with(" & not (test(golden) | test(window::))"));
+        let command = suite.sharing();
+        let adapter = command.get_envs().find(|(name, _)| *name == ADAPTER);
+        assert_eq!(adapter, Some((ADAPTER.as_ref(), Some("Some GPU".as_ref()))));
+        let words: Vec<_> = command.get_args().collect();
+        assert!(words.windows(2).any(|pair| pair == ["--skip", "golden"]), "{words:?}");
     }
 
     #[test]

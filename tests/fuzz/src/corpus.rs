@@ -1,12 +1,14 @@
 //! The files of a fuzz target, as ordinary tests read them.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 /// Runs a target on each file of its corpus; there must be some.
 pub(crate) fn replay(target: &str, run: impl Fn(&[u8])) {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // Named by cargo, or by the runner of a bundle of tests.
+    let package =
+        std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
     // From the root of the repository, or from a crate of it.
-    let folder = [".", "../.."].map(|root| crates.join(root).join("tests/fuzz/corpus").join(target));
+    let folder = [".", "../.."].map(|root| package.join(root).join("tests/fuzz/corpus").join(target));
     let folder = folder.iter().find(|folder| folder.is_dir()).expect("a folder of the target's files");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("a folder") {

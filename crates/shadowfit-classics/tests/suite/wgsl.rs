@@ -2,7 +2,6 @@
 //! the modules that it is given.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::LazyLock;
 
 use naga::ShaderStage::{Fragment, Vertex};
@@ -10,6 +9,7 @@ use naga::valid::Capabilities;
 use shadowfit_classics::mapped::SampleFrame;
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
 use shadowfit_render::passes::Numbering;
+use shadowfit_testing::package_folder;
 use shadowfit_testing::pairs::full_product;
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 
@@ -103,7 +103,7 @@ static MODULES: LazyLock<Vec<Module>> = LazyLock::new(|| {
 
 #[test]
 fn every_wgsl_file_stands_whole_in_some_module() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("src");
     let texts: Vec<&str> = MODULES.iter().map(|module| module.shader.source.as_str()).collect();
     assert_every_file_is_used(&folder, &texts, |file| ["0", "1"].map(|group| file.replace("GROUP", group)).into());
 }

@@ -2,7 +2,7 @@
 
 use shadowfit_rays::glam::Vec3;
 use shadowfit_rays::{RayScene, RayWgslOptions, rays_wgsl};
-use shadowfit_testing::{TestGpu, open_software_gpu, software_gpu};
+use shadowfit_testing::{TestGpu, open_test_gpu, test_gpu};
 
 /// A device and its queue.
 pub(crate) struct Gpu {
@@ -12,12 +12,12 @@ pub(crate) struct Gpu {
 
 /// Returns a device that tests use after each other.
 pub(crate) fn gpu() -> Gpu {
-    Gpu::from(software_gpu())
+    Gpu::from(test_gpu())
 }
 
 /// Opens a device with other limits.
 pub(crate) fn with_limits(limits: wgpu::Limits) -> Gpu {
-    Gpu::from(open_software_gpu(wgpu::Features::empty(), limits))
+    Gpu::from(open_test_gpu(wgpu::Features::empty(), limits))
 }
 
 impl From<TestGpu> for Gpu {

@@ -1,12 +1,11 @@
 //! The WGSL: valid with what every WebGPU device has, and laid out as the Rust that fills it.
 
-use std::path::Path;
-
 use naga::valid::Capabilities;
 use shadowfit_rays::records::{CutOutRecord, InstanceRecord, NodeRecord, RefitUniform, TriangleRecord};
 use shadowfit_rays::{RayError, RayWgslOptions, rays_wgsl, refit_wgsl};
 use shadowfit_testing::layout;
 use shadowfit_testing::layout::assert_same;
+use shadowfit_testing::package_folder;
 use shadowfit_testing::wgsl::{assert_every_file_is_used, assert_valid, parse};
 
 fn validate(name: &str, source: &str) {
@@ -37,7 +36,7 @@ fn texts_of_two_prefixes_stand_in_one_shader_and_bad_prefixes_are_refused() {
 
 #[test]
 fn every_wgsl_file_is_part_of_a_text() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/shaders");
+    let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("src/shaders");
     let texts = [rays_wgsl(&RayWgslOptions::group(0)), refit_wgsl()];
     assert_every_file_is_used(&folder, &texts.each_ref().map(String::as_str), |file| {
         vec![file.replace("GROUP", "0").replace("NODES_ON_STACK", &shadowfit_rays::STACK.to_string())]

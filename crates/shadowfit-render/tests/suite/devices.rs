@@ -1,29 +1,30 @@
-//! The software adapter, opened with less than it has.
+//! The tests' adapter, opened with less than it has.
 
+#[cfg(feature = "gles")]
+use shadowfit_render::AdapterChoice;
 use shadowfit_render::{Gpu, Wanted};
+use shadowfit_testing::renderer_gpu;
 
-/// The software adapter, whatever GPU is present, with these features and limits.
-pub(crate) fn software_gpu(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
-    opened(wgpu::Backends::PRIMARY, features, limits)
+/// The tests' adapter with these features and limits.
+pub(crate) fn test_gpu(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
+    opened(renderer_gpu().adapter, features, limits)
 }
 
 /// OpenGL ES 3.0 with the limits of WebGL2, by Mesa. wgpu prefers OpenGL, and Mesa later versions, unless both are told to
 /// be old by environment variables.
 #[cfg(feature = "gles")]
 pub(crate) fn webgl2_gpu() -> Gpu {
-    let gpu = opened(wgpu::Backends::GL, wgpu::Features::empty(), wgpu::Limits::downlevel_webgl2_defaults());
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::GL;
+    let found = pollster::block_on(AdapterChoice::Software.find(&wgpu::Instance::new(descriptor), None));
+    let adapter = found.unwrap_or_else(|error| panic!("this test draws on OpenGL, and {error}"));
+    let gpu = opened(adapter, wgpu::Features::empty(), wgpu::Limits::downlevel_webgl2_defaults());
     let version = gpu.adapter.get_info().driver_info;
     let advice = "set MESA_GL_VERSION_OVERRIDE to 3.2 and MESA_GLES_VERSION_OVERRIDE to 3.0";
     assert!(version.contains("OpenGL ES 3.0"), "this test needs OpenGL ES 3.0, and has {version}: {advice}");
     gpu
 }
 
-fn opened(backends: wgpu::Backends, features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = backends;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-    let adapter = adapters.into_iter().find(is_software).expect("this test draws on the software adapter");
+fn opened(adapter: wgpu::Adapter, features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
     pollster::block_on(Gpu::of_adapter(adapter, &Wanted { features, limits: Some(limits) })).expect("a device")
 }

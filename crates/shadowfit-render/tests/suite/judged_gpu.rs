@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3, UVec2};
 use shadowfit::{DepthConvention, PerspectiveCamera};
 use shadowfit_params::figures::ERROR_COLORS;
 use shadowfit_render::{Frame, JudgedPicture, Marks, Overlay, ProbeTargets, classes_texture};
+use shadowfit_testing::subpixel_step;
 
 use super::pictures::{SIZE, Stage, bits, cheap_technique, linear, random};
 
@@ -61,6 +62,8 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
     let frame = Frame { overlay: Overlay::Error, judged: Some(judged), ..seen.frame() };
     let picture = pictures.picture(&frame);
     let clip = before.clip_from_world(DepthConvention::Reversed).as_dmat4();
+    // A hundredth of a pixel for f32, and a step for the corners of either picture.
+    let border = 0.012 + 2.0 * f64::from(subpixel_step(&pictures.gpu.adapter.get_info()));
     let [mut right, mut lost] = [0; 2];
     for (pixel, (color, probed)) in picture.into_iter().zip(&probe.pixels).enumerate() {
         let (found, Some(probed)) = (class_of(color), probed) else { continue };
@@ -68,7 +71,7 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
         let at = clip * (point + seen.camera.eye - before.eye).extend(1.0);
         let place = (at.truncate().truncate() / at.w * DVec2::new(0.5, -0.5) + 0.5) * UVec2::from(SIZE).as_dvec2();
         let is_beside = place.min_element() < 0.0 || place.cmpge(UVec2::from(SIZE).as_dvec2()).any();
-        let near_border = (place - place.round()).abs().min_element() < 0.02;
+        let near_border = (place - place.round()).abs().min_element() < border;
         if is_beside || near_border {
             assert!(found.is_none() || near_border, "{place}");
             continue;
@@ -84,7 +87,8 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
         }
     }
     println!("{right} right, {lost} lost");
-    assert!(right > PIXELS / 2 && lost * 100 < right, "{right} and {lost}");
+    // Borders of steps of 1/16 pixel leave out half of the pixels.
+    assert!(right > PIXELS / 4 && lost * 100 < right, "{right} and {lost}");
 }
 
 #[test]

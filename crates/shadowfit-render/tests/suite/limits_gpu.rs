@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shadowfit_render::{Overlay, PixelQuery, TexelBlock};
 
-use super::devices::software_gpu;
+use super::devices::test_gpu;
 use super::pictures::{SIZE, Stage, camera, cheap_technique};
 use super::sheets::sheets;
 
@@ -14,7 +14,7 @@ fn pictures_need_no_features_and_no_more_than_the_limits_of_webgl2() {
     let least = (wgpu::Features::empty(), wgpu::Limits::downlevel_webgl2_defaults());
     let [mut all, mut least] = [all, least].map(|(features, limits)| {
         let camera = camera(DVec3::new(1.0, 4.0, 6.0), DVec3::Y);
-        Stage::on(software_gpu(features, limits), &technique, 4, &sheets(), camera)
+        Stage::on(test_gpu(features, limits), &technique, 4, &sheets(), camera)
     });
     for overlay in [Overlay::None, Overlay::MapTint, Overlay::PixelsPerTexel] {
         let [all, least] = [&mut all, &mut least].map(|stage| stage.picture(|frame| frame.overlay = overlay));

@@ -5,13 +5,13 @@ use shadowfit_render::Probe;
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
 
-use super::devices::software_gpu;
+use super::devices::test_gpu;
 use super::pictures::{Stage, camera, cheap_technique};
 use super::sheets::sheets;
 
 /// A scene at rest on a device with the features.
 fn stage(features: wgpu::Features, scene: &Scene, eye: DVec3) -> Stage {
-    let gpu = software_gpu(features, wgpu::Limits::default());
+    let gpu = test_gpu(features, wgpu::Limits::default());
     Stage::on(gpu, &cheap_technique().with_resolution(512, 512), 1, scene, camera(eye, DVec3::Y))
 }
 

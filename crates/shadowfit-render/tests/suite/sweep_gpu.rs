@@ -1,7 +1,7 @@
 //! Casters that are left out because their shadows are not seen: the shadow factor of every pixel stays the same to the
 //! last bit, and fewer casters are drawn.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::bias::XNA_DEPTH_BIAS;
@@ -17,7 +17,7 @@ use shadowfit_render::passes::material_layout;
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer};
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_testing::pairs::all_pairs;
-use shadowfit_testing::renderer_gpu;
+use shadowfit_testing::{package_folder, renderer_gpu};
 use shadowfit_truth::peers::Scenarios;
 use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor};
 
@@ -355,7 +355,7 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
 
 /// Returns a folder beside the workspace that holds data of others, or `None` with a note if it is missing.
 fn shared(name: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(name);
+    let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(name);
     if !folder.is_dir() {
         println!("SKIPPED: {} does not exist", folder.display());
     }

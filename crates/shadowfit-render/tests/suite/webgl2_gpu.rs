@@ -7,7 +7,7 @@ use shadowfit::{DepthConvention, Technique};
 use shadowfit_render::{Frame, Inset, Line, Overlay, PixelQuery, RenderTarget, TexelBlock};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-use super::devices::{software_gpu, webgl2_gpu};
+use super::devices::{test_gpu, webgl2_gpu};
 use super::pictures::{Pictures, SIZE, Stage, camera};
 use super::sheets::sheets;
 
@@ -20,7 +20,7 @@ fn technique() -> Technique {
 
 /// The sheets on Vulkan and on OpenGL.
 fn both(technique: &Technique, samples: u32) -> [Stage; 2] {
-    let vulkan = software_gpu(wgpu::Features::empty(), wgpu::Limits::default());
+    let vulkan = test_gpu(wgpu::Features::empty(), wgpu::Limits::default());
     [vulkan, webgl2_gpu()].map(|gpu| Stage::on(gpu, technique, samples, &sheets(), camera(EYE, DVec3::Y)))
 }
 

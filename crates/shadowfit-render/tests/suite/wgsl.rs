@@ -1,7 +1,6 @@
 //! The renderer's WGSL: every file is used, every module is valid and has its passes' entry points, and WebGL2 can draw with
 //! the modules that it is given.
 
-use std::path::Path;
 use std::sync::LazyLock;
 
 use naga::ShaderStage::{self, Fragment, Vertex};
@@ -10,6 +9,7 @@ use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat, MapSelection};
 use shadowfit_render::passes::Numbering;
 use shadowfit_render::{Overlay, shaders};
+use shadowfit_testing::package_folder;
 use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -143,7 +143,7 @@ static MODULES: LazyLock<Vec<Module>> = LazyLock::new(|| {
 
 #[test]
 fn every_wgsl_file_stands_whole_in_some_module() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/shaders");
+    let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("src/shaders");
     let texts: Vec<&str> = MODULES.iter().map(|module| module.shader.source.as_str()).collect();
     assert_every_file_is_used(&folder, &texts, |file| {
         let in_group = |group: &str| file.replace("MATERIAL_GROUP", group).replace("GROUP", group);

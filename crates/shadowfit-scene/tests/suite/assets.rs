@@ -7,7 +7,10 @@ use shadowfit_scene::{AlphaMode, Lens, Scene, Wrap, load_gltf, load_gltf_scene};
 
 /// The collection, or `None` with a word about it.
 pub(crate) fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
+    // Named by cargo, or by the runner of a bundle of tests.
+    let package =
+        std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
+    let folder = package.join("../../../shared/assets");
     if folder.is_dir() {
         return Some(folder);
     }

@@ -96,7 +96,7 @@ impl Build {
 /// thread that has its name; where they share one thread they run one after the other.
 pub(crate) fn write(name: &str, file: &str, content: &[u8]) -> PathBuf {
     let test = std::thread::current().name().unwrap_or("test").replace("::", "-");
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test).join(name);
+    let folder = std::env::temp_dir().join(format!("shadowfit-scene-{}", std::process::id())).join(test).join(name);
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join(file);
     std::fs::write(&path, content).unwrap();

@@ -14,6 +14,10 @@ use super::uniform::JudgeUniform;
 
 /// Bytes of a pixel between the steps: flags, pixels per texel, distance along the row.
 const PIXEL_BYTES: u64 = 12;
+/// Storage buffers that a pass binds: six of the rays, the slots of the triangles, and the pixels.
+const STORAGE_BUFFERS: u32 = 8;
+/// Threads of the largest workgroup.
+const WORKGROUP_THREADS: u32 = 256;
 /// Pixels a side of a workgroup's square.
 const SQUARE: u32 = 8;
 /// A texture's rows begin at multiples of this in a buffer, in bytes; wgpu requires it.
@@ -49,7 +53,13 @@ struct Target {
 }
 
 impl GpuJudge {
-    /// Makes the pipelines.
+    /// Whether a device with these limits has enough storage buffers and threads to judge pictures.
+    pub const fn runs_with(limits: &wgpu::Limits) -> bool {
+        limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS
+            && limits.max_compute_invocations_per_workgroup >= WORKGROUP_THREADS
+    }
+
+    /// Makes the pipelines. The device must have the limits of [`Self::runs_with`].
     pub fn new(device: &wgpu::Device) -> Self {
         let layout = group_layout(device, "judged picture", [UNIFORM, TEXTURE, STORAGE, CLASSES]);
         let (scene, slots) = (shadowfit_rays::rays_layout(device), slots_layout(device));

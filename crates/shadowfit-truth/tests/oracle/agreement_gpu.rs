@@ -4,7 +4,7 @@
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
-use shadowfit_testing::{TestGpu, software_gpu};
+use shadowfit_testing::{TestGpu, open_test_gpu, test_gpu};
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
@@ -125,7 +125,7 @@ impl Picture {
         seen: &[Option<u32>],
         factors: &[f32],
     ) -> Result<Vec<GpuPixel>, GpuTruthError> {
-        let TestGpu { device, queue, .. } = software_gpu();
+        let TestGpu { device, queue, .. } = test_gpu();
         let tracer = GpuTracer::new(&device, &queue, &self.tracer, self.origin)?;
         let texture = seen_texture(&device, &queue, self.camera.size, seen, factors);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -387,8 +387,22 @@ fn thousands_of_random_triangles_are_judged_alike() {
 }
 
 #[test]
+fn devices_with_enough_storage_buffers_make_the_passes_and_others_refuse_them() {
+    let least = wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..wgpu::Limits::default() };
+    let too_few = wgpu::Limits { max_storage_buffers_per_shader_stage: 7, ..least.clone() };
+    for (limits, runs) in [(least, true), (too_few, false), (wgpu::Limits::downlevel_defaults(), false)] {
+        let TestGpu { device, .. } = open_test_gpu(wgpu::Features::empty(), limits.clone());
+        let refused = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        drop(GpuJudge::new(&device));
+        let error = pollster::block_on(refused.pop());
+        assert_eq!(error.is_none(), runs, "{error:?}");
+        assert_eq!(GpuJudge::runs_with(&limits), runs);
+    }
+}
+
+#[test]
 fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
-    let TestGpu { device, queue, .. } = software_gpu();
+    let TestGpu { device, queue, .. } = test_gpu();
     let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
     let mut tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
     let mut gpu = GpuJudge::new(&device);
@@ -436,7 +450,7 @@ fn a_gpu_judges_an_empty_scene_as_nothing() {
 
 #[test]
 fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
-    let TestGpu { device, queue, .. } = software_gpu();
+    let TestGpu { device, queue, .. } = test_gpu();
     let tracer = || Tracer::new(boxes());
     let refused = GpuTracer::new(&device, &queue, &tracer().with_alpha_test(|_, _| true), DVec3::ZERO);
     assert_eq!(refused.err(), Some(GpuTruthError::AlphaTest));

@@ -1,11 +1,10 @@
 //! The WGSL of the compute passes: valid with what every WebGPU device has, and laid out as the Rust that fills it.
 
-use std::path::Path;
-
 use naga::TypeInner;
 use naga::valid::Capabilities;
 use shadowfit_testing::layout;
 use shadowfit_testing::layout::assert_same;
+use shadowfit_testing::package_folder;
 use shadowfit_testing::wgsl::{assert_every_file_is_used, assert_valid, parse};
 use shadowfit_truth::gpu::{BeforeUniform, JudgeUniform, MAX_MAPS, MapUniform, TallyRecord, shader};
 
@@ -19,7 +18,7 @@ fn every_pass_is_valid_without_any_capability() {
 
 #[test]
 fn every_wgsl_file_is_part_of_a_pass() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/gpu/shaders");
+    let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("src/gpu/shaders");
     let texts = [shader::truth(), shader::rows(), shader::classes(), shader::tally()];
     assert_every_file_is_used(&folder, &texts.each_ref().map(String::as_str), |file| vec![file.to_owned()]);
 }

@@ -1,7 +1,7 @@
 //! The GPU's sums against those of its own texture of classes, and against the CPU's.
 
 use glam::{DVec3, Vec3};
-use shadowfit_testing::{TestGpu, software_gpu};
+use shadowfit_testing::{TestGpu, test_gpu};
 use shadowfit_truth::gpu::{GpuBefore, GpuJudge, GpuJudgeInput, GpuPixel, GpuTally, GpuTracer, GpuTruthError};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
@@ -42,7 +42,7 @@ struct Before<'a> {
 
 impl Bench {
     fn new(picture: &Picture, seen: &[Option<u32>], factors: &[f32]) -> Self {
-        let TestGpu { device, queue, .. } = software_gpu();
+        let TestGpu { device, queue, .. } = test_gpu();
         let tracer = GpuTracer::new(&device, &queue, &picture.tracer, picture.origin).expect("a scene that fits");
         let texture = seen_texture(&device, &queue, picture.camera.size, seen, factors);
         let seen = texture.create_view(&wgpu::TextureViewDescriptor::default());

@@ -19,7 +19,7 @@ pub(super) fn run(
     (sample, named): (&'static Sample, Option<&'static SampleVariant>),
     folder: &Path,
 ) -> Result<()> {
-    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     let mut stage = Stage::new(gpu, sample.scene(), SAMPLES)?;
     stage.wait_for_rays();
     let size = arguments.size.unwrap_or(sample.size);
@@ -107,7 +107,7 @@ fn tell_figures(
         values.set_from_str(option, text)?;
     }
     let camera = sample.seen_by(variant, size[0] as f32 / size[1] as f32);
-    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     for (name, value) in SampleFigures::measure(gpu, sample, &values, &camera, 0.0)?.lines() {
         println!("{name}: {value}");
     }

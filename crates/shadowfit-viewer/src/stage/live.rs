@@ -111,7 +111,7 @@ pub(super) struct Live {
 
 impl Live {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let by = match (gpu.is_software(), HAS_THREADS, gpu.can_compute()) {
+        let by = match (gpu.is_software(), HAS_THREADS, LiveTruth::runs_on(gpu)) {
             (true, true, _) | (_, true, false) => JudgedBy::Threads,
             (false, _, true) => JudgedBy::Gpu,
             (true, false, true) => JudgedBy::SlowGpu,

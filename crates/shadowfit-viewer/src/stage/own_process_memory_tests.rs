@@ -7,7 +7,7 @@ use shadowfit::{PRESETS, Technique};
 use shadowfit_params::tool::{ErrorMarks, ViewMode};
 use shadowfit_render::{Gpu, Wanted};
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_testing::open_renderer_gpu;
+use shadowfit_testing::{adapter_choice, open_renderer_gpu};
 
 use super::*;
 use crate::monkey::memory;
@@ -76,9 +76,8 @@ fn assert_flat(what: &str, mut draw: impl FnMut(u32)) {
 #[test]
 fn gpu_techniques_leave_no_objects_behind() {
     let instance = Gpu::instance();
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu);
-    let opened = pollster::block_on(Gpu::of_adapter(adapter.expect("the software adapter"), &Wanted::default()));
+    let adapter = pollster::block_on(adapter_choice().find(&instance, None)).expect("the tests' adapter");
+    let opened = pollster::block_on(Gpu::of_adapter(adapter, &Wanted::default()));
     let mut stage = Stage::new(opened.expect("a device"), default_scene(), 1).expect("the default scene");
     stage.wait_for_rays();
     let target = stage.target([96, 54]);

@@ -1,4 +1,4 @@
-//! The viewer frame by frame, on the software adapter and without a window: what is kept and what yields to what, undo,
+//! The viewer frame by frame, on the tests' adapter and without a window: what is kept and what yields to what, undo,
 //! comparison, artefacts and tuning as commands ask for them.
 
 use std::path::Path;
@@ -11,7 +11,7 @@ use shadowfit::Technique;
 use shadowfit_egui::{Artefact, Command, Toggle, Tune};
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyInput, Gpu};
-use shadowfit_testing::renderer_gpu;
+use shadowfit_testing::{adapter_name, renderer_gpu};
 
 use super::{Start, Viewer};
 use crate::cli::Arguments;
@@ -42,7 +42,7 @@ fn viewer(arguments: &[&str], store: Option<&Path>) -> Viewer {
 fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {
     // Judging takes the software driver longer than drawing; the tests of it switch it on.
     let resolution = format!("map.resolution={MAP_TEXELS}");
-    let all = ["viewer", "--software", "--no-play", "--set", &resolution, "--set", "view.judge=off"];
+    let all = ["viewer", "--adapter", adapter_name(), "--no-play", "--set", &resolution, "--set", "view.judge=off"];
     let arguments = Arguments::parse_from(all.iter().chain(arguments));
     let start = Start::new(&arguments).expect("arguments that make sense");
     let mut stage = Stage::empty(gpu, 1).expect("a stage");

@@ -3,7 +3,7 @@
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{Edges, FilterKind, MapFormat};
 use shadowfit::{Aabb, Boxes, DepthConvention, PerspectiveCamera, Technique};
-use shadowfit_testing::{TestGpu, software_gpu};
+use shadowfit_testing::{TestGpu, test_gpu};
 
 use super::*;
 use crate::{Casters, MapTexture, SunFrame};
@@ -24,7 +24,7 @@ type Texels = Vec<f32>;
 
 impl Bench {
     fn new(size: [u32; 2], depth: DepthConvention, format: MapFormat) -> Self {
-        let TestGpu { device, queue, .. } = software_gpu();
+        let TestGpu { device, queue, .. } = test_gpu();
         let mut technique = Technique::preset("stable-4").expect("a preset").with_resolution(size[0], size[1]);
         technique.fit.depth = depth;
         let technique = technique

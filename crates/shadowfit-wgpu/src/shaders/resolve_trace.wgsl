@@ -25,8 +25,12 @@ fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
         && (is_on_plane(pixel, -axis, surface) || is_on_plane(pixel, 2 * axis, surface));
 }
 
-// Whether the surface goes on to a place in its pixel, from the first sample, in pixels.
-fn reaches(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> bool {
+// Whether the surface goes on to a place in its pixel, from the first sample, in pixels, as the triangle's plane does. beside: how
+// far that plane leaves the pixel's there, in metres.
+fn reaches(pixel: vec2<i32>, surface: Surface, place: vec2<f32>, beside: f32) -> bool {
+    if beside > 0.5 * height_at(surface.position) {
+        return false;
+    }
     let across = select(vec2<i32>(-1, 0), vec2<i32>(1, 0), place.x > 0.0);
     let down = select(vec2<i32>(0, -1), vec2<i32>(0, 1), place.y > 0.0);
     return (place.x == 0.0 || goes_on(pixel, across, surface)) && (place.y == 0.0 || goes_on(pixel, down, surface));
@@ -48,7 +52,8 @@ fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<
     let met = shadowfit_rays_plane(begin_of(sight), sight.direction, triangle.slot, triangle.instance);
     let is_near = met.distance >= 0.0 && met.distance <= 2.0 * sight.reach;
     let is_first = all(place == resolve.points[0].xy);
-    if is_near && (is_first || met.is_inside || reaches(pixel, surface, place)) {
+    let beside = abs((met.distance - sight.reach) * dot(met.normal, sight.direction));
+    if is_near && (is_first || met.is_inside || reaches(pixel, surface, place, beside)) {
         let position = sight.middle + sight.direction * (met.distance - sight.reach);
         return Start(position, met.normal, height_at(position), place, true);
     }

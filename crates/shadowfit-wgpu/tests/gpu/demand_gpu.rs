@@ -5,6 +5,7 @@ use shadowfit::demand::{CLASSES, DEPTHS};
 use shadowfit::glam::{DVec3, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
+use shadowfit_testing::subpixel_step;
 use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView};
 
 use super::demand_picture::{Drawing, cuboid, draw, infinite, quad, read, record, seen};
@@ -270,11 +271,15 @@ fn shares(counts: &Counts) -> Vec<f64> {
 #[test]
 fn shares_of_points_do_not_depend_on_the_resolution() {
     let gpu = Engine::shared();
+    // 1% for the points of pixels that edges cross. An adapter's rounding of corners moves all edges, as long as twice the
+    // picture's border in the coarse picture, by a step.
+    let border = 4.0 * f64::from(SIZE[0] + SIZE[1]);
+    let step_share = f64::from(subpixel_step(&gpu.adapter.get_info())) * border / f64::from(SIZE[0] * SIZE[1]);
     let coarse = compared(&gpu, "coarse", &view(DepthConvention::Reversed, SIZE), &Drawing::new(SIZE), 1);
     for (size, step) in [([320, 180], 1), ([1280, 720], 3)] {
         let counts = compared(&gpu, "fine", &view(DepthConvention::Reversed, size), &Drawing::new(size), step);
         for (a, b) in shares(&counts).iter().zip(shares(&coarse)) {
-            assert!((a - b).abs() < 0.01, "{size:?}: {a} of the points, and {b} in a coarse picture");
+            assert!((a - b).abs() < 0.01 + step_share, "{size:?}: {a} of the points, and {b} in a coarse picture");
         }
     }
 }

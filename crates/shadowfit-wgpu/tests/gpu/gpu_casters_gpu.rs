@@ -11,14 +11,13 @@ use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Boxes, PerspectiveCamera, Technique};
 use shadowfit_wgpu::{Casters, Culling, PassContent, SunFrame, SunShadows};
 
+use crate::differences::Compared;
 use crate::engine::Engine;
 use engine::GpuCasters;
 use town::Town;
 
-/// Greatest difference of depths that count as equal, and most texels of a map that differ at edges: what is kept was
-/// drawn with a matrix that is rounded otherwise, and what is kept follows from the number of boxes, too.
-const DEPTH: f32 = 1e-5;
-const MOST: usize = 12;
+/// Texels of a map, a side.
+const SIDE: u32 = 256;
 
 const SUNLIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 
@@ -51,7 +50,7 @@ struct Found {
 impl Pair {
     fn new(town: &Town) -> Self {
         let gpu = Engine::shared();
-        let technique = Technique::default().with_resolution(256, 256).with_max_distance(60.0);
+        let technique = Technique::default().with_resolution(SIDE, SIDE).with_max_distance(60.0);
         let maps = || SunShadows::new(&gpu.device, &gpu.queue, &technique).expect("maps");
         let (by_shader, by_lists) = (maps(), maps());
         let casters = GpuCasters::new(&gpu.device, &by_shader, &town.blocks);
@@ -84,9 +83,11 @@ impl Pair {
         found.by_lists += self.draw_by_lists();
         let [a, b] = [&self.by_shader, &self.by_lists].map(|sun| self.gpu.unwrapped(sun));
         for (map, (a, b)) in a.iter().zip(&b).enumerate() {
-            let unequal = a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > DEPTH).count();
-            assert!(unequal <= MOST, "frame {frame}, map {map}: {unequal} of {} texels differ", a.len());
-            found.unequal += unequal;
+            // What is kept was drawn with a matrix that is rounded otherwise.
+            let compared = Compared::new(&self.gpu, [a, b], SIDE);
+            let differ = compared.differences();
+            compared.assert_explained(&differ, format_args!("frame {frame}, map {map}"));
+            found.unequal += differ.len();
             assert!(frame > 0 || map > 0 || a.iter().any(|depth| *depth < 1.0), "nothing was drawn");
         }
         for pass in self.by_shader.passes() {
@@ -168,7 +169,7 @@ fn gpu_casters_that_a_compute_shader_finds_make_the_maps_that_lists_make() {
     }
     println!("{found:?}");
     assert!(found.fixed > 30 && found.moving > 100 && found.wrapped > 30, "{found:?}");
-    assert!(found.cleared < 60 && found.unequal < 60, "maps are kept: {found:?}");
+    assert!(found.cleared < 60, "maps are kept: {found:?}");
 }
 
 #[test]
@@ -186,7 +187,7 @@ fn gpu_a_box_around_all_that_moves_and_one_around_the_rest_are_enough() {
         pair.draw(&town, frame, &mut found);
     }
     println!("{found:?}");
-    assert!(found.moving > 40 && found.unequal < 20 && found.by_shader > 100, "{found:?}");
+    assert!(found.moving > 40 && found.by_shader > 100, "{found:?}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Tests of shadowfit-wgpu: its WGSL and its uniforms, which need no GPU, and maps, look-ups and passes on the software
-//! adapter. `engine` is the renderer of all tests that draw.
+//! Tests of shadowfit-wgpu: its WGSL and its uniforms, which need no GPU, and maps, look-ups and passes on the
+//! adapter of the tests. `engine` is the renderer of all tests that draw.
 //!
 //! Tests that need a graphics device have `gpu` in their path, and `cargo xtask test` leaves them out on machines without
 //! one.
@@ -11,6 +11,7 @@ mod culling_gpu;
 mod demand_gpu;
 mod demand_picture;
 mod demand_reference;
+mod differences;
 mod door_gpu;
 mod engine;
 mod exact_counts_gpu;

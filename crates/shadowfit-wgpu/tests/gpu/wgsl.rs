@@ -2,7 +2,6 @@
 //! limits of engines that paste it. The tests beside this one compare the results of the shaders.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::sync::LazyLock;
 
 use naga::ShaderStage;
@@ -10,6 +9,7 @@ use naga::valid::Capabilities;
 use shadowfit::DepthConvention;
 use shadowfit::settings::{Edges, FilterKind, MapFormat, MapSelection};
 use shadowfit_rays::{RayWgslOptions, rays_wgsl, refit_wgsl};
+use shadowfit_testing::package_folder;
 use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 use shadowfit_wgpu::demand::demand_wgsl;
@@ -178,7 +178,8 @@ fn every_pair_of_options_occurs_in_a_kind() {
 
 #[test]
 fn every_wgsl_file_stands_whole_in_some_module() {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crates' folder");
+    let package = package_folder(env!("CARGO_MANIFEST_DIR"));
+    let crates = package.parent().expect("the crates' folder");
     let texts: Vec<&str> = MODULES.iter().map(|shader| shader.source.as_str()).collect();
     for name in ["shadowfit-wgpu", "shadowfit-rays"] {
         assert_every_file_is_used(&crates.join(name).join("src/shaders"), &texts, filled);

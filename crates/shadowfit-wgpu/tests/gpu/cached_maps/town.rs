@@ -183,7 +183,7 @@ pub(super) fn lit_otherwise([a, b]: &[Stored; 2], walk: &Walk) -> f64 {
 
 /// Two sets of the same maps.
 pub(super) struct Pair {
-    engine: Engine,
+    pub(super) engine: Engine,
     pub(super) kept: SunShadows,
     pub(super) anew: SunShadows,
     pipeline: wgpu::RenderPipeline,

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use bytemuck::{NoUninit, Pod};
-use shadowfit_testing::{Lent, TestGpu, open_software_gpu, read_back};
+use shadowfit_testing::{Lent, TestGpu, lacking, open_test_gpu, read_back};
 use wgpu::util::DeviceExt;
 
 /// A device of the software adapter. A test has it to itself and finds the pipelines of the tests before it: most tests draw
@@ -43,7 +43,7 @@ impl Engine {
     pub(crate) fn shared() -> Self {
         static FREE: Mutex<Vec<Engine>> = Mutex::new(Vec::new());
         fn open() -> Engine {
-            Engine::of(open_software_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()))
+            Engine::of(open_test_gpu(wgpu::Features::DEPTH_CLIP_CONTROL, wgpu::Limits::default()))
         }
         std::thread_local! {
             static LENT: Lent<Engine> = Lent::new(&FREE, open);
@@ -62,7 +62,7 @@ impl Engine {
 
     /// Opens a device of its own without optional features.
     pub(crate) fn open(limits: wgpu::Limits) -> Self {
-        Self::of(open_software_gpu(wgpu::Features::empty(), limits))
+        Self::of(open_test_gpu(wgpu::Features::empty(), limits))
     }
 
     pub(crate) fn of(TestGpu { adapter, device, queue }: TestGpu) -> Self {
@@ -90,6 +90,7 @@ impl Engine {
         format: wgpu::TextureFormat,
         usage: wgpu::TextureUsages,
     ) -> wgpu::TextureView {
+        self.require(format, usage);
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -101,6 +102,14 @@ impl Engine {
             view_formats: &[],
         });
         texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    /// Refuses a test that uses a format as the adapter cannot, as all of WebGPU's devices can.
+    fn require(&self, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) {
+        let missing = usage - self.adapter.get_texture_format_features(format).allowed_usages;
+        if !missing.is_empty() {
+            lacking(&self.adapter.get_info(), &format!("{missing:?} of {format:?}"));
+        }
     }
 
     fn module(&self, wgsl: &str) -> wgpu::ShaderModule {
@@ -149,6 +158,11 @@ impl Engine {
 
     /// Returns the texels of all layers of a texture, row by row.
     pub(crate) fn texels<T: Pod>(&self, texture: &wgpu::Texture) -> Vec<T> {
+        let flags = self.adapter.get_downlevel_capabilities().flags;
+        let copies_depth = flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES);
+        if texture.format().is_depth_stencil_format() && !copies_depth {
+            lacking(&self.adapter.get_info(), "copies of depth textures");
+        }
         read_back::texels(&self.device, &self.queue, texture)
     }
 
@@ -222,6 +236,9 @@ impl<'a> Pipeline<'a> {
     }
 
     fn compile(self, engine: &Engine) -> wgpu::RenderPipeline {
+        for target in self.targets.iter().flatten() {
+            engine.require(target.format, wgpu::TextureUsages::RENDER_ATTACHMENT);
+        }
         let module = engine.module(self.wgsl);
         let fragment = self.fragment.map(|entry| wgpu::FragmentState {
             module: &module,

@@ -147,7 +147,10 @@ impl Twin {
         let normal = tracer.normal(triangle);
         let distance = dot(normal, tracer.corners(triangle)[0] - begin) / dot(normal, direction);
         let is_near = (0.0..=2.0 * reach).contains(&distance);
-        if let Some(first) = first.filter(|_| !(is_near && (is_inside || self.reaches([x, y], surface, place)))) {
+        let beside = ((distance - reach) * dot(normal, direction)).abs();
+        let is_flat = beside <= 0.5 * self.height_at(surface.position);
+        let is_seen = is_near && (is_inside || (is_flat && self.reaches([x, y], surface, place)));
+        if let Some(first) = first.filter(|_| !is_seen) {
             return first;
         }
         let position = middle + direction * (distance - reach);

@@ -1,0 +1,81 @@
+//! Why there is no adapter, with the adapters that there are.
+
+use core::fmt;
+
+use crate::AdapterChoice;
+
+/// Why no adapter was found, with the remedy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AdapterError {
+    /// The machine has no adapter. Holds wgpu's reason.
+    None(String),
+    /// The machine has no software rasteriser.
+    NoSoftware {
+        /// [Labels](label) of the adapters of this machine.
+        present: Vec<String>,
+    },
+    /// No adapter has the name.
+    NoSuchName {
+        /// Part of a name.
+        name: String,
+        /// [Labels](label) of the adapters of this machine.
+        present: Vec<String>,
+    },
+}
+
+impl AdapterError {
+    /// Returns the error of a choice that fits none of these adapters.
+    pub(crate) fn none_of(choice: &AdapterChoice, infos: &[wgpu::AdapterInfo]) -> Self {
+        let present = infos.iter().map(label).collect();
+        match choice {
+            AdapterChoice::Any => Self::None("none is present".into()),
+            AdapterChoice::Software => Self::NoSoftware { present },
+            AdapterChoice::Named(name) => Self::NoSuchName { name: name.clone(), present },
+        }
+    }
+}
+
+impl fmt::Display for AdapterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hint = "On Debian or Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1` installs a software adapter.";
+        match self {
+            Self::None(reason) => write!(f, "no graphics adapter was found ({reason}). {hint}"),
+            Self::NoSoftware { present } => {
+                write!(f, "no software graphics adapter was found. {hint} {}", list(present))
+            }
+            Self::NoSuchName { name, present } => {
+                write!(f, "no graphics adapter has {name:?} in its name. {}", list(present))
+            }
+        }
+    }
+}
+
+impl core::error::Error for AdapterError {}
+
+fn list(present: &[String]) -> String {
+    if present.is_empty() {
+        return "This machine has no adapter.".into();
+    }
+    present.iter().fold("This machine has:".into(), |text, label| text + "\n  " + label)
+}
+
+/// Returns the name of an adapter with its API and its kind, such as `NVIDIA H200 (Vulkan, discrete GPU)`.
+pub fn label(info: &wgpu::AdapterInfo) -> String {
+    let api = match info.backend {
+        wgpu::Backend::Noop => "no API",
+        wgpu::Backend::Vulkan => "Vulkan",
+        wgpu::Backend::Metal => "Metal",
+        wgpu::Backend::Dx12 => "Direct3D 12",
+        wgpu::Backend::Gl => "OpenGL",
+        wgpu::Backend::BrowserWebGpu => "WebGPU",
+    };
+    let kind = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+        wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+        wgpu::DeviceType::VirtualGpu => "virtual GPU",
+        wgpu::DeviceType::Cpu => "software",
+        wgpu::DeviceType::Other => "unknown kind",
+    };
+    format!("{} ({api}, {kind})", info.name)
+}

@@ -1,0 +1,218 @@
+//! `cargo xtask bundle`: the tests and the examples as programs, with a runner that needs no Rust, for machines without a
+//! toolchain.
+//!
+//! The bundle keeps the layout of the repository, `workspace/target/debug/deps` included: a test finds the files of its
+//! package and the examples that it starts in the same places relative to itself.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::Value;
+
+use crate::process::{self, root};
+use crate::setup::{self, Purpose};
+
+/// The runner, in POSIX shell.
+const RUNNER: &str = include_str!("bundle/run.sh");
+
+/// The list of tests that the runner reads: program, folder of its package and name, separated by tabs.
+const TESTS: &str = "tests.txt";
+
+/// Tracked files that no test of the bundle reads: pictures, and the golden pictures, which are drawn on one driver alone.
+const LEFT_OUT: [&str; 4] = ["docs/images/", "docs/samples/", "tests/golden/", "crates/shadowfit-egui/tests/golden/"];
+
+/// The package whose tests concern the development tasks themselves.
+const TASKS: &str = "xtask";
+
+/// A program that Cargo has built.
+struct Program {
+    file: PathBuf,
+    /// Folder of its package, relative to the workspace; empty for the root package.
+    package: PathBuf,
+    /// Name of the package and of the target.
+    name: String,
+    is_test: bool,
+}
+
+/// Writes the bundle into `folder`, with OpenGL beside Vulkan if `gles`.
+///
+/// # Errors
+/// When the folder has files, or a program cannot be built or copied.
+pub(crate) fn bundle(folder: &Path, gles: bool) -> Result<()> {
+    let is_empty = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
+    ensure!(is_empty, "{} is not empty: a bundle needs a folder of its own", folder.display());
+    let machine = setup::prepare(Purpose::Pictures)?;
+    let mut features = setup::features(&machine).join(" ");
+    if gles {
+        features += ",shadowfit-adapter/gles";
+    }
+    let features: Vec<&str> = features.split(' ').collect();
+    let workspace = folder.join("workspace");
+    copy_files(&workspace)?;
+    let mut list = String::new();
+    for program in built(&features)? {
+        let place = if program.is_test { "deps" } else { "examples" };
+        let copy = Path::new("target/debug").join(place).join(program.file.file_name().unwrap_or_default());
+        copy_stripped(&program.file, &workspace.join(&copy))?;
+        if program.is_test {
+            // Writing to a String cannot fail.
+            let _ = writeln!(list, "{}\t{}\t{}", copy.display(), package_path(&program.package), program.name);
+        }
+    }
+    fs::write(folder.join(TESTS), list)?;
+    write_runner(&folder.join("run.sh"))?;
+    println!("the bundle is in {}. Run it with: ./run.sh [--adapter NAME] [FILTER...]", folder.display());
+    // The programs have most of their code in common, which a dictionary larger than a program finds.
+    println!("pack it with: XZ_OPT=--lzma2=preset=4,dict=512MiB tar -C {} -cJf bundle.tar.xz .", folder.display());
+    Ok(())
+}
+
+/// A folder that is written into the list, where an empty word would be lost.
+fn package_path(package: &Path) -> String {
+    if package.as_os_str().is_empty() { ".".into() } else { package.display().to_string() }
+}
+
+/// Builds the examples and the tests of the workspace, and returns their programs.
+fn built(features: &[&str]) -> Result<Vec<Program>> {
+    let mut programs = Vec::new();
+    for kinds in [&["build", "--examples"][..], &["test", "--no-run", "--lib", "--bins", "--tests"]] {
+        let mut command = process::cargo(kinds[0]);
+        command.arg("--workspace").args(features).args(&kinds[1..]);
+        command.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit());
+        let output = command.output().context("cargo does not start")?;
+        if !output.status.success() {
+            bail!("the programs of the bundle cannot be built");
+        }
+        let messages = String::from_utf8_lossy(&output.stdout);
+        programs.extend(messages.lines().filter_map(|line| program(&serde_json::from_str(line).ok()?)));
+    }
+    ensure!(!programs.is_empty(), "Cargo has built no program");
+    Ok(programs)
+}
+
+/// Returns the program of one of Cargo's messages, if it belongs into the bundle.
+fn program(message: &Value) -> Option<Program> {
+    let file = PathBuf::from(message["executable"].as_str()?);
+    let manifest = Path::new(message["manifest_path"].as_str()?);
+    let package = manifest.parent()?.strip_prefix(root()).ok()?.to_owned();
+    let is_test = message["profile"]["test"].as_bool()?;
+    let kind = message["target"]["kind"][0].as_str()?;
+    let belongs = (is_test || kind == "example") && !package.ends_with(TASKS);
+    let crate_name = package.file_name().map_or("workspace".into(), |name| name.to_string_lossy());
+    let name = format!("{crate_name}/{}", message["target"]["name"].as_str()?);
+    belongs.then(|| Program { file, package: package.clone(), name, is_test })
+}
+
+/// Copies the tracked files of the repository that tests may read.
+fn copy_files(workspace: &Path) -> Result<()> {
+    let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output();
+    let listed = listed.ok().filter(|output| output.status.success()).context("`git ls-files` fails")?;
+    let names = String::from_utf8(listed.stdout).context("a file's name is no UTF-8")?;
+    let is_wanted = |name: &&str| !name.is_empty() && !LEFT_OUT.iter().any(|folder| name.starts_with(folder));
+    for name in names.split('\0').filter(is_wanted) {
+        let (from, to) = (root().join(name), workspace.join(name));
+        // A file may be deleted and still be tracked.
+        if from.is_file() {
+            make_parent(&to)?;
+            fs::copy(&from, &to).with_context(|| format!("cannot copy {name}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn make_parent(file: &Path) -> Result<()> {
+    let folder = file.parent().unwrap_or(file);
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))
+}
+
+/// Copies a program without its symbols, which are most of it.
+fn copy_stripped(from: &Path, to: &Path) -> Result<()> {
+    make_parent(to)?;
+    let strip = Command::new("strip").arg("-o").arg(to).arg(from).stderr(Stdio::inherit()).status();
+    ensure!(strip.is_ok_and(|status| status.success()), "`strip` (binutils) cannot copy {}", from.display());
+    Ok(())
+}
+
+fn write_runner(file: &Path) -> Result<()> {
+    fs::write(file, RUNNER)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(file, fs::Permissions::from_mode(0o755))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(package: &str, kind: &str, is_test: bool) -> Value {
+        let manifest = root().join(package).join("Cargo.toml");
+        serde_json::json!({
+            "executable": "/target/debug/deps/suite-1", "manifest_path": manifest,
+            "profile": { "test": is_test }, "target": { "name": "suite", "kind": [kind] },
+        })
+    }
+
+    #[test]
+    fn tests_and_examples_are_bundled_with_the_folders_of_their_packages() {
+        let test = program(&message("crates/shadowfit-render", "test", true)).expect("a test");
+        assert_eq!((test.name.as_str(), test.is_test), ("shadowfit-render/suite", true));
+        assert_eq!(package_path(&test.package), "crates/shadowfit-render");
+        let example = program(&message("", "example", false)).expect("an example");
+        assert_eq!((example.name.as_str(), example.is_test), ("workspace/suite", false));
+        assert_eq!(package_path(&example.package), ".");
+    }
+
+    #[test]
+    fn development_tasks_and_libraries_are_left_out() {
+        assert!(program(&message("crates/xtask", "bin", true)).is_none());
+        assert!(program(&message("tests/determinism", "bin", false)).is_none());
+        assert!(program(&serde_json::json!({ "reason": "build-finished" })).is_none());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_runner_counts_results_and_fails_with_its_tests() {
+        let folder = std::env::temp_dir().join(format!("shadowfit-bundle-{}", std::process::id()));
+        let deps = folder.join("workspace/target/debug/deps");
+        fs::create_dir_all(&deps).unwrap();
+        fs::create_dir_all(folder.join("workspace/target/debug/examples")).unwrap();
+        write_runner(&folder.join("run.sh")).unwrap();
+        let fake = |name: &str, text: &str| write_program(&folder.join("workspace/target/debug").join(name), text);
+        fake("examples/adapters", "echo 'Fake GPU (Vulkan, discrete GPU)'");
+        fake(
+            "deps/good",
+            "echo \"in ${PWD##*/}: $*\"; echo 'test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured'",
+        );
+        fake(
+            "deps/bad",
+            "echo 'test a::b ... FAILED'; echo 'test result: FAILED. 1 passed; 1 failed; 0 ignored'; exit 101",
+        );
+        let run = |list: &str| {
+            fs::write(folder.join(TESTS), list).unwrap();
+            let output = Command::new(folder.join("run.sh")).args(["--adapter", "fake", "some_name"]).output().unwrap();
+            (output.status.code(), String::from_utf8(output.stdout).unwrap())
+        };
+        let (code, text) = run("target/debug/deps/good\t.\tx/good\n");
+        assert_eq!(code, Some(0), "{text}");
+        assert!(text.contains("Fake GPU") && text.contains("3 passed, 0 failed"), "{text}");
+        let log = fs::read_to_string(folder.join("logs/x-good.log")).unwrap();
+        assert!(log.contains("in workspace: some_name") && log.contains("--skip golden"), "{log}");
+        let (code, text) = run("target/debug/deps/good\t.\tx/good\ntarget/debug/deps/bad\t.\tx/bad\n");
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("4 passed, 1 failed") && text.contains("a::b"), "{text}");
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[cfg(target_os = "linux")]
+    fn write_program(file: &Path, text: &str) {
+        use std::os::unix::fs::PermissionsExt;
+        fs::write(file, format!("#!/bin/sh\n{text}\n")).unwrap();
+        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+}
