@@ -9,7 +9,7 @@ use crate::error::RayError;
 /// Threads of a workgroup, as in the WGSL.
 pub(crate) const WORKGROUP_THREADS: u32 = 256;
 /// Storage buffers that the scene binds.
-pub(crate) const BUFFERS: usize = 6;
+pub(crate) const BUFFERS: usize = 5;
 /// Label of the scene's bind group and of its layout.
 pub(crate) const LABEL: &str = "shadowfit rays";
 

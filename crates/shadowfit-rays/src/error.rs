@@ -79,17 +79,17 @@ pub enum RayError {
         /// Bytes that one buffer may have.
         limit: u64,
     },
-    /// The hierarchies are deeper than the shaders' stack.
+    /// The hierarchies need a longer stack than the shaders have.
     #[error(
-        "a ray would go through {top} levels of instances and {mesh} of a mesh, and the shaders can follow {limit} \
-         together: leave out what coincides or has extreme sizes"
+        "a ray would keep {top} nodes of instances and {mesh} of a mesh, and the shaders can keep {limit} together: use \
+         fewer instances or smaller meshes"
     )]
     TooDeep {
-        /// Levels of the hierarchy of instances, at least 1.
+        /// Nodes of the hierarchy of instances.
         top: usize,
-        /// Levels of the deepest mesh.
+        /// Nodes of the mesh that needs most.
         mesh: usize,
-        /// Levels that the shaders can follow.
+        /// Nodes that the shaders can keep.
         limit: usize,
     },
     /// A mesh that is not in the scene.

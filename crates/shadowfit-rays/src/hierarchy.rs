@@ -1,34 +1,48 @@
-//! Hierarchies breadth first: the nodes of a level stand together and children come after their parents, so that a level
-//! can be refitted by one dispatch and all of them by one backward sweep.
+//! Hierarchies of four children a node, breadth first: the nodes of a level stand together and children come after their
+//! parents, so that one dispatch refits a level and one backward sweep refits all levels. The loads of nodes bound the time
+//! of a ray, and four children halve their number.
 
 use glam::Vec3;
 use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
 use obvhs::ploc::PlocBuilder;
 use obvhs::{Boundable, BvhBuildParams};
 
-use crate::records::NodeRecord;
+use crate::records::{NO_ROOT, NodeRecord};
 
-/// Nodes breadth first, the root first of all and the two children of a node side by side.
+/// Children of a node: the places that stand side by side. Places without a child hold [`NodeRecord::NONE`].
+pub(crate) const WIDTH: usize = 4;
+
+/// Primitives that a leaf may have: shaders pack their number into five bits.
+const MAX_LEAF: u32 = 31;
+
+/// Levels of a hierarchy as it was built: each is a dispatch of a refit.
+const MAX_LEVELS: usize = 64;
+
+/// Nodes breadth first, in groups of [`WIDTH`] places. The first group holds the root alone, and each other one the
+/// children of a node.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hierarchy {
     /// Their boxes may still have to be fitted.
     pub(crate) nodes: Vec<NodeRecord>,
     /// First node of each level, the root's first.
     pub(crate) levels: Vec<u32>,
+    /// Nodes that a ray has to come back to, at most, as of [`Self::fit_stack`].
+    pub(crate) stack: usize,
 }
 
 /// Builds a hierarchy over a number of boxes; none without boxes. What `obvhs` makes of boxes of which many coincide may
-/// be deeper than the shaders can follow; then it is built by halves.
-pub(crate) fn build<T: Boundable>(boxes: &[T], params: BvhBuildParams, max_depth: usize) -> (Hierarchy, Vec<u32>) {
+/// have more levels than is useful; then it is built by halves.
+pub(crate) fn build<T: Boundable>(boxes: &[T], params: BvhBuildParams, max_stack: usize) -> (Hierarchy, Vec<u32>) {
     if boxes.is_empty() {
         return Default::default();
     }
     let bvh = build_bvh2(boxes, params);
-    let hierarchy = Hierarchy::new(&bvh);
-    if hierarchy.depth() <= max_depth {
-        return (hierarchy, bvh.primitive_indices);
+    let mut hierarchy = Hierarchy::new(&bvh);
+    if hierarchy.levels.len() > MAX_LEVELS {
+        hierarchy = Hierarchy::halves(boxes.len() as u32, params.max_prims_per_leaf);
     }
-    (Hierarchy::halves(boxes.len() as u32, params.max_prims_per_leaf), bvh.primitive_indices)
+    hierarchy.fit_stack(max_stack);
+    (hierarchy, bvh.primitive_indices)
 }
 
 /// What `obvhs::bvh2::builder::build_bvh2` does, without the clock that it reads: browsers have no such one, and it ends
@@ -50,62 +64,104 @@ fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
     bvh
 }
 
+/// A node of a binary hierarchy.
+#[derive(Clone, Copy)]
+struct Part {
+    /// `first` is that of the binary hierarchy.
+    node: NodeRecord,
+    /// Share of the rays that meet it, in any unit.
+    size: f64,
+    /// Primitives of an inner node that has no nodes below it, from `first` on.
+    range: u32,
+}
+
+impl Part {
+    /// The part that holds a range of primitives: a leaf, unless they are too many for one.
+    fn of_range(node: NodeRecord, [first, end]: [u32; 2], per_leaf: u32) -> Self {
+        let length = end - first;
+        let (count, range) = if length <= per_leaf { (length, 0) } else { (0, length) };
+        Self { node: NodeRecord { count, first, ..node }, size: f64::from(length), range }
+    }
+
+    /// Both halves of its primitives.
+    fn halves(&self, per_leaf: u32) -> [Self; 2] {
+        let [first, end] = [self.node.first, self.node.first + self.range];
+        let middle = first + (end - first) / 2;
+        [[first, middle], [middle, end]].map(|range| Self::of_range(self.node, range, per_leaf))
+    }
+
+    /// Children of its node, largest first: its halves, of which the largest one makes way for its own halves while there
+    /// is room. Rays that are blocked meet large boxes first, since these block more of them.
+    fn children(&self, halves: impl Fn(&Self) -> [Self; 2]) -> [Option<Self>; WIDTH] {
+        let mut children = halves(self).to_vec();
+        while children.len() < WIDTH {
+            let inner = children.iter().enumerate().filter(|(_, child)| child.node.count == 0);
+            let Some((largest, _)) = inner.max_by(|a, b| a.1.size.total_cmp(&b.1.size)) else { break };
+            let pair = halves(&children.swap_remove(largest));
+            children.extend(pair);
+        }
+        children.sort_by(|a, b| b.size.total_cmp(&a.size));
+        let mut children = children.into_iter();
+        [0; WIDTH].map(|_| children.next())
+    }
+}
+
 impl Hierarchy {
-    /// The nodes of a hierarchy, whose leaves stay those of the same primitives.
+    /// The nodes of a hierarchy, whose leaves stay those of the same primitives unless they have too many.
     pub(crate) fn new(bvh: &Bvh2) -> Self {
-        let record = |index: u32| {
+        let part = |index: u32| {
             let node = &bvh.nodes[index as usize];
             let [least, most] = [node.aabb().min, node.aabb().max].map(|corner| Vec3::from(corner).to_array());
-            (NodeRecord { least, count: node.prim_count, most, first: node.first_index }, [index; 2])
+            let record = NodeRecord { least, count: 0, most, first: node.first_index };
+            let size = record.half_area();
+            if node.prim_count > 0 {
+                let range = [node.first_index, node.first_index + node.prim_count];
+                return Part { size, ..Part::of_range(record, range, MAX_LEAF) };
+            }
+            Part { node: record, size, range: 0 }
         };
-        let children = |node: &NodeRecord, _| {
-            let [left, right] = [record(node.first), record(node.first + 1)];
-            [left, right]
+        let halves = |of: &Part| match of.range {
+            0 => [part(of.node.first), part(of.node.first + 1)],
+            _ => of.halves(MAX_LEAF),
         };
-        if bvh.nodes.is_empty() { Self::default() } else { Self::breadth_first(record(0), children) }
+        if bvh.nodes.is_empty() { Self::default() } else { Self::breadth_first(part(0), halves) }
     }
 
     /// The hierarchy that halves a number of primitives, which are in an order that keeps neighbours together.
     fn halves(primitives: u32, per_leaf: u32) -> Self {
-        let node = |range: [u32; 2]| {
-            let count = range[1] - range[0];
-            let count = if count <= per_leaf { count } else { 0 };
-            (NodeRecord { count, first: range[0], ..NodeRecord::default() }, range)
-        };
-        let children = |_: &NodeRecord, [first, end]: [u32; 2]| {
-            let middle = first + (end - first) / 2;
-            [node([first, middle]), node([middle, end])]
-        };
-        Self::breadth_first(node([0, primitives]), children)
+        let root = Part::of_range(NodeRecord::default(), [0, primitives], per_leaf);
+        Self::breadth_first(root, |of| of.halves(per_leaf))
     }
 
-    /// Puts nodes in order, each with what finds its children.
-    fn breadth_first(
-        root: (NodeRecord, [u32; 2]),
-        children: impl Fn(&NodeRecord, [u32; 2]) -> [(NodeRecord, [u32; 2]); 2],
-    ) -> Self {
-        let (mut nodes, mut levels, mut level) = (vec![root.0], Vec::new(), vec![root.1]);
+    /// Orders nodes, each with as many children as it has room for.
+    fn breadth_first(root: Part, halves: impl Fn(&Part) -> [Part; 2]) -> Self {
+        let (mut nodes, mut levels) = (Vec::new(), Vec::new());
+        let mut level = vec![[Some(root), None, None, None]];
         while !level.is_empty() {
-            let first = nodes.len() - level.len();
-            levels.push(first as u32);
+            levels.push(nodes.len() as u32);
+            let end = nodes.len() + level.len() * WIDTH;
             let mut below = Vec::new();
-            for (index, source) in (first..).zip(level) {
-                if nodes[index].count > 0 {
-                    continue;
+            for place in level.into_iter().flatten() {
+                let mut node = place.map_or(NodeRecord::NONE, |part| part.node);
+                if let Some(part) = place.filter(|part| part.node.count == 0) {
+                    node.first = (end + below.len() * WIDTH) as u32;
+                    below.push(part.children(&halves));
                 }
-                let [left, right] = children(&nodes[index], source);
-                nodes[index].first = nodes.len() as u32;
-                nodes.extend([left.0, right.0]);
-                below.extend([left.1, right.1]);
+                nodes.push(node);
             }
             level = below;
         }
-        Self { nodes, levels }
+        Self { nodes, levels, stack: 0 }
     }
 
-    /// Number of levels.
-    pub(crate) fn depth(&self) -> usize {
-        self.levels.len()
+    /// Reorders the children of nodes if a ray that follows the largest one first may take a longer stack than `most`. With
+    /// the child first whose own stack is the shortest, it takes 1.58ⁿ leaves or more to need a stack of n nodes (R. Sethi,
+    /// J. D. Ullman, "The generation of optimal code for arithmetic expressions", 1970, for four operands).
+    pub(crate) fn fit_stack(&mut self, most: usize) {
+        self.stack = stack(&mut self.nodes, |_| ());
+        if self.stack > most {
+            self.stack = stack(&mut self.nodes, |group| group.sort_by_key(|(below, node)| (node.is_none(), *below)));
+        }
     }
 
     /// Fits all boxes, those of leaves to what `leaf` says of their primitives.
@@ -114,7 +170,8 @@ impl Hierarchy {
             let node = self.nodes[index];
             let first = node.first as usize;
             let bounds = match node.count {
-                0 => union(self.nodes[first].bounds(), self.nodes[first + 1].bounds()),
+                _ if node.is_none() => continue,
+                0 => around(&self.nodes[first..first + WIDTH]),
                 count => leaf(first..first + count as usize),
             };
             self.nodes[index].set_bounds(bounds);
@@ -122,12 +179,47 @@ impl Hierarchy {
     }
 }
 
+/// Nodes that a ray has to come back to at one time, at most, when it follows the first child that it meets and keeps the
+/// others. `reorder` may reorder each group of nodes, given with the same number for what is below each node.
+fn stack(nodes: &mut [NodeRecord], reorder: impl Fn(&mut [(usize, NodeRecord); WIDTH])) -> usize {
+    let mut stacks = vec![0; nodes.len()];
+    for first in (0..nodes.len()).step_by(WIDTH).rev() {
+        let mut group = [(0, NodeRecord::NONE); WIDTH];
+        for (place, node) in group.iter_mut().zip(&nodes[first..]) {
+            let below = if node.count > 0 || node.is_none() { 0 } else { node.first as usize };
+            let children = nodes[below..][..WIDTH].iter().filter(|child| below > 0 && !child.is_none()).count();
+            let stack = stacks[below..below + children].iter().rev().enumerate().map(|(later, stack)| later + stack);
+            *place = (stack.max().unwrap_or_default(), *node);
+        }
+        reorder(&mut group);
+        for (index, (stack, node)) in (first..).zip(group) {
+            (stacks[index], nodes[index]) = (stack, node);
+        }
+    }
+    stacks.first().copied().unwrap_or_default()
+}
+
 /// The box around two boxes.
 pub(crate) fn union(a: [Vec3; 2], b: [Vec3; 2]) -> [Vec3; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
+/// The box around the children in a group of nodes.
+pub(crate) fn around(group: &[NodeRecord]) -> [Vec3; 2] {
+    let children = group.iter().filter(|node| !node.is_none());
+    let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    children.fold(empty, |bounds, child| union(bounds, child.bounds()))
+}
+
 impl NodeRecord {
+    /// A place without a node.
+    pub(crate) const NONE: Self = Self { least: [0.0; 3], count: 0, most: [0.0; 3], first: NO_ROOT };
+
+    /// Whether this is a place without a node.
+    pub(crate) fn is_none(&self) -> bool {
+        self.first == NO_ROOT
+    }
+
     /// Least and greatest corner of its box.
     pub(crate) fn bounds(&self) -> [Vec3; 2] {
         [self.least.into(), self.most.into()]
@@ -150,25 +242,58 @@ mod tests {
     use super::*;
     use obvhs::aabb::Aabb;
 
+    /// Boxes along a diagonal.
+    fn boxes(place: impl Fn(f32) -> f32) -> Vec<Aabb> {
+        (0..200u8).map(|number| Aabb::from_point((Vec3::ONE * place(number.into())).into())).collect()
+    }
+
+    const PARAMS: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 2, ..BvhBuildParams::medium_build() };
+
     #[test]
-    fn a_hierarchy_that_would_be_too_deep_is_built_by_halves_and_has_every_box_once() {
-        let boxes: Vec<_> = (0..100u8).map(|x| Aabb::from_point(Vec3::new(x.into(), 0.0, 0.0).into())).collect();
-        let params = BvhBuildParams { max_prims_per_leaf: 2, ..BvhBuildParams::medium_build() };
-        for (max_depth, is_halved) in [(64, false), (1, true)] {
-            let (mut hierarchy, order) = build(&boxes, params, max_depth);
-            assert!(!is_halved || hierarchy.depth() == 7, "64 leaves of at most two boxes: {}", hierarchy.depth());
+    fn hierarchies_have_every_box_once_in_few_levels_and_children_after_their_parents() {
+        for apart in [1.0, 0.0] {
+            let (mut hierarchy, order) = build(&boxes(|number| number * apart), PARAMS, 40);
+            assert!(hierarchy.levels.len() <= MAX_LEVELS, "{apart}: {}", hierarchy.levels.len());
             let nodes = hierarchy.nodes.clone();
             let leaves = nodes.iter().filter(|node| node.count > 0);
             let mut met: Vec<_> = leaves.flat_map(|leaf| leaf.first..leaf.first + leaf.count).collect();
             met.sort_unstable();
-            assert!(met.into_iter().eq(0..100));
+            assert!(met.into_iter().eq(0..200));
             hierarchy.fit(|slots| {
-                let points = order[slots].iter().map(|index| Vec3::X * *index as f32);
+                let points = order[slots].iter().map(|index| Vec3::ONE * *index as f32);
                 points.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |bounds, at| union(bounds, [at; 2]))
             });
-            assert_eq!(hierarchy.nodes[0].bounds(), [Vec3::ZERO, Vec3::X * 99.0]);
+            assert_eq!(hierarchy.nodes[0].bounds(), [Vec3::ZERO, Vec3::ONE * 199.0]);
             let is_after = |(index, node): (usize, &NodeRecord)| node.count > 0 || node.first as usize > index;
             assert!(hierarchy.nodes.iter().enumerate().all(is_after));
         }
+    }
+
+    /// The longest stack of a ray that meets all boxes, and the boxes that it comes to.
+    fn walk(hierarchy: &Hierarchy) -> (usize, u32) {
+        let (mut longest, mut met, mut waiting) = (0, 0, vec![0]);
+        while let Some(index) = waiting.pop() {
+            let node = hierarchy.nodes[index];
+            met += node.count;
+            if node.count == 0 && !node.is_none() {
+                let first = node.first as usize;
+                waiting.extend((first..first + WIDTH).rev().filter(|child| !hierarchy.nodes[*child].is_none()));
+                longest = longest.max(waiting.len() - 1);
+            }
+        }
+        (longest, met)
+    }
+
+    #[test]
+    fn the_stack_of_a_ray_is_known_and_another_order_of_children_shortens_it() {
+        // Each one farther from the others than these are from each other, so that nodes have nodes on one side alone.
+        let lopsided = boxes(|number| 1.1_f32.powf(number));
+        let [largest_first, shortest_first] = [200, 0].map(|most| build(&lopsided, PARAMS, most).0);
+        for hierarchy in [&largest_first, &shortest_first] {
+            assert_eq!(walk(hierarchy), (hierarchy.stack, 200));
+        }
+        assert!(shortest_first.stack < largest_first.stack, "{} {}", shortest_first.stack, largest_first.stack);
+        // A hundred leaves or more: 1.58 to the tenth.
+        assert!(shortest_first.stack <= 11, "{}", shortest_first.stack);
     }
 }

@@ -2,7 +2,7 @@
 //! between a point and the sun.
 //!
 //! [`RayMesh`] is the hierarchy of one mesh, built on the CPU; [`RayScene`] holds meshes, and their instances of the
-//! frame, in six storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
+//! frame, in five storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
 //! has. Positions are in metres, in `f32` relative to an origin that the engine chooses.
 
 mod at_once;
@@ -31,6 +31,6 @@ pub use placed::{ImageId, MeshId};
 pub use scene::{RayScene, rays_layout};
 pub use wgsl::{RayWgslOptions, rays_wgsl, refit_wgsl};
 
-/// Levels that the shaders' stack can follow: those of the hierarchy of instances and of a mesh together. A balanced
-/// hierarchy of 2^32 triangles has 33.
-pub const MAX_DEPTH: usize = 64;
+/// Nodes that the shaders' stack holds: those of the hierarchy of instances and of a mesh together. A hierarchy needs at most
+/// 1.5 times the binary logarithm of its leaves, whatever its shape.
+pub const STACK: usize = 96;

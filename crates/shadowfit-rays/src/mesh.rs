@@ -33,16 +33,18 @@ pub struct RayMemory {
     pub gpu: u64,
 }
 
-/// Levels up to which a mesh's hierarchy is taken as it was built: what remains of [`MAX_DEPTH`](crate::MAX_DEPTH) holds
-/// millions of instances.
-const MESH_DEPTH: usize = 40;
+/// Stack up to which the children of a mesh's nodes stay in the best order. What remains of [`STACK`](crate::STACK) suffices
+/// for 10¹¹ instances.
+const MESH_STACK: usize = 40;
+/// Leaves of up to four triangles: with eight a ray takes a tenth longer, and with two nodes take twice the memory.
+const BUILD: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() };
 /// Nodes for each triangle while the hierarchy is built: two for the tree of single triangles, and one in each of the two
 /// lists between which the builder moves what is not joined yet.
 const NODES_BUILDING: u64 = 4;
 /// Bytes for each triangle of what the builder sorts: a code along a space-filling curve, with its index.
 const CODE: u64 = size_of::<[u128; 2]>() as u64;
-/// Nodes for every three triangles afterwards: leaves hold about three triangles, and there are twice as many nodes as
-/// leaves. Measured: 1.5 to 2.3, more where fewer triangles share edges.
+/// Nodes for every three triangles afterwards, places without a node included: leaves hold two to three triangles.
+/// Measured: 1.9 to 2.3, more where fewer triangles share edges.
 const NODES_KEPT_FOR_3: u64 = 2;
 
 impl RayMesh {
@@ -74,7 +76,7 @@ impl RayMesh {
         if corners.len() > u32::MAX as usize / 3 {
             return Err(RayError::Triangles(corners.len()));
         }
-        let (hierarchy, order) = hierarchy::build(&corners, BvhBuildParams::medium_build(), MESH_DEPTH);
+        let (hierarchy, order) = hierarchy::build(&corners, BUILD, MESH_STACK);
         Ok(Self::of(hierarchy, &order, |triangle| corners[triangle as usize].0))
     }
 
@@ -82,7 +84,9 @@ impl RayMesh {
     /// the corners, which may therefore be others than those that it was built for. The hierarchy must not have split
     /// triangles.
     pub fn from_bvh(bvh: &Bvh2, corners: impl Fn(u32) -> [Vec3; 3]) -> Self {
-        Self::of(Hierarchy::new(bvh), &bvh.primitive_indices, |triangle| Corners::new(corners(triangle)).0)
+        let mut hierarchy = Hierarchy::new(bvh);
+        hierarchy.fit_stack(MESH_STACK);
+        Self::of(hierarchy, &bvh.primitive_indices, |triangle| Corners::new(corners(triangle)).0)
     }
 
     fn of(mut hierarchy: Hierarchy, order: &[u32], corners: impl Fn(u32) -> [Vec3; 3]) -> Self {

@@ -5,8 +5,9 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::deform::Deforming;
+use crate::hierarchy::WIDTH;
 use crate::mesh::RayMesh;
-use crate::records::NO_ROOT;
+use crate::records::{NO_ROOT, packed};
 
 /// A mesh of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,17 +35,22 @@ pub(crate) struct Placed {
     pub(crate) nodes: Range<u32>,
     pub(crate) triangles: Range<u32>,
     pub(crate) cut_outs: Range<u32>,
-    /// Levels of its hierarchy.
-    pub(crate) depth: usize,
+    /// Stack that a ray through it needs.
+    pub(crate) stack: usize,
     /// The box around it, in its own space.
     pub(crate) bounds: [Vec3; 2],
     pub(crate) deforming: Option<Deforming>,
 }
 
 impl Placed {
-    /// Its first node.
+    /// Its root, packed.
     pub(crate) fn root(&self) -> u32 {
-        if self.nodes.is_empty() { NO_ROOT } else { self.nodes.start }
+        match self.nodes.len() {
+            0 => NO_ROOT,
+            // A leaf.
+            WIDTH => packed(self.triangles.len() as u32, self.triangles.start),
+            _ => packed(0, self.nodes.start + WIDTH as u32),
+        }
     }
 
     /// Whether a mesh takes as much room.
@@ -56,7 +62,7 @@ impl Placed {
     /// The same room, of a mesh that keeps its shape.
     pub(crate) fn ranges(&self) -> Self {
         let [nodes, triangles, cut_outs] = [&self.nodes, &self.triangles, &self.cut_outs].map(Clone::clone);
-        Self { nodes, triangles, cut_outs, depth: self.depth, bounds: self.bounds, deforming: None }
+        Self { nodes, triangles, cut_outs, stack: self.stack, bounds: self.bounds, deforming: None }
     }
 }
 

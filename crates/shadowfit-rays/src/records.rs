@@ -1,8 +1,13 @@
 //! The records that the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's
 //! reflection.
 
-/// Stands for no mesh where a root is expected.
+/// Stands for no node.
 pub const NO_ROOT: u32 = u32::MAX;
+
+/// A node in a word, as shaders have it: a buffer of 4 GiB holds fewer than 2^27 nodes, triangles or instances.
+pub(crate) fn packed(count: u32, first: u32) -> u32 {
+    (count << 27) | first
+}
 
 /// A node of a hierarchy: of a mesh, in its own space, or of the instances.
 #[repr(C)]
@@ -14,7 +19,7 @@ pub struct NodeRecord {
     pub count: u32,
     /// Greatest corner of its box, in metres.
     pub most: [f32; 3],
-    /// First triangle of a leaf, or its instance; first of the two children of an inner node.
+    /// First triangle of a leaf, or its instance; first of the children of an inner node; [`NO_ROOT`] for no node.
     pub first: u32,
 }
 
@@ -46,7 +51,7 @@ pub struct InstanceRecord {
     pub row_y: [f32; 4],
     /// Third row.
     pub row_z: [f32; 4],
-    /// First node of its mesh; [`NO_ROOT`] where rays pass it by.
+    /// Root of its mesh, as a shader packs nodes: `count << 27 | first`; [`NO_ROOT`] where rays pass it by.
     pub root: u32,
     /// [`Sides`](crate::Sides) as a number.
     pub sides: u32,

@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::MAX_DEPTH;
+use crate::STACK;
 use crate::cut_out::AlphaImage;
 use crate::deform::{Deforming, RefitPass, VertexBuffer};
 use crate::device::{BUFFERS, caught, check, group, layout, storage};
 use crate::error::RayError;
+use crate::hierarchy::WIDTH;
 use crate::instance::RayInstance;
 use crate::mesh::RayMesh;
 use crate::placed::{ImageId, MeshId, Meshes, Placed};
@@ -29,7 +30,8 @@ pub struct RayScene {
     group: wgpu::BindGroup,
     /// What the group binds, in the order of its bindings.
     bound: [wgpu::Buffer; BUFFERS],
-    top_nodes: Records,
+    /// Place of the nodes of instances, but for the first ones.
+    top_nodes: Range<u32>,
     instance_records: Records,
     nodes: Pool,
     triangles: Pool,
@@ -43,8 +45,8 @@ pub struct RayScene {
     origin: DVec3,
     instances: Vec<RayInstance>,
     top: TopLevel,
-    /// Levels of the deepest mesh of the instances.
-    mesh_depth: usize,
+    /// Longest stack of the meshes of the instances.
+    mesh_stack: usize,
     /// Those that differ from the last frame's; kept so that frames do not allocate.
     changed: Vec<u32>,
     uploaded: u64,
@@ -59,14 +61,16 @@ impl RayScene {
     /// [`RayError::Device`] if it is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, RayError> {
         check(&device.limits())?;
-        let top_nodes = Records::new::<NodeRecord>(device, queue, "nodes of instances")?;
         let instance_records = Records::new::<InstanceRecord>(device, queue, "instances")?;
-        let nodes = Pool::new::<NodeRecord>(device, queue, "nodes of meshes")?;
+        let mut nodes = Pool::new::<NodeRecord>(device, queue, "nodes")?;
+        // Shaders find the root of the instances at the beginning.
+        nodes.take(WIDTH)?;
+        let top_nodes = nodes.take(TopLevel::room(1))?;
         let triangles = Pool::new::<TriangleRecord>(device, queue, "triangles")?;
         let cut_outs = Pool::new::<CutOutRecord>(device, queue, "cut-outs")?;
         let images = Pool::new::<u32>(device, queue, "cut-out images")?;
         let pools = [&nodes, &triangles, &cut_outs, &images].map(|pool| pool.records.buffer());
-        let bound = [top_nodes.buffer(), instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
+        let bound = [pools[0], instance_records.buffer(), pools[1], pools[2], pools[3]];
         let bound = bound.map(Clone::clone);
         let (layout, group) = caught(device, || {
             let layout = rays_layout(device);
@@ -79,6 +83,7 @@ impl RayScene {
             layout,
             group,
             bound,
+            top: TopLevel::new(&[], 0, top_nodes.start)?,
             top_nodes,
             instance_records,
             nodes,
@@ -91,8 +96,7 @@ impl RayScene {
             refit: None,
             origin: DVec3::ZERO,
             instances: Vec::new(),
-            top: TopLevel::new(&[], 0)?,
-            mesh_depth: 0,
+            mesh_stack: 0,
             changed: Vec::new(),
             uploaded: 0,
         };
@@ -144,14 +148,14 @@ impl RayScene {
     /// [`RayError::NoMesh`], and those of [`Self::add_mesh`]. The mesh has its old shape then.
     pub fn update_mesh(&mut self, id: MeshId, mesh: &RayMesh) -> Result<(), RayError> {
         self.uploaded = 0;
-        let depth = mesh.hierarchy.depth();
-        if self.top.depth() + depth > MAX_DEPTH {
-            return Err(RayError::TooDeep { top: self.top.depth(), mesh: depth, limit: MAX_DEPTH });
+        let stack = mesh.hierarchy.stack;
+        if self.top.stack() + stack > STACK {
+            return Err(RayError::TooDeep { top: self.top.stack(), mesh: stack, limit: STACK });
         }
         let before = self.meshes.get(id).ok_or(RayError::NoMesh)?;
         let bounds = mesh.bounds().unwrap_or_default();
         let placed = if before.has_room_for(mesh) {
-            let placed = Placed { depth, bounds, deforming: None, ..before.ranges() };
+            let placed = Placed { stack, bounds, deforming: None, ..before.ranges() };
             self.write(mesh, &placed);
             placed
         } else {
@@ -165,11 +169,11 @@ impl RayScene {
         if let Some(stored) = self.meshes.get_mut(id) {
             *stored = placed;
         }
-        self.mesh_depth = self.mesh_depth.max(depth);
+        self.mesh_stack = self.mesh_stack.max(stack);
         for (index, instance) in self.instances.iter().enumerate().filter(|(_, instance)| instance.mesh == id) {
             self.top.set(index, instance.placed(root, bounds));
         }
-        self.top.refit(self.mesh_depth);
+        self.top.refit(self.mesh_stack);
         self.upload();
         Ok(())
     }
@@ -266,7 +270,7 @@ impl RayScene {
         refit.record(&self.device, &self.queue, encoder, deforming, (scene, vertices))
     }
 
-    /// Layout of the bind group: six storage buffers that compute and fragment shaders read.
+    /// Layout of the bind group: five storage buffers that compute and fragment shaders read.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
@@ -317,17 +321,17 @@ impl RayScene {
     /// of these can be kept: not where rays could go deeper than the stack.
     fn find_changed(&mut self, instances: &[RayInstance]) -> Result<bool, RayError> {
         self.changed.clear();
-        let mut mesh_depth = self.mesh_depth;
+        let mut mesh_stack = self.mesh_stack;
         for (index, (instance, before)) in instances.iter().zip(&self.instances).enumerate() {
             if instance != before {
                 let mesh = self.meshes.get(instance.mesh).ok_or(RayError::NoMeshOfInstance(index))?;
-                mesh_depth = mesh_depth.max(mesh.depth);
+                mesh_stack = mesh_stack.max(mesh.stack);
                 self.changed.push(index as u32);
             }
         }
-        let fits = self.top.depth() + mesh_depth <= MAX_DEPTH;
+        let fits = self.top.stack() + mesh_stack <= STACK;
         if fits {
-            self.mesh_depth = mesh_depth;
+            self.mesh_stack = mesh_stack;
         }
         Ok(fits)
     }
@@ -341,28 +345,36 @@ impl RayScene {
             self.top.set(index, placed);
             self.instances[index] = *instance;
         }
-        self.top.refit(self.mesh_depth);
+        self.top.refit(self.mesh_stack);
         self.upload();
     }
 
     /// Sets other instances.
     fn replace_instances(&mut self, instances: &[RayInstance]) -> Result<(), RayError> {
-        let mut mesh_depth = 0;
+        let mut mesh_stack = 0;
         let placed: Result<Vec<Instance>, RayError> = instances
             .iter()
             .enumerate()
             .map(|(index, instance)| {
                 let mesh = self.meshes.get(instance.mesh).ok_or(RayError::NoMeshOfInstance(index))?;
-                mesh_depth = mesh_depth.max(mesh.depth);
+                mesh_stack = mesh_stack.max(mesh.stack);
                 Ok(instance.placed(mesh.root(), mesh.bounds))
             })
             .collect();
-        let top = TopLevel::new(&placed?, mesh_depth)?;
-        let [nodes, records] = top.counts();
-        let reserved = self.top_nodes.reserve(nodes).and_then(|()| self.instance_records.reserve(records));
-        self.rebind()?;
-        reserved?;
-        (self.top, self.mesh_depth) = (top, mesh_depth);
+        let placed = placed?;
+        let top_nodes = self.nodes.take(TopLevel::room(placed.len()))?;
+        let made = TopLevel::new(&placed, mesh_stack, top_nodes.start)
+            .and_then(|top| self.instance_records.reserve(top.records()).map(|()| top));
+        let bound = self.rebind();
+        match bound.and(made) {
+            Ok(top) => self.top = top,
+            Err(error) => {
+                self.nodes.give(top_nodes);
+                return Err(error);
+            }
+        }
+        self.mesh_stack = mesh_stack;
+        self.nodes.give(std::mem::replace(&mut self.top_nodes, top_nodes));
         self.instances.clear();
         self.instances.extend_from_slice(instances);
         self.upload();
@@ -370,20 +382,20 @@ impl RayScene {
     }
 
     fn upload(&mut self) {
-        self.uploaded += self.top.upload(&self.top_nodes, &self.instance_records);
+        self.uploaded += self.top.upload(&self.nodes.records, &self.instance_records);
     }
 
     /// Finds room for a mesh, and uploads it.
     fn place(&mut self, mesh: &RayMesh) -> Result<Placed, RayError> {
-        let depth = mesh.hierarchy.depth();
-        if depth >= MAX_DEPTH {
-            return Err(RayError::TooDeep { top: 1, mesh: depth, limit: MAX_DEPTH });
+        let stack = mesh.hierarchy.stack;
+        if stack > STACK {
+            return Err(RayError::TooDeep { top: 0, mesh: stack, limit: STACK });
         }
         let mut placed = Placed {
             nodes: 0..0,
             triangles: 0..0,
             cut_outs: 0..0,
-            depth,
+            stack,
             bounds: mesh.bounds().unwrap_or_default(),
             deforming: None,
         };
@@ -402,7 +414,7 @@ impl RayScene {
     fn write(&self, mesh: &RayMesh, placed: &Placed) {
         let nodes = mesh.hierarchy.nodes.iter().map(|node| {
             let base = if node.count > 0 { placed.triangles.start } else { placed.nodes.start };
-            NodeRecord { first: base + node.first, ..*node }
+            if node.is_none() { *node } else { NodeRecord { first: base + node.first, ..*node } }
         });
         let triangles = mesh.triangles.iter().map(|triangle| {
             let base = if triangle.cut_out > 0 { placed.cut_outs.start } else { 0 };
@@ -431,7 +443,7 @@ impl RayScene {
     /// Makes the bind group again if a buffer is another one.
     fn rebind(&mut self) -> Result<(), RayError> {
         let pools = [&self.nodes, &self.triangles, &self.cut_outs, &self.images].map(|pool| pool.records.buffer());
-        let now = [self.top_nodes.buffer(), self.instance_records.buffer(), pools[0], pools[1], pools[2], pools[3]];
+        let now = [pools[0], self.instance_records.buffer(), pools[1], pools[2], pools[3]];
         if self.bound.each_ref() != now {
             let bound = now.map(Clone::clone);
             self.group = caught(&self.device, || bind(&self.device, &self.layout, &bound))?;

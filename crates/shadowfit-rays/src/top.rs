@@ -7,9 +7,9 @@ use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 
-use crate::MAX_DEPTH;
+use crate::STACK;
 use crate::error::RayError;
-use crate::hierarchy::{self, union};
+use crate::hierarchy::{self, WIDTH, around};
 use crate::pool::Records;
 use crate::records::{InstanceRecord, NO_ROOT, NodeRecord};
 
@@ -41,9 +41,12 @@ const HIDDEN: InstanceRecord = InstanceRecord {
 /// The instances' records and their hierarchy, as they are on the GPU after [`Self::upload`].
 #[derive(Debug)]
 pub(crate) struct TopLevel {
+    /// The first group, with the root, is the first one of the buffer of nodes.
     nodes: Vec<NodeRecord>,
+    /// Place of the second group in the buffer of nodes.
+    base: u32,
     parents: Vec<u32>,
-    depth: usize,
+    stack: usize,
     /// Leaf of each instance.
     leaves: Vec<u32>,
     records: Vec<InstanceRecord>,
@@ -56,9 +59,16 @@ pub(crate) struct TopLevel {
 }
 
 impl TopLevel {
-    /// Builds the hierarchy of instances whose deepest mesh has a number of levels. Without instances it has one that is
-    /// never met.
-    pub(crate) fn new(instances: &[Instance], mesh_depth: usize) -> Result<Self, RayError> {
+    /// Places that the nodes of some instances take beside the first group, however often they are built again. A node
+    /// with fewer than four children has leaves alone, two or more, and is the child of one with four, so that there are
+    /// at most two such nodes for every three instances.
+    pub(crate) fn room(instances: usize) -> usize {
+        (instances * 2 / 3 + 1) * WIDTH
+    }
+
+    /// Builds the hierarchy of instances whose meshes need a stack of up to a length, for nodes from `base` on. Without
+    /// instances it has one that is never met.
+    pub(crate) fn new(instances: &[Instance], mesh_stack: usize, base: u32) -> Result<Self, RayError> {
         let somewhere = instances.iter().flatten().next().map_or(Vec3::ZERO, |(_, bounds)| bounds[0]);
         let bounds = |instance: &Instance| instance.map_or([somewhere; 2], |(_, bounds)| bounds);
         let record = |instance: &Instance| instance.map_or(HIDDEN, |(record, _)| record);
@@ -67,21 +77,26 @@ impl TopLevel {
         if bounds.is_empty() {
             (bounds, records) = (vec![[somewhere; 2]], vec![HIDDEN]);
         }
-        Self::build(&bounds, records, mesh_depth)
+        Self::build(&bounds, records, mesh_stack, base)
     }
 
     /// Builds the same instances' hierarchy again, where they are now.
-    fn rebuilt(&self, mesh_depth: usize) -> Result<Self, RayError> {
+    fn rebuilt(&self, mesh_stack: usize) -> Result<Self, RayError> {
         let bounds: Vec<_> = self.leaves.iter().map(|leaf| self.nodes[*leaf as usize].bounds()).collect();
-        Self::build(&bounds, self.records.clone(), mesh_depth)
+        Self::build(&bounds, self.records.clone(), mesh_stack, self.base)
     }
 
-    fn build(bounds: &[[Vec3; 2]], records: Vec<InstanceRecord>, mesh_depth: usize) -> Result<Self, RayError> {
+    fn build(
+        bounds: &[[Vec3; 2]],
+        records: Vec<InstanceRecord>,
+        mesh_stack: usize,
+        base: u32,
+    ) -> Result<Self, RayError> {
         let boxes: Vec<Aabb> = bounds.iter().map(|[least, most]| Aabb::new((*least).into(), (*most).into())).collect();
-        let (mut made, order) = hierarchy::build(&boxes, BUILD, MAX_DEPTH.saturating_sub(mesh_depth));
-        let depth = made.depth();
-        if depth + mesh_depth > MAX_DEPTH {
-            return Err(RayError::TooDeep { top: depth, mesh: mesh_depth, limit: MAX_DEPTH });
+        let (mut made, order) = hierarchy::build(&boxes, BUILD, STACK.saturating_sub(mesh_stack));
+        let stack = made.stack;
+        if stack + mesh_stack > STACK {
+            return Err(RayError::TooDeep { top: stack, mesh: mesh_stack, limit: STACK });
         }
         made.fit(|slots| bounds[order[slots.start] as usize]);
         let (mut parents, mut leaves) = (vec![0; made.nodes.len()], vec![0; records.len()]);
@@ -89,27 +104,38 @@ impl TopLevel {
             if node.count > 0 {
                 node.first = order[node.first as usize];
                 leaves[node.first as usize] = index;
-            } else {
-                parents[node.first as usize..][..2].fill(index);
+            } else if !node.is_none() {
+                parents[node.first as usize..][..WIDTH].fill(index);
+                node.first = base + node.first - WIDTH as u32;
             }
         }
         let (changed_nodes, changed_records) = (vec![true; made.nodes.len()], vec![true; records.len()]);
         let area = made.nodes.iter().map(NodeRecord::half_area).sum();
         let nodes = made.nodes;
-        let mut top =
-            Self { nodes, parents, depth, leaves, records, area, built_cost: 0.0, changed_nodes, changed_records };
+        let mut top = Self {
+            nodes,
+            base,
+            parents,
+            stack,
+            leaves,
+            records,
+            area,
+            built_cost: 0.0,
+            changed_nodes,
+            changed_records,
+        };
         top.built_cost = top.cost();
         Ok(top)
     }
 
-    /// Number of levels.
-    pub(crate) fn depth(&self) -> usize {
-        self.depth
+    /// Stack that a ray needs, beside that of a mesh.
+    pub(crate) fn stack(&self) -> usize {
+        self.stack
     }
 
-    /// Nodes and records, for the sizes of their buffers.
-    pub(crate) fn counts(&self) -> [u64; 2] {
-        [self.nodes.len() as u64, self.records.len() as u64]
+    /// Number of records.
+    pub(crate) fn records(&self) -> u64 {
+        self.records.len() as u64
     }
 
     /// The box around all instances that can be met; around where they were for some frames after one cannot be met any
@@ -131,19 +157,20 @@ impl TopLevel {
     }
 
     /// Fits the boxes above those that have changed, and builds the hierarchy again where a ray through the fitted one
-    /// would cost much more than when it was built. `mesh_depth` is that of the deepest mesh.
-    pub(crate) fn refit(&mut self, mesh_depth: usize) {
+    /// would cost much more than when it was built. `mesh_stack` is the longest one of their meshes.
+    pub(crate) fn refit(&mut self, mesh_stack: usize) {
         // Children come after their parents.
         for index in (0..self.nodes.len()).rev() {
-            if self.changed_nodes[index] && self.nodes[index].count == 0 {
-                let first = self.nodes[index].first as usize;
+            let node = &self.nodes[index];
+            if self.changed_nodes[index] && node.count == 0 && !node.is_none() {
+                let bounds = around(&self.nodes[(node.first - self.base) as usize + WIDTH..][..WIDTH]);
                 self.changed_nodes[index] = false;
-                self.set_bounds(index, union(self.nodes[first].bounds(), self.nodes[first + 1].bounds()));
+                self.set_bounds(index, bounds);
             }
         }
         // A fitted hierarchy is slow and right; the better one may be too deep.
         if self.cost() > self.built_cost * MAX_COST_GROWTH
-            && let Ok(better) = self.rebuilt(mesh_depth)
+            && let Ok(better) = self.rebuilt(mesh_stack)
         {
             *self = better;
         }
@@ -170,13 +197,16 @@ impl TopLevel {
 
     /// Uploads what has changed, and returns its bytes.
     pub(crate) fn upload(&mut self, nodes: &Records, instances: &Records) -> u64 {
-        upload(nodes, &self.nodes, &mut self.changed_nodes)
-            + upload(instances, &self.records, &mut self.changed_records)
+        let (root, others) = self.nodes.split_at(WIDTH);
+        let (changed_root, changed) = self.changed_nodes.split_at_mut(WIDTH);
+        upload((nodes, 0), root, changed_root)
+            + upload((nodes, self.base), others, changed)
+            + upload((instances, 0), &self.records, &mut self.changed_records)
     }
 }
 
-/// Uploads the changed ones of records, in runs.
-fn upload<T: bytemuck::Pod>(target: &Records, records: &[T], changed: &mut [bool]) -> u64 {
+/// Uploads the changed ones of records, in runs, to a place in a buffer.
+fn upload<T: bytemuck::Pod>((target, base): (&Records, u32), records: &[T], changed: &mut [bool]) -> u64 {
     let mut bytes = 0;
     let mut from = 0;
     while let Some(skipped) = changed[from..].iter().position(|changed| *changed) {
@@ -185,7 +215,7 @@ fn upload<T: bytemuck::Pod>(target: &Records, records: &[T], changed: &mut [bool
         while let Some(last) = changed[end..].iter().take(GAP).rposition(|changed| *changed) {
             end += last + 1;
         }
-        target.write(first as u32, &records[first..end]);
+        target.write(base + first as u32, &records[first..end]);
         bytes += size_of_val(&records[first..end]) as u64;
         changed[first..end].fill(false);
         from = end;

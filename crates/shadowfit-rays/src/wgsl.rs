@@ -1,7 +1,7 @@
 //! The WGSL of rays, put together from the pieces in `shaders/`. Every name starts with a prefix, so that the text can be
 //! pasted into any shader.
 
-use crate::MAX_DEPTH;
+use crate::STACK;
 use crate::error::RayError;
 
 /// How the WGSL fits into an engine's shader.
@@ -60,14 +60,14 @@ impl<'a> RayWgslOptions<'a> {
 /// | `shadowfit_rays_blocked_above(origin, direction, normal, reach) -> bool` | the same for a ray from a large surface, whose points are rounded by more than the ray starts above it: triangles in the plane of the unit `normal` count from a distance of `reach` metres on |
 /// | `shadowfit_rays_surface(origin, direction, distance) -> shadowfit_RaySurface` | the first triangle on the ray within a `distance` in metres: where (`distance`), its unit normal against the ray (`normal`), and which (`slot` and `instance`; `SHADOWFIT_RAYS_NONE` if there is none). Both sides of triangles count |
 ///
-/// `shadowfit_rays_triangles[slot]` is the triangle of a hit's slot, with corners `a`, `b` and `c` in the space of its mesh.
+/// `shadowfit_rays_triangle(slot)` is the triangle of a hit's slot, with corners `a`, `b` and `c` in the space of its mesh.
 ///
-/// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 5 of the group, which is
+/// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 4 of the group, which is
 /// [`RayScene::group`](crate::RayScene::group); no derivatives.
 pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
     let rays = include_str!("shaders/rays.wgsl")
         .replace("GROUP", &options.group.to_string())
-        .replace("MAX_DEPTH", &MAX_DEPTH.to_string());
+        .replace("NODES_ON_STACK", &STACK.to_string());
     let counts = options.counts.unwrap_or(include_str!("shaders/counts.wgsl"));
     let text = [include_str!("shaders/types.wgsl"), &rays, include_str!("shaders/surface.wgsl"), counts].concat();
     if options.prefix == RayWgslOptions::PREFIX {

@@ -49,9 +49,11 @@ struct shadowfit_rays_Ray {
     inverses: vec3<f32>,
 }
 
-// Depths are compared with this before anything is uploaded.
-const SHADOWFIT_RAYS_STACK: u32 = MAX_DEPTHu;
-const SHADOWFIT_RAYS_NONE: u32 = 0xffffffffu;
+// What hierarchies need is compared with this before anything is uploaded.
+const SHADOWFIT_RAYS_STACK: u32 = NODES_ON_STACKu;
+// A node in a word has the number of its triangles, or of its instances, in the bits above these.
+const SHADOWFIT_RAYS_FIRST: u32 = 0x7ffffffu;
+const SHADOWFIT_RAYS_COUNT_AT: u32 = 27u;
 // Greater than any distance that matters, in metres.
 const SHADOWFIT_RAYS_FAR: f32 = 3.0e38;
 // Share of the longest component below which a direction is parallel to a slab: its inverse times a kilometre, in
@@ -60,13 +62,30 @@ const SHADOWFIT_RAYS_PARALLEL: f32 = 1e-29;
 // A box ends by this factor later than f32 finds: four roundings (T. Ize, "Robust BVH Ray Traversal", 2013).
 const SHADOWFIT_RAYS_LATER: f32 = 1.0000005;
 
-@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_top: array<shadowfit_rays_Node>;
+// The nodes of the instances, of which the root comes first, and of the meshes. Each is a shadowfit_rays_Node by its bytes:
+// NVIDIA's driver does not join the loads of a structure's members, and rays take up to a sixth longer with them.
+@group(GROUP) @binding(0) var<storage, read> shadowfit_rays_nodes: array<array<vec4<u32>, 2>>;
 @group(GROUP) @binding(1) var<storage, read> shadowfit_rays_instances: array<shadowfit_rays_Instance>;
-@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_nodes: array<shadowfit_rays_Node>;
-@group(GROUP) @binding(3) var<storage, read> shadowfit_rays_triangles: array<shadowfit_rays_Triangle>;
-@group(GROUP) @binding(4) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
+// Each is a shadowfit_rays_Triangle.
+@group(GROUP) @binding(2) var<storage, read> shadowfit_rays_triangles: array<array<vec4<u32>, 3>>;
+@group(GROUP) @binding(3) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
 // Of each image its width, its height, and four texels a word, the first one lowest.
-@group(GROUP) @binding(5) var<storage, read> shadowfit_rays_images: array<u32>;
+@group(GROUP) @binding(4) var<storage, read> shadowfit_rays_images: array<u32>;
+
+fn shadowfit_rays_node(index: u32) -> shadowfit_rays_Node {
+    let least = shadowfit_rays_nodes[index][0];
+    let most = shadowfit_rays_nodes[index][1];
+    return shadowfit_rays_Node(bitcast<vec3<f32>>(least.xyz), least.w, bitcast<vec3<f32>>(most.xyz), most.w);
+}
+
+// The triangle at a place among those of the scene.
+fn shadowfit_rays_triangle(slot: u32) -> shadowfit_rays_Triangle {
+    let a = shadowfit_rays_triangles[slot][0];
+    let b = shadowfit_rays_triangles[slot][1];
+    let c = shadowfit_rays_triangles[slot][2];
+    return shadowfit_rays_Triangle(
+        bitcast<vec3<f32>>(a.xyz), a.w, bitcast<vec3<f32>>(b.xyz), b.w, bitcast<vec3<f32>>(c.xyz), c.w);
+}
 
 fn shadowfit_rays_ray(origin: vec3<f32>, direction: vec3<f32>) -> shadowfit_rays_Ray {
     let size = abs(direction);
@@ -97,14 +116,6 @@ fn shadowfit_rays_meets(least: vec3<f32>, most: vec3<f32>, ray: shadowfit_rays_R
     let enter = max(max(near.x, near.y), near.z);
     let leave = min(min(far.x, far.y), far.z);
     return leave * SHADOWFIT_RAYS_LATER >= enter && leave >= 0.0;
-}
-
-// Whether a ray meets the box of a node, of the top level or of a mesh.
-fn shadowfit_rays_meets_node(is_top: bool, node: u32, ray: shadowfit_rays_Ray) -> bool {
-    if is_top {
-        return shadowfit_rays_meets(shadowfit_rays_top[node].least, shadowfit_rays_top[node].most, ray);
-    }
-    return shadowfit_rays_meets(shadowfit_rays_nodes[node].least, shadowfit_rays_nodes[node].most, ray);
 }
 
 fn shadowfit_rays_remainder(index: i32, size: i32) -> i32 {
@@ -178,7 +189,7 @@ fn shadowfit_rays_weights(triangle: shadowfit_rays_Triangle, point: vec3<f32>) -
 // Whether a ray in the space of a mesh ends at a point of a triangle: not in a hole, and not where an engine's own test lets
 // it pass.
 fn shadowfit_rays_ends(slot: u32, instance: u32, ray: shadowfit_rays_Ray, distance: f32) -> bool {
-    let triangle = shadowfit_rays_triangles[slot];
+    let triangle = shadowfit_rays_triangle(slot);
     let weights = shadowfit_rays_weights(triangle, ray.origin + ray.direction * distance);
     if triangle.cut_out != 0u && !shadowfit_rays_is_opaque(shadowfit_rays_cut_outs[triangle.cut_out - 1u], weights) {
         return false;
@@ -221,7 +232,7 @@ fn shadowfit_rays_is_start(normal: vec3<f32>, instance: u32, distance: f32) -> b
 // Whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle
 // Intersection", 1997, in the form of the obvhs crate: a weight of minus zero misses).
 fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
-    let triangle = shadowfit_rays_triangles[slot];
+    let triangle = shadowfit_rays_triangle(slot);
     let e1 = triangle.a - triangle.b;
     let e2 = triangle.c - triangle.a;
     // Opposite to the normal of the front.
@@ -261,55 +272,81 @@ fn shadowfit_rays_blocks_any(first: u32, count: u32, instance: u32, ray: shadowf
     return false;
 }
 
+// A node in a word; NONE for no node.
+fn shadowfit_rays_packed(node: shadowfit_rays_Node) -> u32 {
+    return node.first | (node.count << SHADOWFIT_RAYS_COUNT_AT);
+}
+
+// A node in a word, or NONE if a ray does not meet it.
+fn shadowfit_rays_child(node: u32, ray: shadowfit_rays_Ray) -> u32 {
+    let child = shadowfit_rays_node(node);
+    let meets = shadowfit_rays_meets(child.least, child.most, ray);
+    return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
+}
+
 // Whether anything stands on a ray from a point, relative to the origin of the scene, in metres, along a unit direction.
 fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     let world = shadowfit_rays_ray(origin, direction);
-    if !shadowfit_rays_meets_node(true, 0u, world) {
-        return false;
-    }
     var ray = world;
     var stack: array<u32, SHADOWFIT_RAYS_STACK>;
     var height = 0u;
     // The instance whose mesh the ray is in, and the height of the stack where it was entered.
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = 0u;
+    var current = shadowfit_rays_packed(shadowfit_rays_node(0));
     loop {
-        let is_top = instance == SHADOWFIT_RAYS_NONE;
-        var next = SHADOWFIT_RAYS_NONE;
-        var first = 0u;
-        var count = 0u;
-        if is_top {
-            first = shadowfit_rays_top[current].first;
-            count = shadowfit_rays_top[current].count;
-        } else {
-            first = shadowfit_rays_nodes[current].first;
-            count = shadowfit_rays_nodes[current].count;
-        }
-        if count == 0u {
-            let goes_left = shadowfit_rays_meets_node(is_top, first, ray);
-            if shadowfit_rays_meets_node(is_top, first + 1u, ray) {
-                next = first + 1u;
-            }
-            if goes_left {
+        // Down to a leaf first: the rays of a subgroup then test triangles together.
+        while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {
+            let first = current;
+            let met = vec4<u32>(
+                shadowfit_rays_child(first, ray), shadowfit_rays_child(first + 1u, ray),
+                shadowfit_rays_child(first + 2u, ray), shadowfit_rays_child(first + 3u, ray));
+            var next = met.w;
+            if met.z != SHADOWFIT_RAYS_NONE {
                 if next != SHADOWFIT_RAYS_NONE {
                     stack[height] = next;
                     height++;
                 }
-                next = first;
+                next = met.z;
             }
-        } else if is_top {
+            if met.y != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = met.y;
+            }
+            if met.x != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = met.x;
+            }
+            if next == SHADOWFIT_RAYS_NONE {
+                if height == 0u {
+                    return false;
+                }
+                if instance != SHADOWFIT_RAYS_NONE && height == entered {
+                    instance = SHADOWFIT_RAYS_NONE;
+                    ray = world;
+                }
+                height--;
+                next = stack[height];
+            }
+            current = next;
+        }
+        let first = current & SHADOWFIT_RAYS_FIRST;
+        var next = SHADOWFIT_RAYS_NONE;
+        if instance == SHADOWFIT_RAYS_NONE {
             let root = shadowfit_rays_instances[first].root;
             if root != SHADOWFIT_RAYS_NONE {
-                let inside = shadowfit_rays_in_mesh(first, world);
-                if shadowfit_rays_meets_node(false, root, inside) {
-                    ray = inside;
-                    instance = first;
-                    entered = height;
-                    next = root;
-                }
+                ray = shadowfit_rays_in_mesh(first, world);
+                instance = first;
+                entered = height;
+                next = root;
             }
-        } else if shadowfit_rays_blocks_any(first, count, instance, ray) {
+        } else if shadowfit_rays_blocks_any(first, current >> SHADOWFIT_RAYS_COUNT_AT, instance, ray) {
             return true;
         }
         if next == SHADOWFIT_RAYS_NONE {

@@ -72,9 +72,19 @@ fn is_finite(bits: vec3<u32>) -> bool {
     let node = refit.first + place;
     let first = nodes[node].first;
     let count = nodes[node].count;
+    if first == SHADOWFIT_RAYS_NONE {
+        return;
+    }
     if count == 0u {
-        nodes[node].least = min(nodes[first].least, nodes[first + 1u].least);
-        nodes[node].most = max(nodes[first].most, nodes[first + 1u].most);
+        var around = nodes[first];
+        for (var child = first + 1u; child < first + SHADOWFIT_RAYS_WIDTH; child++) {
+            if nodes[child].first != SHADOWFIT_RAYS_NONE {
+                around.least = min(around.least, nodes[child].least);
+                around.most = max(around.most, nodes[child].most);
+            }
+        }
+        nodes[node].least = around.least;
+        nodes[node].most = around.most;
         return;
     }
     var least = triangles[first].a;

@@ -14,15 +14,17 @@ fn shadowfit_rays_no_surface() -> shadowfit_RaySurface {
     return shadowfit_RaySurface(SHADOWFIT_RAYS_FAR, vec3<f32>(0.0), SHADOWFIT_RAYS_NONE, SHADOWFIT_RAYS_NONE);
 }
 
-// Whether a ray meets a box at a distance of at most `most`, in units of the ray's inverses.
-fn shadowfit_rays_meets_within(node: shadowfit_rays_Node, ray: shadowfit_rays_Ray, most: f32) -> bool {
-    let a = (node.least - ray.origin) * ray.inverses;
-    let b = (node.most - ray.origin) * ray.inverses;
+// A node in a word, or NONE if a ray does not meet it at a distance of at most `most`, in units of the ray's inverses.
+fn shadowfit_rays_child_within(node: u32, ray: shadowfit_rays_Ray, most: f32) -> u32 {
+    let child = shadowfit_rays_node(node);
+    let a = (child.least - ray.origin) * ray.inverses;
+    let b = (child.most - ray.origin) * ray.inverses;
     let near = min(a, b);
     let far = max(a, b);
     let enter = max(max(near.x, near.y), near.z);
     let leave = min(min(far.x, far.y), far.z);
-    return leave * SHADOWFIT_RAYS_LATER >= max(enter, 0.0) && enter <= most * SHADOWFIT_RAYS_LATER;
+    let meets = leave * SHADOWFIT_RAYS_LATER >= max(enter, 0.0) && enter <= most * SHADOWFIT_RAYS_LATER;
+    return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
 }
 
 // A distance in metres, in units of a ray's inverses.
@@ -66,60 +68,73 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
     var most = distance;
     var ray = world;
     var reach = shadowfit_rays_scaled(most, world);
-    if !shadowfit_rays_meets_within(shadowfit_rays_top[0], ray, reach) {
-        return found;
-    }
     var stack: array<u32, SHADOWFIT_RAYS_STACK>;
     var height = 0u;
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
-    var current = 0u;
+    var current = shadowfit_rays_packed(shadowfit_rays_node(0));
     loop {
-        var node: shadowfit_rays_Node;
-        let is_top = instance == SHADOWFIT_RAYS_NONE;
-        if is_top {
-            node = shadowfit_rays_top[current];
-        } else {
-            node = shadowfit_rays_nodes[current];
-        }
-        var next = SHADOWFIT_RAYS_NONE;
-        if node.count == 0u {
-            var left: shadowfit_rays_Node;
-            var right: shadowfit_rays_Node;
-            if is_top {
-                left = shadowfit_rays_top[node.first];
-                right = shadowfit_rays_top[node.first + 1u];
-            } else {
-                left = shadowfit_rays_nodes[node.first];
-                right = shadowfit_rays_nodes[node.first + 1u];
-            }
-            let goes_left = shadowfit_rays_meets_within(left, ray, reach);
-            if shadowfit_rays_meets_within(right, ray, reach) {
-                next = node.first + 1u;
-            }
-            if goes_left {
+        // Down to a leaf first, as in shadowfit_rays_blocked; NONE at the end.
+        while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {
+            let first = current;
+            let met = vec4<u32>(
+                shadowfit_rays_child_within(first, ray, reach), shadowfit_rays_child_within(first + 1u, ray, reach),
+                shadowfit_rays_child_within(first + 2u, ray, reach), shadowfit_rays_child_within(first + 3u, ray, reach));
+            var next = met.w;
+            if met.z != SHADOWFIT_RAYS_NONE {
                 if next != SHADOWFIT_RAYS_NONE {
                     stack[height] = next;
                     height++;
                 }
-                next = node.first;
+                next = met.z;
             }
-        } else if is_top {
-            let root = shadowfit_rays_instances[node.first].root;
-            if root != SHADOWFIT_RAYS_NONE {
-                let inside = shadowfit_rays_in_mesh(node.first, world);
-                let inside_reach = shadowfit_rays_scaled(most, inside);
-                if shadowfit_rays_meets_within(shadowfit_rays_nodes[root], inside, inside_reach) {
-                    ray = inside;
-                    reach = inside_reach;
-                    instance = node.first;
-                    entered = height;
-                    next = root;
+            if met.y != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
                 }
+                next = met.y;
+            }
+            if met.x != SHADOWFIT_RAYS_NONE {
+                if next != SHADOWFIT_RAYS_NONE {
+                    stack[height] = next;
+                    height++;
+                }
+                next = met.x;
+            }
+            if next == SHADOWFIT_RAYS_NONE {
+                if height == 0u {
+                    current = SHADOWFIT_RAYS_NONE;
+                    break;
+                }
+                if instance != SHADOWFIT_RAYS_NONE && height == entered {
+                    instance = SHADOWFIT_RAYS_NONE;
+                    ray = world;
+                    reach = shadowfit_rays_scaled(most, world);
+                }
+                height--;
+                next = stack[height];
+            }
+            current = next;
+        }
+        if current == SHADOWFIT_RAYS_NONE {
+            break;
+        }
+        let first = current & SHADOWFIT_RAYS_FIRST;
+        let count = current >> SHADOWFIT_RAYS_COUNT_AT;
+        var next = SHADOWFIT_RAYS_NONE;
+        if instance == SHADOWFIT_RAYS_NONE {
+            let root = shadowfit_rays_instances[first].root;
+            if root != SHADOWFIT_RAYS_NONE {
+                ray = shadowfit_rays_in_mesh(first, world);
+                reach = shadowfit_rays_scaled(most, ray);
+                instance = first;
+                entered = height;
+                next = root;
             }
         } else {
-            for (var slot = node.first; slot < node.first + node.count; slot++) {
-                let met = shadowfit_rays_met(shadowfit_rays_triangles[slot], ray);
+            for (var slot = first; slot < first + count; slot++) {
+                let met = shadowfit_rays_met(shadowfit_rays_triangle(slot), ray);
                 if !(met.is_inside && met.distance >= 0.0 && met.distance <= most) {
                     continue;
                 }
@@ -159,7 +174,7 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
 // Where a ray meets the plane of one triangle: its normal is a unit one, against the ray.
 fn shadowfit_rays_plane(origin: vec3<f32>, direction: vec3<f32>, slot: u32, instance: u32) -> shadowfit_rays_Met {
     let inside = shadowfit_rays_in_mesh(instance, shadowfit_rays_ray(origin, direction));
-    var met = shadowfit_rays_met(shadowfit_rays_triangles[slot], inside);
+    var met = shadowfit_rays_met(shadowfit_rays_triangle(slot), inside);
     met.normal = shadowfit_rays_normal(met.normal, instance, direction);
     return met;
 }

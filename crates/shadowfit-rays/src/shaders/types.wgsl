@@ -5,9 +5,13 @@ struct shadowfit_rays_Node {
     // Triangles of a leaf, or its one instance; 0 for an inner node.
     count: u32,
     most: vec3<f32>,
-    // A leaf's first triangle or its instance, or the first of an inner node's two children, which stand side by side.
+    // A leaf's first triangle or its instance, or the first of an inner node's children; NONE for no node.
     first: u32,
 }
+
+const SHADOWFIT_RAYS_NONE: u32 = 0xffffffffu;
+// Places side by side for the children of a node.
+const SHADOWFIT_RAYS_WIDTH: u32 = 4u;
 
 // In leaf order, in the space of its mesh.
 struct shadowfit_rays_Triangle {

@@ -70,17 +70,17 @@ fn instances_that_moved_a_little_or_far_block_where_they_are() {
     let gpu = gpu();
     let mut random = Random(3);
     let mut scene = gpu.scene();
-    let mut world = World::new(&mut scene, &mut random, 60, 6.0);
+    let mut world = World::new(&mut scene, &mut random, 600, 12.0);
     scene.set_instances(DVec3::ZERO, &world.instances).expect("room");
-    let rays = random.rays(1000, 6.0);
-    for instance in world.instances.iter_mut().step_by(4) {
+    let rays = random.rays(1000, 12.0);
+    for instance in world.instances.iter_mut().step_by(150) {
         instance.world_from_mesh.translation += Vec3::new(0.3, -0.2, 0.1).to_vec3a();
     }
     scene.set_instances(DVec3::ZERO, &world.instances).expect("room");
     let fitted = scene.uploaded();
     assert_answers(&world.blockers(), &rays, &gpu.blocked(&scene, &rays));
     for instance in &mut world.instances {
-        instance.world_from_mesh = random.transform(6.0);
+        instance.world_from_mesh = random.transform(12.0);
     }
     scene.set_instances(DVec3::ZERO, &world.instances).expect("room");
     assert!(fitted > 0 && scene.uploaded() > fitted, "fitted: {fitted}, built again: {}", scene.uploaded());

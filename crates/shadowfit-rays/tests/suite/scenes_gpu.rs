@@ -87,8 +87,9 @@ fn frames_in_which_nothing_moved_upload_and_allocate_nothing_and_others_what_mov
     instances[700].world_from_mesh.translation.x = f32::NAN;
     scene.set_instances(DVec3::ZERO, &instances).expect("room");
     let all = scene.uploaded();
-    // Instances, and two nodes for each of them but one.
-    assert_eq!(all, 1600 * 64 + 3199 * 32);
+    // Records of 64 bytes, and nodes of 32: one for each instance, and one more for every three of them or fewer.
+    let nodes = (all - 1600 * 64) / 32;
+    assert!((1600 + 533..=1600 * 8 / 3 + 4).contains(&nodes), "{nodes}");
     let mut still = Ok(());
     scene.set_instances(DVec3::ZERO, &instances).expect("room");
     let counted = measure(|| still = scene.set_instances(DVec3::ONE, &instances));
@@ -128,18 +129,18 @@ fn what_is_larger_than_the_device_allows_is_refused_with_its_bytes_and_changes_n
     let refused = scene.add_mesh(&mesh(&mut random, 2000));
     // Records of 48 bytes: 1365 of them.
     let wanted = RayError::TooLarge { what: "triangles", bytes: 96_000, limit: 65_520 };
-    assert!(
-        matches!(refused, Err(RayError::TooLarge { what: "nodes of meshes", .. })) || refused == Err(wanted.clone())
-    );
+    assert!(matches!(refused, Err(RayError::TooLarge { what: "nodes", .. })) || refused == Err(wanted.clone()));
     assert!(wanted.to_string().contains("96000") && wanted.to_string().contains("65520"));
     let small = scene.add_mesh(&mesh(&mut random, 50)).expect("room for as many");
     assert_eq!(scene.slots(small), Some(0..50));
     let instances = vec![RayInstance::new(small, Affine3A::IDENTITY); 2000];
-    // Two nodes for each instance but one, 32 bytes each.
-    let wanted = RayError::TooLarge { what: "nodes of instances", bytes: 3999 * 32, limit: 65_536 };
-    assert_eq!(scene.set_instances(DVec3::ZERO, &instances), Err(wanted));
+    // At least eight nodes for every three instances, 32 bytes each.
+    let refused = scene.set_instances(DVec3::ZERO, &instances);
+    let is_refused = |bytes: u64| (2000 * 8 / 3 * 32..2000 * 3 * 32).contains(&bytes);
+    let refused_nodes = matches!(refused, Err(RayError::TooLarge { what: "nodes", bytes, .. }) if is_refused(bytes));
+    assert!(refused_nodes, "{refused:?}");
     assert_eq!(scene.instances(), 0);
-    scene.set_instances(DVec3::ZERO, &instances[..1000]).expect("room for half of them");
+    scene.set_instances(DVec3::ZERO, &instances[..700]).expect("room for a third of them");
     assert!(scene.bytes() > bytes);
 }
 
@@ -147,7 +148,7 @@ fn what_is_larger_than_the_device_allows_is_refused_with_its_bytes_and_changes_n
 fn devices_without_storage_buffers_are_refused_with_what_they_lack() {
     let gpu = with_limits(wgpu::Limits::downlevel_webgl2_defaults());
     let refused = RayScene::new(&gpu.device, &gpu.queue).expect_err("no storage buffers");
-    let wanted = RayError::Unsupported { buffers: 0, threads: 0, needed_buffers: 6, needed_threads: 256 };
+    let wanted = RayError::Unsupported { buffers: 0, threads: 0, needed_buffers: 5, needed_threads: 256 };
     assert_eq!(refused, wanted);
 }
 

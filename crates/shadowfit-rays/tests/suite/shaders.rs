@@ -39,7 +39,7 @@ fn every_wgsl_file_is_part_of_a_text() {
     let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("src/shaders");
     let texts = [rays_wgsl(&RayWgslOptions::group(0)), refit_wgsl()];
     assert_every_file_is_used(&folder, &texts.each_ref().map(String::as_str), |file| {
-        vec![file.replace("GROUP", "0").replace("MAX_DEPTH", &shadowfit_rays::MAX_DEPTH.to_string())]
+        vec![file.replace("GROUP", "0").replace("NODES_ON_STACK", &shadowfit_rays::STACK.to_string())]
     });
 }
 

@@ -49,7 +49,7 @@ pub enum Unsupported {
     Compute,
     /// Reading depth textures in shaders without a sampler, which OpenGL does not have.
     DepthLoads,
-    /// As many storage buffers in a compute shader as rays need beside a list of pixels: 7.
+    /// As many storage buffers in a compute shader as rays need beside a list of pixels: 6.
     StorageBuffers,
 }
 

@@ -11,7 +11,7 @@ pub struct AnyHit {
     /// with `textureSampleLevel`. Names of its own need a prefix, since the pass has many.
     pub wgsl: String,
     /// Layout of the bind group that the WGSL reads, visible to compute shaders; `None` where it binds nothing. The pass
-    /// itself binds 7 storage buffers, which the device's limit counts together with those of the layout.
+    /// itself binds 6 storage buffers, which the device's limit counts together with those of the layout.
     pub layout: Option<wgpu::BindGroupLayout>,
 }
 

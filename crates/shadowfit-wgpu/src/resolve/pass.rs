@@ -24,7 +24,7 @@ const SQUARE: u32 = 8;
 /// Pictures whose counts may be on their way back at once, as many as a GPU may be behind and one more.
 const FRAMES: usize = 4;
 /// Storage buffers of the pass that traces: those of the rays, and the list.
-const STORAGE_BUFFERS: u32 = 7;
+const STORAGE_BUFFERS: u32 = 6;
 
 /// Finds the factors of a picture: see the [module](super). One for each view.
 #[derive(Debug)]

@@ -181,6 +181,23 @@ fn verdict_of(pixel: vec2<i32>) -> f32 {
     return select(mix(verdict, 1.0, faded), UNSURE, verdict == UNSURE);
 }
 
+// Adds the counts of a workgroup to those of the list, and reserves places on it. Additions of 0 are left out: all workgroups
+// add to the same words, one after the other.
+fn add_counts() {
+    let unsure = atomicLoad(&unsure_count);
+    if unsure != 0u {
+        first_slot = atomicAdd(&list.count, unsure);
+    }
+    let facing = atomicLoad(&facing_count);
+    if facing != 0u {
+        atomicAdd(&list.facing, facing);
+    }
+    let filtered = atomicLoad(&filtered_count);
+    if filtered != 0u {
+        atomicAdd(&list.filtered, filtered);
+    }
+}
+
 @compute @workgroup_size(8, 8)
 fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     var verdict = NO_SURFACE;
@@ -204,9 +221,7 @@ fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocat
     }
     workgroupBarrier();
     if thread == 0u {
-        first_slot = atomicAdd(&list.count, atomicLoad(&unsure_count));
-        atomicAdd(&list.facing, atomicLoad(&facing_count));
-        atomicAdd(&list.filtered, atomicLoad(&filtered_count));
+        add_counts();
     }
     workgroupBarrier();
     if verdict == UNSURE {

@@ -149,7 +149,7 @@ fn filled(text: &str) -> Vec<String> {
                     text.replace("group(GROUP)", &format!("group({group})"))
                         .replace("MAX_MAPS", &MAX_MAPS.to_string())
                         .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string())
-                        .replace("MAX_DEPTH", &shadowfit_rays::MAX_DEPTH.to_string())
+                        .replace("NODES_ON_STACK", &shadowfit_rays::STACK.to_string())
                         .replace("MAX_POINTS", &Edges::MAX_SAMPLES.to_string())
                         .replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string())
                         .replace("COMPARE", closer)

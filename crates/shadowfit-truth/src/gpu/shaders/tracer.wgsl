@@ -38,6 +38,6 @@ fn is_occluded(surface: Surface, point: Receiver) -> bool {
 // The visible point of a pixel that shows a triangle, given by its own index.
 fn surface_in(pixel: vec2<u32>, triangle: u32) -> Surface {
     let slot = slots[triangle];
-    let corners = shadowfit_rays_triangles[slot];
+    let corners = shadowfit_rays_triangle(slot);
     return surface_of(pixel, corners.a, corners.b, corners.c);
 }

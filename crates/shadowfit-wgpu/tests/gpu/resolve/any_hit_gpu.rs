@@ -143,7 +143,7 @@ fn wgsl_that_is_not_valid_is_an_error_in_the_compiler_s_words_when_the_pass_is_m
 fn a_layout_that_does_not_suit_is_an_error_and_the_filter_decides() {
     let look = look();
     // Nothing for what the WGSL reads, and more storage buffers than the device has beside those of the pass.
-    for (shares, word) in [(&[][..], "Binding is missing"), (&[0.5; 2], "Too many bindings")] {
+    for (shares, word) in [(&[][..], "Binding is missing"), (&[0.5; 3], "Too many bindings")] {
         let (mut stage, layout) = stage(0.0, FARTHER, Some(shares.len() as u32));
         let drawn = stage.draw(&look);
         let group = group(&stage, &layout.expect("a layout"), shares);

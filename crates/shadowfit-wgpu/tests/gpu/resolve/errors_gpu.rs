@@ -123,7 +123,7 @@ fn views_that_make_no_sense_are_refused_with_their_values() {
 fn devices_that_lack_something_filter_edges_and_say_what_without_an_error() {
     let webgl2 = wgpu::Limits::downlevel_webgl2_defaults();
     // As many as rays have, and none for the list of pixels.
-    let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 6, ..wgpu::Limits::default() };
+    let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 5, ..wgpu::Limits::default() };
     for (limits, lack, traces) in [(webgl2, Unsupported::Compute, false), (few, Unsupported::StorageBuffers, true)] {
         let engine = Engine::open(limits);
         let (device, queue) = (&engine.device, &engine.queue);
