@@ -102,8 +102,8 @@ fn without_device(reason: &str) -> CheckReport {
 ///
 /// When there is no such adapter or it cannot be opened.
 #[cfg(not(target_family = "wasm"))]
-pub(crate) fn run(adapter: AdapterChoice) -> anyhow::Result<bool> {
-    let gpu = pollster::block_on(Gpu::headless(&adapter))?;
+pub(crate) fn run(adapter: &AdapterChoice) -> anyhow::Result<bool> {
+    let gpu = pollster::block_on(Gpu::headless(adapter))?;
     let mut told = 0;
     let report = shadowfit_study::check_device(&gpu, &AtomicBool::new(false), &mut |report| {
         let ended = report.ended();

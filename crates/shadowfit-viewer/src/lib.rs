@@ -65,7 +65,7 @@ pub fn main() -> ExitCode {
     let arguments = cli::parse();
     shadowfit_render::hush_lost_devices();
     let result = match &arguments.headless {
-        _ if arguments.check => device_check::run(arguments.adapter()),
+        _ if arguments.check => device_check::run(&arguments.adapter()),
         Some(folder) => headless::run(&arguments, folder).map(|()| true),
         None => window::run(&arguments).map(|()| true),
     };

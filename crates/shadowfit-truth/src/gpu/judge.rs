@@ -14,8 +14,8 @@ use super::uniform::JudgeUniform;
 
 /// Bytes of a pixel between the steps: flags, pixels per texel, distance along the row.
 const PIXEL_BYTES: u64 = 12;
-/// Storage buffers that a pass binds: six of the rays, the slots of the triangles, and the pixels.
-const STORAGE_BUFFERS: u32 = 8;
+/// Storage buffers that a pass binds: five of the rays, the slots of the triangles, and the pixels.
+const STORAGE_BUFFERS: u32 = 7;
 /// Threads of the largest workgroup.
 const WORKGROUP_THREADS: u32 = 256;
 /// Pixels a side of a workgroup's square.

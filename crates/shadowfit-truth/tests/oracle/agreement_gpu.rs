@@ -388,8 +388,8 @@ fn thousands_of_random_triangles_are_judged_alike() {
 
 #[test]
 fn devices_with_enough_storage_buffers_make_the_passes_and_others_refuse_them() {
-    let least = wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..wgpu::Limits::default() };
-    let too_few = wgpu::Limits { max_storage_buffers_per_shader_stage: 7, ..least.clone() };
+    let least = wgpu::Limits { max_storage_buffers_per_shader_stage: 7, ..wgpu::Limits::default() };
+    let too_few = wgpu::Limits { max_storage_buffers_per_shader_stage: 6, ..least.clone() };
     for (limits, runs) in [(least, true), (too_few, false), (wgpu::Limits::downlevel_defaults(), false)] {
         let TestGpu { device, .. } = open_test_gpu(wgpu::Features::empty(), limits.clone());
         let refused = device.push_error_scope(wgpu::ErrorFilter::Validation);

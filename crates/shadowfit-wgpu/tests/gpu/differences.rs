@@ -16,6 +16,9 @@ const DEPTH: f32 = 1e-5;
 /// Steps by which the corners of two draws may lie apart: one of rounding, and half of one for the matrices.
 const STEPS: f32 = 1.5;
 
+/// How many times as steep as the flattest triangle at a texel the others may be where no edge passes it.
+const BENT: f32 = 2.5;
+
 /// Differences that a map may have however few edges it has: the ends of an edge, in all maps.
 const FEW: usize = 8;
 
@@ -89,7 +92,7 @@ impl<'a> Compared<'a> {
     fn difference(&self, texel: usize) -> Difference {
         let [a, b] = self.maps.map(|map| map[texel]);
         let slope = self.maps.map(|map| self.slope(map, texel));
-        let allowed = DEPTH + slope[0].max(slope[1]) * self.moved;
+        let allowed = DEPTH + BENT * slope[0].max(slope[1]) * self.moved;
         Difference { texel, depths: [a, b], allowed, is_at_edge: self.is_at_edge(texel) }
     }
 
@@ -119,7 +122,7 @@ impl<'a> Compared<'a> {
             }
         }
         // A plane changes by twice its slope over three texels.
-        high - low > 2.5 * self.slope(map, texel) + DEPTH
+        high - low > BENT * self.slope(map, texel) + DEPTH
     }
 }
 
