@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use crate::AdapterError;
+use crate::error::{AdapterError, label};
 
 /// Which adapter to open.
 ///
@@ -76,7 +76,17 @@ impl AdapterChoice {
         let infos: Vec<wgpu::AdapterInfo> = adapters.iter().map(wgpu::Adapter::get_info).collect();
         match infos.iter().position(|info| self.matches(info)) {
             Some(index) => Ok(adapters.swap_remove(index)),
-            None => Err(AdapterError::none_of(self, &infos)),
+            None => Err(self.error(&infos)),
+        }
+    }
+
+    /// Returns the error of a choice that fits none of these adapters.
+    fn error(&self, infos: &[wgpu::AdapterInfo]) -> AdapterError {
+        let present = infos.iter().map(label).collect();
+        match self {
+            Self::Any => AdapterError::None("none is present".into()),
+            Self::Software => AdapterError::NoSoftware { present },
+            Self::Named(name) => AdapterError::NoSuchName { name: name.clone(), present },
         }
     }
 
@@ -157,7 +167,7 @@ mod tests {
     #[test]
     fn a_name_without_an_adapter_lists_the_adapters_of_the_machine() {
         let infos = [info("NVIDIA H200", wgpu::DeviceType::DiscreteGpu), info("llvmpipe", wgpu::DeviceType::Cpu)];
-        let error = AdapterError::none_of(&AdapterChoice::Named("radeon".into()), &infos).to_string();
+        let error = AdapterChoice::Named("radeon".into()).error(&infos).to_string();
         assert!(error.contains("\"radeon\""), "{error}");
         assert!(error.contains("NVIDIA H200 (Vulkan, discrete GPU)"), "{error}");
         assert!(error.contains("llvmpipe (Vulkan, software)"), "{error}");

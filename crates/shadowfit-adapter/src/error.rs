@@ -2,8 +2,6 @@
 
 use core::fmt;
 
-use crate::AdapterChoice;
-
 /// Why no adapter was found, with the remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -22,18 +20,6 @@ pub enum AdapterError {
         /// [Labels](label) of the adapters of this machine.
         present: Vec<String>,
     },
-}
-
-impl AdapterError {
-    /// Returns the error of a choice that fits none of these adapters.
-    pub(crate) fn none_of(choice: &AdapterChoice, infos: &[wgpu::AdapterInfo]) -> Self {
-        let present = infos.iter().map(label).collect();
-        match choice {
-            AdapterChoice::Any => Self::None("none is present".into()),
-            AdapterChoice::Software => Self::NoSoftware { present },
-            AdapterChoice::Named(name) => Self::NoSuchName { name: name.clone(), present },
-        }
-    }
 }
 
 impl fmt::Display for AdapterError {

@@ -33,6 +33,11 @@ const DARK: f32 = 0.005;
 /// normals follow from it: 0.1% were found with plain floats, 0.2% with 24 bits, and none with normals.
 const OTHER_DEPTH: f32 = 0.003;
 
+/// Share by which the number of traced pixels may be another one where normals follow from depths: 3.8% were found on NVIDIA's
+/// driver. Corners of triangles are rounded to 1/256 pixel, which moves neighbours off a common plane. The rounding of plain
+/// floats and of 24 bits covers this in the distance, and that of reversed floats does not.
+const OTHER_COUNT: f32 = 0.05;
+
 /// What is found about traced pixels.
 #[derive(Debug, Default)]
 struct TracedPixels {
@@ -137,7 +142,8 @@ fn depth_buffers_of_plain_floats_and_24_bits_give_the_same_factors_with_as_many_
             println!("{depth:?}, {normals:?}: {others} are others; {counts:?}, {wanted_counts:?}");
             let most = if normals.is_none() { OTHER_DEPTH * wanted_counts.facing as f32 } else { 1.0 };
             assert!(others as f32 <= most, "{depth:?}, {normals:?}: {others}");
-            let as_many = counts.traced.abs_diff(wanted_counts.traced) * 100 <= wanted_counts.traced;
+            let more = counts.traced.abs_diff(wanted_counts.traced) as f32 / wanted_counts.traced as f32;
+            let as_many = more <= if normals.is_none() { OTHER_COUNT } else { 0.01 };
             assert!(as_many && counts.traced > 300, "{depth:?}, {normals:?}: {counts:?}");
         }
     }
