@@ -84,6 +84,8 @@ struct Surface {
     normal: vec3<f32>,
     // Whether the normal is known: neighbours lie on one plane, or the texture of normals has it.
     is_known: bool,
+    // Whether the texture of normals has it.
+    is_stored: bool,
     // Whether all samples of the pixel lie on the plane.
     is_single: bool,
     // Distance from the position, along the line of sight, within which the surface lies, in metres.
@@ -194,6 +196,7 @@ fn surface_of(pixel: vec2<i32>, depth: f32) -> Surface {
         surface.steps = -vec2<f32>(across, down) / dot(normal, ray);
         surface.most_steps = abs(surface.steps);
         surface.is_known = true;
+        surface.is_stored = true;
         surface.tilt = STORED_TILT;
     } else {
         let across = change(pixel, vec2<i32>(1, 0), depth);

@@ -3,6 +3,9 @@
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 
+// Cosine of the greatest angle between a stored normal and that of its own triangle: normals may have eight bits.
+const SAME_NORMAL: f32 = 0.9995;
+
 @compute @workgroup_size(TRACE_THREADS)
 fn find_surfaces(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -14,8 +17,11 @@ fn find_surfaces(
         return;
     }
     let pixel = pixel_of(list.pixels[index]);
-    let sight = sight_at(pixel, surface_of(pixel, depth_at(pixel)), resolve.points[0].xy);
+    let surface = surface_of(pixel, depth_at(pixel));
+    let sight = sight_at(pixel, surface, resolve.points[0].xy);
     let met = shadowfit_rays_surface(begin_of(sight), sight.direction, 2.0 * sight.reach);
-    list.pixels[index].slot = met.slot;
+    // Where a drawn triangle ends within the rounding of its corners, the ray meets its neighbour.
+    let is_other = surface.is_stored && dot(met.normal, surface.normal) < SAME_NORMAL;
+    list.pixels[index].slot = select(met.slot, SHADOWFIT_RAYS_NONE, is_other);
     list.pixels[index].instance = met.instance;
 }

@@ -52,6 +52,7 @@ const BENT: f32 = 0.015_625;
 const ROUNDINGS: f32 = 4.0;
 const SNAP: f32 = 0.003_906_25;
 const STORED_TILT: f32 = 0.002;
+const SAME_NORMAL: f32 = 0.9995;
 const MOST_SNAP: f32 = 0.031_25;
 const BEND: f32 = 0.5;
 const MIN_COSINE: f32 = 0.005;

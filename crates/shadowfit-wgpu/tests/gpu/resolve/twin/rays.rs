@@ -3,7 +3,7 @@
 use shadowfit::glam::{Vec2, Vec3, Vec4};
 use shadowfit_truth::Tracer;
 
-use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, Surface, Twin, dot, transformed};
+use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, SAME_NORMAL, Surface, Twin, dot, transformed};
 
 /// What the rays of a pixel find.
 #[derive(Clone, Copy, Debug)]
@@ -133,7 +133,9 @@ impl Twin {
         let direction = (far - near).normalize();
         let begin = middle - direction * reach + self.eye;
         let triangle = match first {
-            None => tracer.first_hit_within(begin, direction, 2.0 * reach).map(|hit| hit.triangle),
+            None => tracer.first_hit_within(begin, direction, 2.0 * reach).map(|hit| hit.triangle).filter(|triangle| {
+                !surface.is_stored || dot(tracer.normal(*triangle), surface.normal).abs() >= SAME_NORMAL
+            }),
             Some(first) => first.triangle,
         };
         let Some(triangle) = triangle else {

@@ -17,6 +17,8 @@ pub(super) struct Surface {
     pub(super) most_steps: Vec2,
     pub(super) normal: Vec3,
     pub(super) is_known: bool,
+    /// Whether the texture of normals has it.
+    pub(super) is_stored: bool,
     pub(super) is_single: bool,
     /// Distance along the line of sight within which the surface lies, in metres.
     pub(super) off: Vec3,
@@ -112,8 +114,9 @@ impl Twin {
             (normal, steps, steps.abs(), true, STORED_TILT)
         };
         let is_single = self.is_single(pixel, depth, steps);
+        let is_stored = stored != Vec3::ZERO;
         let off = ray * (ROUNDINGS * self.rounding(depth) + SNAP * (most_steps.x + most_steps.y));
-        Surface { position, w, depth, steps, most_steps, normal, is_known, is_single, off, tilt }
+        Surface { position, w, depth, steps, most_steps, normal, is_known, is_stored, is_single, off, tilt }
     }
 
     /// Change of a position per pixel, or per depth, from that of its homogeneous one.
