@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use bytemuck::{NoUninit, Pod};
-use shadowfit_testing::{Lent, TestGpu, lacking, open_test_gpu, read_back};
+use shadowfit_testing::{Lent, TestGpu, lacking, open_test_gpu, read_back, subpixel_step};
 use wgpu::util::DeviceExt;
 
 /// A device of the software adapter. A test has it to itself and finds the pipelines of the tests before it: most tests draw
@@ -58,6 +58,15 @@ impl Engine {
             static LENT: Lent<Engine> = Lent::new(&FREE, || Engine::open(wgpu::Limits::default()));
         }
         LENT.with(Lent::get)
+    }
+
+    /// Ends a test whose counts need corners that are rounded to 1/256 pixel, as GPUs do: coarser steps leave other pixels
+    /// unsure.
+    pub(crate) fn require_fine_steps(&self) {
+        let info = self.adapter.get_info();
+        if subpixel_step(&info) > 1.0 / 256.0 {
+            lacking(&info, "256 steps in a pixel");
+        }
     }
 
     /// Opens a device of its own without optional features.

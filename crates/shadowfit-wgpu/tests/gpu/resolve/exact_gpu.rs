@@ -4,6 +4,7 @@ use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_scene::builtin::BuiltinScene;
 use shadowfit_testing::pairs::{all_pairs, full_product};
+use shadowfit_testing::subpixel_step;
 use shadowfit_truth::Tracer;
 use shadowfit_wgpu::resolve::NormalEncoding;
 
@@ -114,8 +115,11 @@ fn judge(what: &str, stage: &mut Stage, look: &Look, (tracer, share): (&Tracer, 
     let count = facing.len() as f64;
     println!("{what}: {} of {count} are wrong, {} away from edges; {counts:?}", wrong.len(), away.len());
     assert!(count > 500.0 && counts.traced > 50, "{what}: nothing is seen: {counts:?}");
-    assert!(wrong.len() as f64 <= SOME + share * count, "{what}: {wrong:?} are wrong");
-    let most_away = if look.normals.is_some() { 0.0 } else { 1.0 + AWAY * count };
+    // A drawn triangle ends beside some pixels' centres within the rounding of its corners.
+    let steps = 256.0 * f64::from(subpixel_step(&stage.gpu.adapter.get_info()));
+    assert!(wrong.len() as f64 <= (SOME + share * count) * steps, "{what}: {wrong:?} are wrong");
+    let is_exact = look.normals.is_some() && steps <= 1.0;
+    let most_away = if is_exact { 0.0 } else { (1.0 + AWAY * count) * steps };
     assert!(away.len() as f64 <= most_away, "{what}: {away:?} are wrong away from edges");
 }
 

@@ -89,6 +89,7 @@ fn pcss(radius: f32) -> Technique {
 fn factors_of_traced_pixels_are_those_of_the_same_rays_and_texels_on_the_cpu() {
     for scene in BuiltinScene::ALL {
         let mut stage = Stage::new(&traced(hard(), 1), things(scene));
+        stage.gpu.require_fine_steps();
         let tracer = tracer(&stage);
         let suns = [(technique(RADII[0]), 4), (pcss(RADII[1]), 16)];
         for (technique, count) in [(hard(), 1), (hard(), 4)].into_iter().chain(suns) {
@@ -126,6 +127,7 @@ fn factors_are_the_twin_s_with_normals_and_samples_and_in_plain_depth_by_view_de
 #[test]
 fn depth_buffers_of_plain_floats_and_24_bits_give_the_same_factors_with_as_many_rays() {
     let mut stage = Stage::new(&traced(hard(), 1), things(BuiltinScene::Courtyard));
+    stage.gpu.require_fine_steps();
     let mut picture = |(convention, format), normals| {
         let look = Look { format, size: [160, 90], ..look(1, convention, normals) };
         let drawn = stage.draw(&look);
@@ -189,6 +191,7 @@ fn bent_surfaces_that_nothing_shadows_are_lit_by_four_rays_a_pixel() {
         [("hills", hills(), Vec3::new(0.4, -1.0, -0.3).normalize()), ("ball", ball(), forward)]
     {
         let mut stage = Stage::new(&traced(hard(), 4), vec![thing]);
+        stage.gpu.require_fine_steps();
         for normals in [None, Some(NormalEncoding::Signed)] {
             let look = Look { camera, direction, size, normals, ..look(1, DepthConvention::Reversed, normals) };
             let drawn = stage.draw(&look);

@@ -105,6 +105,7 @@ fn pixels_that_the_maps_are_sure_of_are_lit_or_dark_by_all_rays_over_the_sun_s_d
     let (mut all, mut wrong) = ([0; 2], [0; 2]);
     for scene in BuiltinScene::ALL {
         let mut stage = Stage::new(&traced(technique(0.0), 4), things(scene));
+        stage.gpu.require_fine_steps();
         let tracer = tracer(&stage);
         for radius in RADII {
             set(&mut stage, &traced(technique(radius), 4));

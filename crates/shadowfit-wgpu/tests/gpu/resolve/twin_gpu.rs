@@ -129,6 +129,7 @@ fn technique() -> Technique {
 fn every_pixel_of_the_built_in_scenes_has_the_verdict_of_the_twin() {
     for scene in BuiltinScene::ALL {
         let mut stage = Stage::new(&traced(technique(), 1), things(scene));
+        stage.gpu.require_fine_steps();
         for normals in [None, Some(NormalEncoding::Signed)] {
             let look = start(scene, normals);
             let [sure, unsure] = compare(&format!("{scene:?} {normals:?}"), &mut stage, &look);
