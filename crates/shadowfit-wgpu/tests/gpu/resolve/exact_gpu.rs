@@ -4,7 +4,6 @@ use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_scene::builtin::BuiltinScene;
 use shadowfit_testing::pairs::{all_pairs, full_product};
-use shadowfit_testing::subpixel_step;
 use shadowfit_truth::Tracer;
 use shadowfit_wgpu::resolve::NormalEncoding;
 
@@ -115,11 +114,8 @@ fn judge(what: &str, stage: &mut Stage, look: &Look, (tracer, share): (&Tracer, 
     let count = facing.len() as f64;
     println!("{what}: {} of {count} are wrong, {} away from edges; {counts:?}", wrong.len(), away.len());
     assert!(count > 500.0 && counts.traced > 50, "{what}: nothing is seen: {counts:?}");
-    // A drawn triangle ends beside some pixels' centres within the rounding of its corners.
-    let steps = 256.0 * f64::from(subpixel_step(&stage.gpu.adapter.get_info()));
-    assert!(wrong.len() as f64 <= (SOME + share * count) * steps, "{what}: {wrong:?} are wrong");
-    let is_exact = look.normals.is_some() && steps <= 1.0;
-    let most_away = if is_exact { 0.0 } else { (1.0 + AWAY * count) * steps };
+    assert!(wrong.len() as f64 <= SOME + share * count, "{what}: {wrong:?} are wrong");
+    let most_away = if look.normals.is_some() { 0.0 } else { 1.0 + AWAY * count };
     assert!(away.len() as f64 <= most_away, "{what}: {away:?} are wrong away from edges");
 }
 
@@ -135,6 +131,7 @@ const HEIGHTS: [u32; 4] = [90, 180, 360, 720];
 fn assert_exact(rows: &[Vec<usize>], heights: &[u32]) {
     for scene in BuiltinScene::ALL {
         let mut stage = Stage::new(&traced(Technique::default(), 1), things(scene));
+        stage.gpu.require_fine_steps();
         let tracer = tracer(&stage);
         for row in rows {
             let (height, (convention, format), normals) = (heights[row[0]], DEPTHS[row[1]], NORMALS[row[2]]);
