@@ -110,7 +110,7 @@ pub fn instance() -> wgpu::Instance {
     wgpu::Instance::new(descriptor)
 }
 
-/// Lists the adapters of this machine, those of OpenGL last.
+/// Lists the adapters of this machine, OpenGL last.
 pub async fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
     adapters.sort_by_key(|adapter| adapter.get_info().backend == wgpu::Backend::Gl);

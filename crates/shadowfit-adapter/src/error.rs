@@ -1,4 +1,4 @@
-//! Why there is no adapter, with the adapters that there are.
+//! Errors of the search for an adapter. They list the adapters of the machine.
 
 use core::fmt;
 

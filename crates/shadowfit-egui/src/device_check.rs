@@ -10,7 +10,7 @@ use crate::widgets::{at_least, caption, main_button};
 /// Width of the dialog where the window has room, in points.
 const WIDTH: f32 = 760.0;
 
-/// Least width at which results and tolerances stand beside each other, in points.
+/// Least width at which the dialog shows results beside tolerances, in points.
 const SIDE_BY_SIDE: f32 = 560.0;
 
 /// Width of the names, and of the times at the right, in points.
@@ -29,8 +29,8 @@ const AROUND: f32 = 210.0;
 /// Title of the dialog.
 const TITLE: &str = "Check this GPU";
 
-/// Shows the report of a check over everything else. Returns what was asked for: to copy it, to cancel the check or to
-/// close the dialog, or to check again.
+/// Shows the report of a check over everything else. Returns the command that a button gives: copy the report, cancel the
+/// check, close the dialog, or check again.
 pub fn device_check_overlay(ctx: &Context, report: &CheckReport) -> Option<Command> {
     let room = ctx.content_rect().size() - Vec2::splat(2.0 * MARGIN);
     let (mut command, mut is_open) = (None, true);
@@ -82,7 +82,7 @@ fn head(ui: &mut Ui, report: &CheckReport) {
     ui.add_space(4.0);
 }
 
-/// Whether results and tolerances stand beside each other.
+/// Whether the dialog shows results beside tolerances.
 fn is_wide(ui: &Ui) -> bool {
     ui.available_width() >= SIDE_BY_SIDE
 }

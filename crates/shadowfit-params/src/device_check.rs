@@ -15,7 +15,7 @@ pub enum CheckState {
     Passed,
     /// Its result is beyond the tolerance, or it could not be finished.
     Failed,
-    /// The device cannot do it, for this reason. That is no failure.
+    /// The device cannot do it, for this reason. Such a check does not fail.
     Unavailable(String),
     /// It was left out, for this reason, such as a device that was lost before.
     NotRun(String),

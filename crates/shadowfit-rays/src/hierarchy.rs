@@ -9,7 +9,7 @@ use obvhs::{Boundable, BvhBuildParams};
 
 use crate::records::{NO_ROOT, NodeRecord};
 
-/// Children of a node: the places that stand side by side. Places without a child hold [`NodeRecord::NONE`].
+/// Places for the children of a node, side by side. Places without a child hold [`NodeRecord::NONE`].
 pub(crate) const WIDTH: usize = 4;
 
 /// Primitives that a leaf may have: shaders pack their number into five bits.

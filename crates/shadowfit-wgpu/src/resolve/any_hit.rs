@@ -6,8 +6,8 @@
 #[derive(Clone, Debug)]
 pub struct AnyHit {
     /// WGSL that defines `fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool`, as
-    /// [`RayWgslOptions::counts`](shadowfit_rays::RayWgslOptions::counts) says: whether a hit blocks its ray. Hits come in
-    /// no order. What it binds is in group [`Self::GROUP`], 3. It is part of a compute shader, so textures are sampled
+    /// [`RayWgslOptions::counts`](shadowfit_rays::RayWgslOptions::counts) says: whether a hit blocks its ray. The ray from the
+    /// eye that finds a pixel's triangle asks it, too, and prefers hits that count. Hits come in no order. What it binds is in group [`Self::GROUP`], 3. It is part of a compute shader, so textures are sampled
     /// with `textureSampleLevel`. Names of its own need a prefix, since the pass has many.
     pub wgsl: String,
     /// Layout of the bind group that the WGSL reads, visible to compute shaders; `None` where it binds nothing. The pass

@@ -1,6 +1,6 @@
 //! What the first resolve pass finds about each pixel, in plain Rust: the arithmetic of `resolve.wgsl`,
 //! `resolve_classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
-//! back. Suns with a radius are in `twin/soft.rs`, and what the third pass does, rays and what maps say beside them, in
+//! back. Suns with a radius are in `twin/soft.rs`, and the rays of the later passes, and the maps' estimate beside them, in
 //! `twin/rays.rs` and `twin/estimate.rs`.
 
 #[path = "twin/choice.rs"]
