@@ -58,7 +58,7 @@ impl<'a> RayWgslOptions<'a> {
 /// |---|---|
 /// | `shadowfit_rays_blocked(origin, direction) -> bool` | whether anything stands on the ray from a point, at any distance from 0 on: `origin` (`vec3<f32>`) is in metres relative to the origin of [`RayScene::set_instances`](crate::RayScene::set_instances), `direction` (`vec3<f32>`) of unit length, toward the light |
 /// | `shadowfit_rays_blocked_above(origin, direction, normal, reach) -> bool` | the same for a ray from a large surface, whose points are rounded by more than the ray starts above it: triangles in the plane of the unit `normal` count from a distance of `reach` metres on |
-/// | `shadowfit_rays_surface(origin, direction, distance) -> shadowfit_RaySurface` | the first triangle on the ray within a `distance` in metres: where (`distance`), its unit normal against the ray (`normal`), and which (`slot` and `instance`; `SHADOWFIT_RAYS_NONE` if there is none). Both sides of triangles count |
+/// | `shadowfit_rays_surface(origin, direction, distance, sure) -> shadowfit_RaySurface` | the triangle of a surface that lies half a `distance` along the ray, give or take as much: the first one within `sure` of the middle, else the one nearest to the middle. It tells where (`distance`), the unit normal against the ray (`normal`), and which (`slot` and `instance`; `SHADOWFIT_RAYS_NONE` if there is none). Lengths are in metres. Both sides of triangles count |
 ///
 /// `shadowfit_rays_triangle(slot)` is the triangle of a hit's slot, with corners `a`, `b` and `c` in the space of its mesh.
 ///

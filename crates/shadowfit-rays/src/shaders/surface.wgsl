@@ -58,13 +58,30 @@ fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray
     return shadowfit_rays_Met(n, dot(n, c) * inverse_determinant, u >= 0.0 && v >= 0.0 && u + v <= 1.0);
 }
 
-// The first triangle that a ray meets within a distance, in metres. Both sides of triangles count. If it meets holes alone, the
-// one that is nearest to the middle counts: pictures decide by smaller images what is a hole.
-// origin: relative to the origin of the scene, in metres. direction: of unit length.
-fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32) -> shadowfit_RaySurface {
+// How well a triangle fits a surface that lies in the middle of a part of a ray; less is better. Within `sure` of the middle the
+// first one fits best, and beyond it the one that is nearest to the middle. All in metres.
+fn shadowfit_rays_misfit(at: f32, middle: f32, sure: f32) -> f32 {
+    let off = abs(at - middle);
+    return select(off, at - middle - sure, off <= sure);
+}
+
+// The triangle of a surface that lies half a distance along a ray, give or take as much: the first one that the ray meets
+// within `sure` of the middle, else the one nearest to the middle. Both sides of triangles count: what lies before the middle
+// by more than `sure` may be a side that the picture leaves out. Holes count if nothing else is met: pictures decide by smaller
+// images what is a hole.
+// origin: relative to the origin of the scene, in metres. direction: of unit length. distance, sure: in metres.
+fn shadowfit_rays_surface(
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    distance: f32,
+    sure: f32,
+) -> shadowfit_RaySurface {
     var found = shadowfit_rays_no_surface();
     var hole = found;
     let world = shadowfit_rays_ray(origin, direction);
+    let middle = 0.5 * distance;
+    var least = SHADOWFIT_RAYS_FAR;
+    var least_hole = SHADOWFIT_RAYS_FAR;
     var most = distance;
     var ray = world;
     var reach = shadowfit_rays_scaled(most, world);
@@ -138,13 +155,19 @@ fn shadowfit_rays_surface(origin: vec3<f32>, direction: vec3<f32>, distance: f32
                 if !(met.is_inside && met.distance >= 0.0 && met.distance <= most) {
                     continue;
                 }
+                let misfit = shadowfit_rays_misfit(met.distance, middle, sure);
+                if misfit >= least {
+                    continue;
+                }
                 let surface = shadowfit_RaySurface(met.distance, met.normal, slot, instance);
                 if shadowfit_rays_ends(slot, instance, ray, met.distance) {
                     found = surface;
-                    most = met.distance;
+                    least = misfit;
+                    most = select(middle + misfit, met.distance, misfit <= 0.0);
                     reach = shadowfit_rays_scaled(most, ray);
-                } else if abs(met.distance - 0.5 * distance) < abs(hole.distance - 0.5 * distance) {
+                } else if misfit < least_hole {
                     hole = surface;
+                    least_hole = misfit;
                 }
             }
         }

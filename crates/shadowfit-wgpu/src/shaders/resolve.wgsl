@@ -188,7 +188,8 @@ fn surface_of(pixel: vec2<i32>, depth: f32) -> Surface {
     let ray = moved(m[2], surface);
     let away = select(-ray, ray, dot(ray, resolve.forward) > 0.0);
     let normal = stored_normal(pixel);
-    if any(normal != vec3<f32>(0.0)) {
+    // A rounded normal of a surface that is seen edge on may point either way. Zero points nowhere.
+    if abs(dot(normal, away)) > STORED_TILT * length(away) {
         surface.normal = select(normal, -normal, dot(normal, away) > 0.0);
         // A plane's depth changes so that its points stay on it.
         let across = dot(normal, moved(m[0], surface));

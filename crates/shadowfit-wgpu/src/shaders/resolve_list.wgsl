@@ -13,7 +13,7 @@ struct List {
 struct Listed {
     // Column, and row in the upper half.
     pixel: u32,
-    // The triangle of its first ray, once it is looked for: its place among those of the rays, or SHADOWFIT_RAYS_NONE, and its
+    // The triangle of its first sample, once it is looked for: its place among those of the rays, or SHADOWFIT_RAYS_NONE, and its
     // instance.
     slot: u32,
     instance: u32,

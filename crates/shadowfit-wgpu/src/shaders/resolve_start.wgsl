@@ -33,15 +33,18 @@ struct Sight {
     direction: vec3<f32>,
     // How far the surface may lie before and behind the middle, in metres.
     reach: f32,
+    // The same on rasterisers that move corners by SNAP at most.
+    sure: f32,
 }
 
-// Of a place in a pixel. Depths are rounded, and belong to triangles whose corners were moved.
+// Of a place in a pixel, from its first sample, in pixels. Depths are rounded, and belong to triangles whose corners were moved.
 fn sight_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Sight {
     // Beyond half the depth there is the far plane.
     let farthest = 0.5 * abs(surface.depth);
     let depth = surface.depth + clamp(dot(surface.steps, place), -farthest, farthest);
     let steps = surface.most_steps;
-    let off = ROUNDINGS * rounding(depth) + MOST_SNAP * (steps.x + steps.y) + BEND * dot(steps, abs(place));
+    let likely = ROUNDINGS * rounding(depth) + SNAP * (steps.x + steps.y) + BEND * dot(steps, abs(place));
+    let off = likely + (MOST_SNAP - SNAP) * (steps.x + steps.y);
     let least = min(off, 0.5 * abs(depth));
     let at = vec2<f32>(pixel) + sample_place(0u) + place;
     let middle = position_at(at, depth);
@@ -49,8 +52,10 @@ fn sight_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Sight {
     let other = position_at(at, depth + least);
     let is_near = dot(other - one, resolve.forward) > 0.0;
     let before = select(other, one, is_near);
-    let reach = length(middle - before) + POSITION_ROUNDING * (length(middle) + length(resolve.eye));
-    return Sight(middle, normalize(select(one - other, other - one, is_near)), reach);
+    let rounded = POSITION_ROUNDING * (length(middle) + length(resolve.eye));
+    let reach = length(middle - before);
+    let direction = normalize(select(one - other, other - one, is_near));
+    return Sight(middle, direction, reach + rounded, reach * (likely / off) + rounded);
 }
 
 // Where a line of sight begins, relative to the origin of the rays.

@@ -1,9 +1,9 @@
-// Third resolve pass: the triangle that the first ray of each pixel on the list starts on. A short ray from the eye finds it
-// again.
+// Third resolve pass: the triangle of the point whose depth is known, for each pixel on the list. A short ray from the eye finds
+// it again.
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 
-// Cosine of the greatest angle between a stored normal and that of its own triangle: normals may have eight bits.
+// Cosine of the greatest angle between a stored normal and that of its own triangle: far more than normals are rounded by.
 const SAME_NORMAL: f32 = 0.9995;
 
 @compute @workgroup_size(TRACE_THREADS)
@@ -18,8 +18,8 @@ fn find_surfaces(
     }
     let pixel = pixel_of(list.pixels[index]);
     let surface = surface_of(pixel, depth_at(pixel));
-    let sight = sight_at(pixel, surface, resolve.points[0].xy);
-    let met = shadowfit_rays_surface(begin_of(sight), sight.direction, 2.0 * sight.reach);
+    let sight = sight_at(pixel, surface, vec2<f32>(0.0));
+    let met = shadowfit_rays_surface(begin_of(sight), sight.direction, 2.0 * sight.reach, sight.sure);
     // Where a drawn triangle ends within the rounding of its corners, the ray meets its neighbour.
     let is_other = surface.is_stored && dot(met.normal, surface.normal) < SAME_NORMAL;
     list.pixels[index].slot = select(met.slot, SHADOWFIT_RAYS_NONE, is_other);

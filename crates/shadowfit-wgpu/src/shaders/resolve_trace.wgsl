@@ -2,7 +2,7 @@
 
 @group(1) @binding(4) var<storage, read> list: List;
 
-// A triangle on which the first ray of a pixel starts.
+// The triangle of a pixel at its first sample.
 struct Triangle {
     // Its place among those of the rays; SHADOWFIT_RAYS_NONE where none was found.
     slot: u32,
@@ -42,8 +42,8 @@ fn start_by_depth(surface: Surface) -> Start {
     return Start(surface.position, surface.normal, height, vec2<f32>(0.0), false);
 }
 
-// The point that the eye sees at a place in a pixel: on the triangle of the first one, or on its plane where the surface goes
-// on as a plane, and else the first one.
+// The point that the eye sees at a place in a pixel: on the triangle of the first sample, or on its plane where the surface goes
+// on as a plane, and else the first sample's.
 fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<f32>) -> Start {
     if triangle.slot == SHADOWFIT_RAYS_NONE {
         return start_by_depth(surface);
@@ -51,7 +51,7 @@ fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<
     let sight = sight_at(pixel, surface, place);
     let met = shadowfit_rays_plane(begin_of(sight), sight.direction, triangle.slot, triangle.instance);
     let is_near = met.distance >= 0.0 && met.distance <= 2.0 * sight.reach;
-    let is_first = all(place == resolve.points[0].xy);
+    let is_first = all(place == vec2<f32>(0.0));
     let beside = abs((met.distance - sight.reach) * dot(met.normal, sight.direction));
     if is_near && (is_first || met.is_inside || reaches(pixel, surface, place, beside)) {
         let position = sight.middle + sight.direction * (met.distance - sight.reach);
@@ -64,10 +64,11 @@ fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<
 }
 
 fn start_at_first(pixel: vec2<i32>, surface: Surface, triangle: Triangle) -> Start {
-    let place = resolve.points[0].xy;
+    let place = vec2<f32>(0.0);
     let sight = sight_at(pixel, surface, place);
     let met = shadowfit_rays_plane(begin_of(sight), sight.direction, triangle.slot, triangle.instance);
-    let position = sight.middle + sight.direction * (met.distance - sight.reach);
+    let along = clamp(met.distance, 0.0, 2.0 * sight.reach) - sight.reach;
+    let position = sight.middle + sight.direction * along;
     return Start(position, met.normal, height_at(position), place, true);
 }
 

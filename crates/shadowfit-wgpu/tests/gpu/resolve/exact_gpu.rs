@@ -1,7 +1,7 @@
 //! Factors of one ray against the truth: one ray on the CPU from the exact point of the triangle that a pixel shows.
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
-use shadowfit::{DepthConvention, Technique};
+use shadowfit::{DepthConvention, PerspectiveCamera, Technique};
 use shadowfit_scene::builtin::BuiltinScene;
 use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_truth::Tracer;
@@ -179,5 +179,57 @@ fn one_ray_finds_the_truth_by_16_bits_of_depth() {
         };
         stage.draw(&look);
         judge(&format!("16 bits, {normals:?}"), &mut stage, &look, (&tracer, WRONG_BY_16_BITS));
+    }
+}
+
+/// Sides that the picture leaves out and that cast lie close before the ones that it shows: the inner side of a thin shell, or
+/// the hull of an outline.
+#[test]
+fn culled_sides_close_before_a_surface_are_not_taken_for_it() {
+    let ground = Thing::solid(Vec3::new(-30.0, -0.5, -30.0), Vec3::new(30.0, 0.0, 30.0));
+    let wall = Thing::solid(Vec3::new(6.0, 0.0, -6.0), Vec3::new(6.4, 3.0, 6.0));
+    for above in [0.002, 0.005, 0.01] {
+        let corner = |x: f32, z: f32| Vec3::new(x * 4.0, above, z * 4.0);
+        let [a, b, c, d] = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+        let sheet = Thing { corners: vec![a, b, c, a, c, d], is_culled: true, ..Thing::default() };
+        let things = vec![ground.clone(), wall.clone(), sheet];
+        for (rays, normals) in [(1, None), (4, None), (4, Some(NormalEncoding::Signed))] {
+            let mut stage = Stage::new(&traced(Technique::default(), rays), things.clone());
+            stage.gpu.require_fine_steps();
+            let tracer = tracer(&stage);
+            let look = sized(super::twin_gpu::look(1, DepthConvention::Reversed, normals), [320, 180]);
+            let truth = Truth::new(&stage, &look, &tracer);
+            let drawn = stage.draw(&look);
+            let (factors, counts) = stage.traced(&look, &drawn, |_| ());
+            let is_wrong = |index: &usize| {
+                let is_lit = truth.lit[*index].filter(|_| factors[*index] >= 0.0 && !truth.is_at_edge(*index));
+                is_lit.is_some_and(|is_lit| (factors[*index] > 0.5) != is_lit)
+            };
+            let wrong = (0..factors.len()).filter(is_wrong).count();
+            println!("{above} m, {rays} rays, {normals:?}: {wrong} are wrong; {counts:?}");
+            assert!(counts.traced > 500 && wrong == 0, "{above} m, {rays} rays, {normals:?}: {wrong}; {counts:?}");
+        }
+    }
+}
+
+/// Ten bits cannot hold a zero: a level ground's normal leans by 0.08 degrees, and beyond a kilometre the eye seems to see its
+/// lower side.
+#[test]
+fn level_ground_is_lit_as_far_as_the_horizon_by_normals_of_ten_bits() {
+    let ground = Thing::solid(Vec3::new(-3000.0, -0.5, -3000.0), Vec3::new(3000.0, 0.0, 3000.0));
+    let mut technique = Technique::default();
+    technique.fit.max_distance = 2900.0;
+    let mut stage = Stage::new(&traced(technique, 1), vec![ground]);
+    stage.gpu.require_fine_steps();
+    let seen = super::twin_gpu::look(1, DepthConvention::Reversed, Some(NormalEncoding::Unsigned));
+    for forward in [Vec3::NEG_Z, Vec3::X, Vec3::new(-0.6, 0.0, 0.8)] {
+        let eye = DVec3::new(0.0, 1.7, 0.0);
+        let camera = PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y: 0.01, near: 0.5, far: 4000.0, ..seen.camera };
+        let look = Look { camera, ..sized(seen, [160, 90]) };
+        let drawn = stage.draw(&look);
+        let (factors, counts) = stage.traced(&look, &drawn, |_| ());
+        let dark = factors.iter().filter(|factor| (0.0..0.5).contains(*factor)).count();
+        println!("{forward}: {dark} are dark; {counts:?}");
+        assert!(counts.facing > 1000 && dark == 0, "{forward}: {dark} are dark; {counts:?}");
     }
 }

@@ -27,6 +27,8 @@ pub(super) struct Thing {
     pub(super) moves: bool,
     /// Whether the rays lack it.
     pub(super) is_lacking: bool,
+    /// Whether it casts and is not drawn, like sides that an engine culls.
+    pub(super) is_culled: bool,
     /// The hierarchy of the corners, which clones share once it is built.
     pub(super) mesh: Arc<OnceLock<RayMesh>>,
 }
@@ -204,12 +206,15 @@ impl Stage {
             for [a, b, c] in thing.corners.as_chunks::<3>().0 {
                 let normal = (*b - *a).cross(*c - *a).normalize_or_zero();
                 let stored = match look.normals {
-                    Some(NormalEncoding::Unsigned) => normal * 0.5 + 0.5,
+                    // Ten bits.
+                    Some(NormalEncoding::Unsigned) => ((normal * 0.5 + 0.5) * 1023.0).round() / 1023.0,
                     _ => normal,
                 };
                 corners.extend([a, b, c].map(|corner| {
                     let relative = (*corner + thing.shift).as_dvec3() - look.camera.eye;
-                    SeenCorner { clip: (clip * relative.extend(1.0)).as_vec4(), normal: stored.extend(0.0) }
+                    let clip = (clip * relative.extend(1.0)).as_vec4();
+                    // A triangle of three equal corners is not drawn.
+                    SeenCorner { clip: if thing.is_culled { Vec4::W } else { clip }, normal: stored.extend(0.0) }
                 }));
             }
         }

@@ -3,7 +3,7 @@
 use shadowfit::glam::{Vec2, Vec3, Vec4};
 use shadowfit_truth::Tracer;
 
-use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, SAME_NORMAL, Surface, Twin, dot, transformed};
+use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, SAME_NORMAL, SNAP, Surface, Twin, dot, transformed};
 
 /// What the rays of a pixel find.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +52,19 @@ pub(super) fn in_disc(index: u32, count: u32) -> Vec2 {
     Vec2::new((radius * angle.cos()) as f32, (radius * angle.sin()) as f32)
 }
 
+/// The triangle of a surface that lies `reach` along a ray: the first one within `sure` of there, else the nearest one.
+fn best_hit(tracer: &Tracer, [begin, direction]: [Vec3; 2], reach: f32, sure: f32) -> Option<u32> {
+    let mut best = (f32::INFINITY, None);
+    tracer.for_each_hit_within(begin, direction, 2.0 * reach, |hit| {
+        let off = (hit.distance - reach).abs();
+        let misfit = if off <= sure { hit.distance - reach - sure } else { off };
+        if misfit < best.0 {
+            best = (misfit, Some(hit.triangle));
+        }
+    });
+    best.1
+}
+
 impl Twin {
     pub(in super::super) fn traced(&self, index: usize, tracer: &Tracer) -> Traced {
         let (pixel, surface) = self.surface_at(index);
@@ -61,10 +74,9 @@ impl Twin {
         let across = [x * cosine + y * sine, y * cosine - x * sine];
         let estimate = self.estimate_of(&surface, across, turn);
         let (mut lit, mut expected, mut is_off) = (0.0, 0.0, false);
-        let mut first = None;
+        let first = self.start_at(pixel, &surface, Vec2::ZERO, (tracer, None));
         for [place, in_sun] in &self.points {
-            let start = self.start_at(pixel, &surface, *place, (tracer, first));
-            first.get_or_insert(start);
+            let start = self.start_at(pixel, &surface, *place, (tracer, Some(first)));
             let above = dot(start.position - surface.position, surface.normal).abs();
             let most = 0.5 * self.height_at(start.position) + dot(surface.off, surface.normal).abs();
             is_off |= start.place != *place || (*place != Vec2::ZERO && above > most);
@@ -111,7 +123,7 @@ impl Twin {
         homogeneous.truncate() / homogeneous.w
     }
 
-    /// Where a ray from a place in a pixel starts, in pixels from its first sample. `first`: the start of the pixel's first ray.
+    /// Where a ray from a place in a pixel starts, in pixels from its first sample. `first`: where one from that sample starts.
     fn start_at(
         &self,
         [x, y]: [i32; 2],
@@ -124,16 +136,20 @@ impl Twin {
         let depth = surface.depth + change.clamp(-farthest, farthest);
         let [across, down] = surface.most_steps.to_array();
         let bend = BEND * (across * place.x.abs() + down * place.y.abs());
-        let off = (ROUNDINGS * self.rounding(depth) + MOST_SNAP * (across + down) + bend).min(0.5 * depth.abs());
+        let likely = ROUNDINGS * self.rounding(depth) + SNAP * (across + down) + bend;
+        let all = likely + (MOST_SNAP - SNAP) * (across + down);
+        let off = all.min(0.5 * depth.abs());
         let at = Vec2::new(x as f32, y as f32) + self.place(0) + place;
         let middle = self.position_at(at, depth);
         let (one, other) = (self.position_at(at, depth - off), self.position_at(at, depth + off));
         let (near, far) = if dot(other - one, self.forward) > 0.0 { (one, other) } else { (other, one) };
-        let reach = (middle - near).length() + POSITION_ROUNDING * (middle.length() + self.eye.length());
+        let rounded = POSITION_ROUNDING * (middle.length() + self.eye.length());
+        let reach = (middle - near).length() + rounded;
+        let sure = (middle - near).length() * (likely / all) + rounded;
         let direction = (far - near).normalize();
         let begin = middle - direction * reach + self.eye;
         let triangle = match first {
-            None => tracer.first_hit_within(begin, direction, 2.0 * reach).map(|hit| hit.triangle).filter(|triangle| {
+            None => best_hit(tracer, [begin, direction], reach, sure).filter(|triangle| {
                 !surface.is_stored || dot(tracer.normal(*triangle), surface.normal).abs() >= SAME_NORMAL
             }),
             Some(first) => first.triangle,

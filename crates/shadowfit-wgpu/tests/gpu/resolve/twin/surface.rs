@@ -98,7 +98,8 @@ impl Twin {
         let away = if dot(ray, self.forward) > 0.0 { ray } else { -ray };
         let toward_eye = |normal: Vec3| if dot(normal, away) > 0.0 { -normal } else { normal };
         let stored = self.stored_normal(pixel);
-        let (normal, steps, most_steps, is_known, tilt) = if stored == Vec3::ZERO {
+        let is_stored = dot(stored, away).abs() > STORED_TILT * away.length();
+        let (normal, steps, most_steps, is_known, tilt) = if !is_stored {
             let (across, most_across, is_flat_across) = self.change(pixel, [1, 0], depth);
             let (down, most_down, is_flat_down) = self.change(pixel, [0, 1], depth);
             let (right, below) = (moved(m[0] + m[2] * across), moved(m[1] + m[2] * down));
@@ -114,7 +115,6 @@ impl Twin {
             (normal, steps, steps.abs(), true, STORED_TILT)
         };
         let is_single = self.is_single(pixel, depth, steps);
-        let is_stored = stored != Vec3::ZERO;
         let off = ray * (ROUNDINGS * self.rounding(depth) + SNAP * (most_steps.x + most_steps.y));
         Surface { position, w, depth, steps, most_steps, normal, is_known, is_stored, is_single, off, tilt }
     }
