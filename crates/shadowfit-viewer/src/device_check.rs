@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use shadowfit_params::device_check::CheckReport;
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_render::{AdapterChoice, Gpu, GpuError, Wanted};
 use shadowfit_study::{check_device_async, in_background_async, unchecked};
 
 /// A check that is under way or has ended; nothing while its dialog is closed.
@@ -23,16 +23,18 @@ struct Running {
 }
 
 impl DeviceCheck {
-    /// Begins a check of an adapter and shows its dialog. While a check is under way, nothing changes.
-    pub(crate) fn start(&mut self, adapter: AdapterChoice) {
+    /// Begins a check of the adapter in use, on a device of its own, and shows its dialog. While a check is under way, nothing
+    /// changes.
+    pub(crate) fn start(&mut self, gpu: &Gpu) {
         if self.is_running() {
             return;
         }
         let (sender, reports) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&is_cancelled);
+        let adapter = gpu.adapter.clone();
         let work = move || async move {
-            let report = match Gpu::headless(&adapter).await {
+            let report = match second_device(adapter).await {
                 // The receiver is gone once the dialog was closed.
                 Ok(gpu) => {
                     let tell = &mut |report: &CheckReport| drop(sender.send(report.clone()));
@@ -86,6 +88,15 @@ impl DeviceCheck {
     pub(crate) fn report(&self) -> Option<&CheckReport> {
         self.report.as_ref()
     }
+}
+
+/// Opens an adapter again.
+async fn second_device(adapter: wgpu::Adapter) -> Result<Gpu, GpuError> {
+    // A browser's adapter opens one device in its life, and a browser offers one adapter.
+    if cfg!(target_family = "wasm") {
+        return Gpu::headless(&AdapterChoice::Any).await;
+    }
+    Gpu::of_adapter(adapter, &Wanted::default()).await
 }
 
 /// The report where no device could be opened.

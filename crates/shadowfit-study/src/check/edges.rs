@@ -6,6 +6,7 @@ use shadowfit_truth::{Class, Judged, PixelTruth};
 use shadowfit_wgpu::resolve::EdgeResult;
 
 use super::bench::{Bench, SIZE, small};
+use super::numbers::steps_in_a_pixel;
 use super::outcome::Outcome;
 use crate::{NamedTechnique, SharedTruth, View};
 
@@ -18,6 +19,10 @@ pub(super) const TOLERANCE: &str = "1/256 of a pixel: rasterisers snap corners o
 /// The preset whose edges are traced.
 const PRESET: &str = "exact-4";
 
+/// Steps in a pixel to which the device must round the corners of triangles. The pass takes a stored depth to lie that close to its
+/// triangle.
+const NEEDED: u32 = 256;
+
 /// Steps of a pixel by which rays are moved to look for an edge: the snap of vertices, rounded up to an odd number, so that
 /// a step lies at the pixel's centre.
 const STEPS: u32 = 257;
@@ -29,6 +34,13 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
 
 /// The same with a truth that may be traced already.
 async fn run_with(bench: &mut Bench<'_>, mut truth: SharedTruth) -> Result<Outcome> {
+    let steps = steps_in_a_pixel(bench.gpu).await?;
+    if steps < NEEDED {
+        return Ok(Outcome::Unavailable(format!(
+            "the device rounds corners of triangles to 1/{steps} of a pixel. Exact edges need 1/{NEEDED}: about one pixel in a \
+             thousand is wrong on this device"
+        )));
+    }
     let named = NamedTechnique::preset(PRESET).context("the preset whose edges are traced")?;
     // One ray, through the pixel's centre, as the judge's.
     let technique = small(&named.technique).with_edges(Edges::Traced { samples: 1 });
@@ -85,9 +97,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn gpu_corners_are_rounded_to_the_steps_that_drivers_name() {
+        let gpu = shadowfit_testing::renderer_gpu();
+        let steps = pollster::block_on(steps_in_a_pixel(&gpu)).expect("it draws");
+        // Mesa's software driver moves edges by steps, and what lies between them as exactly as it can.
+        let named = (1.0 / shadowfit_testing::subpixel_step(&gpu.adapter.get_info())) as u32;
+        assert!([named, 1024].contains(&steps), "{steps} steps, not {named}");
+    }
+
+    #[test]
     fn gpu_traced_edges_agree_with_the_cpu_and_not_with_a_scene_that_has_moved() {
         let (gpu, is_cancelled) = (shadowfit_testing::renderer_gpu(), AtomicBool::new(false));
         let mut bench = Bench::new(&gpu, &is_cancelled).expect("a scene");
+        let info = gpu.adapter.get_info();
+        if shadowfit_testing::subpixel_step(&info) > 1.0 / NEEDED as f32 {
+            shadowfit_testing::lacking(&info, "256 steps in a pixel");
+        }
         let found = pollster::block_on(run(&mut bench)).expect("it runs");
         assert!(matches!(found, Outcome::Passed(_)), "{found:?}");
         // The truth of another light.

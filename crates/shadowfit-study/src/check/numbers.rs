@@ -64,6 +64,26 @@ const DEPTHS: &str = "
 }
 ";
 
+/// A triangle in each cell of four by four pixels, moved to the right by another share of a pixel. It shows, at the cell's second
+/// pixel across and down, how far its middle lies from that pixel's centre, in pixels.
+const MOVED: &str = "
+struct Varying {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) across: f32,
+}
+@vertex fn vs(@builtin(vertex_index) index: u32) -> Varying {
+    let cell = index / 3u;
+    let corner = select(vec2<f32>(select(-1.25, 1.25, index % 3u == 1u), -1.25), vec2<f32>(0.0, 1.25), index % 3u == 2u);
+    let moved = (f32(cell) / f32(PARTS) - 0.5) * RANGE;
+    let middle = vec2<f32>(f32(cell % COLUMNS), f32(cell / COLUMNS)) * 4.0 + vec2<f32>(1.5 + moved, 1.5);
+    let ndc = (middle + corner) / vec2<f32>(f32(WIDTH), f32(HEIGHT)) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+    return Varying(vec4<f32>(ndc, 0.0, 1.0), corner.x);
+}
+@fragment fn fs(in: Varying) -> @location(0) u32 {
+    return bitcast<u32>(in.across);
+}
+";
+
 /// A picture of numbers.
 struct Numbers<'a> {
     label: &'static str,
@@ -71,6 +91,8 @@ struct Numbers<'a> {
     bound: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
     /// Bytes of the vertices, if the picture is drawn by points, and their number.
     points: Option<(&'a [u8], u32)>,
+    /// Triangles without vertex buffers, if it is not.
+    triangles: u32,
     size: [u32; 2],
 }
 
@@ -104,7 +126,7 @@ impl Numbers<'_> {
                 pass.set_vertex_buffer(0, gpu.device.create_buffer_init(&descriptor).slice(..));
                 pass.draw(0..count, 0..1);
             }
-            None => pass.draw(0..3, 0..1),
+            None => pass.draw(0..3 * self.triangles, 0..1),
         }
         drop(pass);
         gpu.submit([encoder.finish()]);
@@ -167,6 +189,7 @@ pub(super) async fn factors(gpu: &Gpu, map: &ShadowMap, points: &[Point]) -> Res
         wgsl: &wgsl,
         bound: (map.receiver_layout(), map.receiver_group()),
         points: Some((&bytes, count)),
+        triangles: 0,
         size: [ROW, rows],
     };
     let mut factors = numbers.read(gpu).await?;
@@ -187,6 +210,7 @@ pub(super) async fn texels(gpu: &Gpu, map: &ShadowMap) -> Result<Vec<Texels>> {
         wgsl: &wgsl,
         bound: (map.receiver_layout(), map.receiver_group()),
         points: None,
+        triangles: 1,
         size: [width, height * descriptor.maps],
     };
     let depths = numbers.read(gpu).await?;
@@ -203,6 +227,34 @@ pub(super) async fn depths(gpu: &Gpu, view: &wgpu::TextureView) -> Result<Depths
     let layout = bindings::layout(&gpu.device, "depths", wgpu::ShaderStages::FRAGMENT, &[binding]);
     let group = bindings::group(&gpu.device, "depths", &layout, &[wgpu::BindingResource::TextureView(view)]);
     let wgsl = [WHOLE, DEPTHS].concat();
-    let numbers = Numbers { label: "depths", wgsl: &wgsl, bound: (&layout, &group), points: None, size };
+    let numbers = Numbers { label: "depths", wgsl: &wgsl, bound: (&layout, &group), points: None, triangles: 1, size };
     Ok(Depths { width: size[0], values: numbers.read(gpu).await? })
+}
+
+/// Pixels by which triangles are moved at most, and the number of steps in which they are.
+const RANGE: f32 = 0.5;
+const PARTS: u32 = 512;
+
+/// Returns the number of steps in a pixel to which the device rounds corners of triangles, at most 1,024. Direct3D guarantees 256,
+/// Vulkan 16.
+pub(super) async fn steps_in_a_pixel(gpu: &Gpu) -> Result<u32> {
+    // Powers of two keep the corners exact.
+    let size @ [width, height] = [64, 256];
+    let columns = width / 4;
+    let constants = format!(
+        "const PARTS = {PARTS}u; const RANGE = {RANGE:?}; const COLUMNS = {columns}u; const WIDTH = {width}u; \
+         const HEIGHT = {height}u;"
+    );
+    let wgsl = [MOVED, &constants].concat();
+    let layout = bindings::layout(&gpu.device, "moved", wgpu::ShaderStages::FRAGMENT, &[]);
+    let group = bindings::group(&gpu.device, "moved", &layout, &[]);
+    let (bound, triangles) = ((&layout, &group), PARTS + 1);
+    let numbers = Numbers { label: "moved", wgsl: &wgsl, bound, points: None, triangles, size }.read(gpu).await?;
+    let at = |cell: u32| numbers[((cell / columns * 4 + 1) * width + cell % columns * 4 + 1) as usize];
+    let mut shown: Vec<f32> = (0..=PARTS).map(at).collect();
+    shown.sort_by(f32::total_cmp);
+    // What is nearer together than half of the finest step differs by the rounding of f32.
+    let finest = RANGE / PARTS as f32;
+    let steps = shown.windows(2).filter(|pair| pair[1] - pair[0] > 0.5 * finest).count();
+    Ok((steps as f32 / RANGE) as u32)
 }

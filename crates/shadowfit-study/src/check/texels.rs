@@ -50,6 +50,10 @@ impl Difference {
             if (found - expected).abs() <= tolerance {
                 continue;
             }
+            if found.is_nan() {
+                self.wrong += 1;
+                continue;
+            }
             // A caster that is thinner than a texel may lie on a centre in one of the maps alone: there the other one's
             // depth is beside it.
             if around.holds(*found, tolerance) || map.around(index).holds(*expected, tolerance) {
@@ -165,5 +169,7 @@ mod tests {
         let difference = difference(&texels, &reference);
         assert_eq!((difference.wrong, difference.moved), (0, 1), "{difference:?}");
         assert!(difference.is_explained());
+        texels.depths[edge] = f32::NAN;
+        assert_eq!(self::difference(&texels, &reference).wrong, 1);
     }
 }

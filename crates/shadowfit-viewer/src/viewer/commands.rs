@@ -72,7 +72,7 @@ impl Viewer {
                 self.saved.theme = theme.into();
                 self.interface.context.set_theme(theme);
             }
-            Command::CheckDevice => self.device_check.start(self.start.arguments.adapter()),
+            Command::CheckDevice => self.device_check.start(self.stage.gpu()),
             Command::CancelCheck => self.device_check.cancel(),
             Command::CloseCheck => self.device_check.close(),
             Command::CopyCheck => self.copy_check(),
