@@ -3,8 +3,12 @@
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 
-// Cosine of the greatest angle between a stored normal and that of its own triangle: far more than normals are rounded by.
-const SAME_NORMAL: f32 = 0.9995;
+// Where the triangle of a pixel is sought. beside: how far outside of it the ray may pass, in metres.
+fn triangle_at(sight: Sight, surface: Surface, beside: f32) -> shadowfit_RaySurface {
+    let normal = select(vec3<f32>(0.0), surface.normal, surface.is_stored);
+    let sought = shadowfit_RaySought(2.0 * sight.reach, sight.sure, beside, normal);
+    return shadowfit_rays_surface(begin_of(sight), sight.direction, sought);
+}
 
 @compute @workgroup_size(TRACE_THREADS)
 fn find_surfaces(
@@ -19,9 +23,13 @@ fn find_surfaces(
     let pixel = pixel_of(list.pixels[index]);
     let surface = surface_of(pixel, depth_at(pixel));
     let sight = sight_at(pixel, surface, vec2<f32>(0.0));
-    let met = shadowfit_rays_surface(begin_of(sight), sight.direction, 2.0 * sight.reach, sight.sure);
-    // Where a drawn triangle ends within the rounding of its corners, the ray meets its neighbour.
-    let is_other = surface.is_stored && dot(met.normal, surface.normal) < SAME_NORMAL;
-    list.pixels[index].slot = select(met.slot, SHADOWFIT_RAYS_NONE, is_other);
+    var met = triangle_at(sight, surface, 0.0);
+    if met.slot == SHADOWFIT_RAYS_NONE {
+        // The corners of the drawn triangle were rounded, and the ray passes it.
+        let m = resolve.world_from_pixel;
+        let pixel_size = max(length(moved(m[0], surface)), length(moved(m[1], surface)));
+        met = triangle_at(sight, surface, SNAP * pixel_size);
+    }
+    list.pixels[index].slot = met.slot;
     list.pixels[index].instance = met.instance;
 }

@@ -1,7 +1,7 @@
 //! The rays of a pixel: the arithmetic of `resolve_trace.wgsl`, in f32, asked of the CPU's tracer.
 
 use shadowfit::glam::{Vec2, Vec3, Vec4};
-use shadowfit_truth::Tracer;
+use shadowfit_truth::{Hit, Tracer};
 
 use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, SAME_NORMAL, SNAP, Surface, Twin, dot, transformed};
 
@@ -52,17 +52,55 @@ pub(super) fn in_disc(index: u32, count: u32) -> Vec2 {
     Vec2::new((radius * angle.cos()) as f32, (radius * angle.sin()) as f32)
 }
 
-/// The triangle of a surface that lies `reach` along a ray: the first one within `sure` of there, else the nearest one.
-fn best_hit(tracer: &Tracer, [begin, direction]: [Vec3; 2], reach: f32, sure: f32) -> Option<u32> {
-    let mut best = (f32::INFINITY, None);
-    tracer.for_each_hit_within(begin, direction, 2.0 * reach, |hit| {
-        let off = (hit.distance - reach).abs();
-        let misfit = if off <= sure { hit.distance - reach - sure } else { off };
-        if misfit < best.0 {
-            best = (misfit, Some(hit.triangle));
+/// A surface on a ray.
+struct Sought<'a> {
+    tracer: &'a Tracer,
+    begin: Vec3,
+    direction: Vec3,
+    /// Where on the ray it lies, give or take as much.
+    reach: f32,
+    sure: f32,
+    /// How far beside a triangle the ray may pass.
+    beside: f32,
+    normal: Option<Vec3>,
+}
+
+impl Sought<'_> {
+    /// The first triangle within `sure` of where the surface lies, else the nearest one. If the ray meets none, those that it
+    /// passes.
+    fn triangle(&self) -> Option<u32> {
+        let Self { tracer, begin, direction, reach, .. } = *self;
+        let mut best = (f32::INFINITY, None);
+        tracer.for_each_hit_within(begin, direction, 2.0 * reach, |hit| self.choose(hit, &mut best));
+        if best.1.is_none() {
+            for triangle in (0..tracer.len() as u32).filter(|triangle| self.passes(*triangle)) {
+                let normal = tracer.normal(triangle);
+                let distance = dot(normal, tracer.corners(triangle)[0] - begin) / dot(normal, direction);
+                if (0.0..=2.0 * reach).contains(&distance) {
+                    self.choose(Hit { distance, triangle }, &mut best);
+                }
+            }
         }
-    });
-    best.1
+        best.1
+    }
+
+    fn choose(&self, hit: Hit, best: &mut (f32, Option<u32>)) {
+        let off = (hit.distance - self.reach).abs();
+        let misfit = if off <= self.sure { hit.distance - self.reach - self.sure } else { off };
+        let is_same = |normal: Vec3| dot(self.tracer.normal(hit.triangle), normal).abs() >= SAME_NORMAL;
+        if misfit < best.0 && self.normal.is_none_or(is_same) {
+            *best = (misfit, Some(hit.triangle));
+        }
+    }
+
+    fn passes(&self, triangle: u32) -> bool {
+        let [a, b, c] = self.tracer.corners(triangle);
+        let side = dot(self.tracer.normal(triangle), self.direction).signum();
+        [[a, b], [b, c], [c, a]].into_iter().all(|[from, to]| {
+            let product = self.direction.cross(to - from);
+            side * dot(product, self.begin - from) >= -self.beside * product.length()
+        })
+    }
 }
 
 impl Twin {
@@ -149,9 +187,11 @@ impl Twin {
         let direction = (far - near).normalize();
         let begin = middle - direction * reach + self.eye;
         let triangle = match first {
-            None => best_hit(tracer, [begin, direction], reach, sure).filter(|triangle| {
-                !surface.is_stored || dot(tracer.normal(*triangle), surface.normal).abs() >= SAME_NORMAL
-            }),
+            None => {
+                let [across, down] = [0, 1].map(|axis| Self::moved(self.world_from_pixel[axis], surface).length());
+                let normal = surface.is_stored.then_some(surface.normal);
+                Sought { tracer, begin, direction, reach, sure, beside: SNAP * across.max(down), normal }.triangle()
+            }
             Some(first) => first.triangle,
         };
         let Some(triangle) = triangle else {
