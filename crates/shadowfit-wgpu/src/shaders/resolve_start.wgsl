@@ -58,6 +58,12 @@ fn sight_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Sight {
     return Sight(middle, direction, reach + rounded, reach * (likely / off) + rounded);
 }
 
+// How far the ray from the eye may pass outside of the drawn triangle, since its corners were rounded, in metres.
+fn beside_of(surface: Surface) -> f32 {
+    let m = resolve.world_from_pixel;
+    return SNAP * max(length(moved(m[0], surface)), length(moved(m[1], surface)));
+}
+
 // Where a line of sight begins, relative to the origin of the rays.
 fn begin_of(sight: Sight) -> vec3<f32> {
     return sight.middle - sight.direction * sight.reach + resolve.eye;

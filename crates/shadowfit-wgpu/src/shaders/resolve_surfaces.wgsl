@@ -3,11 +3,18 @@
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 
-// Where the triangle of a pixel is sought. beside: how far outside of it the ray may pass, in metres.
-fn triangle_at(sight: Sight, surface: Surface, beside: f32) -> shadowfit_RaySurface {
-    let normal = select(vec3<f32>(0.0), surface.normal, surface.is_stored);
-    let sought = shadowfit_RaySought(2.0 * sight.reach, sight.sure, beside, normal);
+// The triangle that the ray from the eye meets.
+fn met_by(sight: Sight) -> shadowfit_RaySurface {
+    let sought = shadowfit_RaySought(2.0 * sight.reach, sight.sure, 0.0, vec3<f32>(0.0));
     return shadowfit_rays_surface(begin_of(sight), sight.direction, sought);
+}
+
+// The triangle with the pixel's normal that the ray meets, or passes by the rounding of its corners.
+fn passed_by(sight: Sight, surface: Surface) -> shadowfit_RaySurface {
+    let near = Sight(sight.middle, sight.direction, sight.sure, sight.sure);
+    let normal = select(vec3<f32>(0.0), surface.normal, surface.is_stored);
+    let sought = shadowfit_RaySought(2.0 * near.reach, near.sure, beside_of(surface), normal);
+    return shadowfit_rays_surface(begin_of(near), near.direction, sought);
 }
 
 @compute @workgroup_size(TRACE_THREADS)
@@ -23,12 +30,10 @@ fn find_surfaces(
     let pixel = pixel_of(list.pixels[index]);
     let surface = surface_of(pixel, depth_at(pixel));
     let sight = sight_at(pixel, surface, vec2<f32>(0.0));
-    var met = triangle_at(sight, surface, 0.0);
-    if met.slot == SHADOWFIT_RAYS_NONE {
-        // The corners of the drawn triangle were rounded, and the ray passes it.
-        let m = resolve.world_from_pixel;
-        let pixel_size = max(length(moved(m[0], surface)), length(moved(m[1], surface)));
-        met = triangle_at(sight, surface, SNAP * pixel_size);
+    var met = met_by(sight);
+    let is_other = surface.is_stored && dot(met.normal, surface.normal) < SHADOWFIT_RAYS_SAME_NORMAL;
+    if met.slot == SHADOWFIT_RAYS_NONE || is_other {
+        met = passed_by(sight, surface);
     }
     list.pixels[index].slot = met.slot;
     list.pixels[index].instance = met.instance;

@@ -42,6 +42,13 @@ fn start_by_depth(surface: Surface) -> Start {
     return Start(surface.position, surface.normal, height, vec2<f32>(0.0), false);
 }
 
+// Where rays from a triangle at the pixel's first sample start. Beside the triangle its plane may lie beneath the neighbour.
+fn start_on(met: shadowfit_rays_Met, position: vec3<f32>, surface: Surface) -> Start {
+    let least = height_at(position);
+    let height = select(max(least, beside_of(surface)), least, met.is_inside);
+    return Start(position, met.normal, height, vec2<f32>(0.0), true);
+}
+
 // The point that the eye sees at a place in a pixel: on the triangle of the first sample, or on its plane where the surface goes
 // on as a plane, and else the first sample's.
 fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<f32>) -> Start {
@@ -55,6 +62,9 @@ fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<
     let beside = abs((met.distance - sight.reach) * dot(met.normal, sight.direction));
     if is_near && (is_first || met.is_inside || reaches(pixel, surface, place, beside)) {
         let position = sight.middle + sight.direction * (met.distance - sight.reach);
+        if is_first {
+            return start_on(met, position, surface);
+        }
         return Start(position, met.normal, height_at(position), place, true);
     }
     if is_first {
@@ -64,12 +74,10 @@ fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<
 }
 
 fn start_at_first(pixel: vec2<i32>, surface: Surface, triangle: Triangle) -> Start {
-    let place = vec2<f32>(0.0);
-    let sight = sight_at(pixel, surface, place);
+    let sight = sight_at(pixel, surface, vec2<f32>(0.0));
     let met = shadowfit_rays_plane(begin_of(sight), sight.direction, triangle.slot, triangle.instance);
     let along = clamp(met.distance, 0.0, 2.0 * sight.reach) - sight.reach;
-    let position = sight.middle + sight.direction * along;
-    return Start(position, met.normal, height_at(position), place, true);
+    return start_on(met, sight.middle + sight.direction * along, surface);
 }
 
 // Directions across the light, of unit length.

@@ -66,19 +66,21 @@ struct Sought<'a> {
 }
 
 impl Sought<'_> {
-    /// The first triangle within `sure` of where the surface lies, else the nearest one. If the ray meets none, those that it
-    /// passes.
+    /// The first triangle that the ray meets within `sure` of where the surface lies, else the nearest one. If it meets none, or one
+    /// with another normal, one that it passes.
     fn triangle(&self) -> Option<u32> {
         let Self { tracer, begin, direction, reach, .. } = *self;
         let mut best = (f32::INFINITY, None);
         tracer.for_each_hit_within(begin, direction, 2.0 * reach, |hit| self.choose(hit, &mut best));
-        if best.1.is_none() {
-            for triangle in (0..tracer.len() as u32).filter(|triangle| self.passes(*triangle)) {
-                let normal = tracer.normal(triangle);
-                let distance = dot(normal, tracer.corners(triangle)[0] - begin) / dot(normal, direction);
-                if (0.0..=2.0 * reach).contains(&distance) {
-                    self.choose(Hit { distance, triangle }, &mut best);
-                }
+        if best.1.is_some_and(|triangle| self.is_same(triangle)) {
+            return best.1;
+        }
+        best = (f32::INFINITY, None);
+        for triangle in (0..tracer.len() as u32).filter(|triangle| self.is_same(*triangle) && self.passes(*triangle)) {
+            let normal = tracer.normal(triangle);
+            let distance = dot(normal, tracer.corners(triangle)[0] - begin) / dot(normal, direction);
+            if (distance - reach).abs() <= self.sure {
+                self.choose(Hit { distance, triangle }, &mut best);
             }
         }
         best.1
@@ -87,10 +89,13 @@ impl Sought<'_> {
     fn choose(&self, hit: Hit, best: &mut (f32, Option<u32>)) {
         let off = (hit.distance - self.reach).abs();
         let misfit = if off <= self.sure { hit.distance - self.reach - self.sure } else { off };
-        let is_same = |normal: Vec3| dot(self.tracer.normal(hit.triangle), normal).abs() >= SAME_NORMAL;
-        if misfit < best.0 && self.normal.is_none_or(is_same) {
+        if misfit < best.0 {
             *best = (misfit, Some(hit.triangle));
         }
+    }
+
+    fn is_same(&self, triangle: u32) -> bool {
+        self.normal.is_none_or(|normal| dot(self.tracer.normal(triangle), normal).abs() >= SAME_NORMAL)
     }
 
     fn passes(&self, triangle: u32) -> bool {
@@ -188,9 +193,8 @@ impl Twin {
         let begin = middle - direction * reach + self.eye;
         let triangle = match first {
             None => {
-                let [across, down] = [0, 1].map(|axis| Self::moved(self.world_from_pixel[axis], surface).length());
                 let normal = surface.is_stored.then_some(surface.normal);
-                Sought { tracer, begin, direction, reach, sure, beside: SNAP * across.max(down), normal }.triangle()
+                Sought { tracer, begin, direction, reach, sure, beside: self.beside_of(surface), normal }.triangle()
             }
             Some(first) => first.triangle,
         };
@@ -213,8 +217,16 @@ impl Twin {
         }
         let position = middle + direction * (distance - reach);
         let normal = if dot(normal, direction) > 0.0 { -normal } else { normal };
-        let above = position + normal * self.height_at(position);
+        let least = self.height_at(position);
+        let height = if is_inside || first.is_some() { least } else { least.max(self.beside_of(surface)) };
+        let above = position + normal * height;
         Start { position, above, normal, place, triangle: Some(triangle) }
+    }
+
+    /// How far the ray from the eye may pass outside of the drawn triangle, in metres.
+    fn beside_of(&self, surface: &Surface) -> f32 {
+        let [across, down] = [0, 1].map(|axis| Self::moved(self.world_from_pixel[axis], surface).length());
+        SNAP * across.max(down)
     }
 
     /// Whether a pixel leaves the plane of another one by so little that rays from between them start above the surface.
