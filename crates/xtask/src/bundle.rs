@@ -4,6 +4,9 @@
 //! The bundle keeps the layout of the repository, `workspace/target/debug/deps` included: a test finds the files of its
 //! package and the examples that it starts in the same places relative to itself.
 
+#[cfg(all(test, target_os = "linux"))]
+mod runner_tests;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -173,46 +176,5 @@ mod tests {
         assert!(program(&message("crates/xtask", "bin", true)).is_none());
         assert!(program(&message("tests/determinism", "bin", false)).is_none());
         assert!(program(&serde_json::json!({ "reason": "build-finished" })).is_none());
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn the_runner_counts_results_and_fails_with_its_tests() {
-        let folder = std::env::temp_dir().join(format!("shadowfit-bundle-{}", std::process::id()));
-        let deps = folder.join("workspace/target/debug/deps");
-        fs::create_dir_all(&deps).unwrap();
-        fs::create_dir_all(folder.join("workspace/target/debug/examples")).unwrap();
-        write_runner(&folder.join("run.sh")).unwrap();
-        let fake = |name: &str, text: &str| write_program(&folder.join("workspace/target/debug").join(name), text);
-        fake("examples/adapters", "echo 'Fake GPU (Vulkan, discrete GPU)'");
-        fake(
-            "deps/good",
-            "echo \"in ${PWD##*/}: $*\"; echo 'test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured'",
-        );
-        fake(
-            "deps/bad",
-            "echo 'test a::b ... FAILED'; echo 'test result: FAILED. 1 passed; 1 failed; 0 ignored'; exit 101",
-        );
-        let run = |list: &str| {
-            fs::write(folder.join(TESTS), list).unwrap();
-            let output = Command::new(folder.join("run.sh")).args(["--adapter", "fake", "some_name"]).output().unwrap();
-            (output.status.code(), String::from_utf8(output.stdout).unwrap())
-        };
-        let (code, text) = run("target/debug/deps/good\t.\tx/good\n");
-        assert_eq!(code, Some(0), "{text}");
-        assert!(text.contains("Fake GPU") && text.contains("3 passed, 0 failed"), "{text}");
-        let log = fs::read_to_string(folder.join("logs/x-good.log")).unwrap();
-        assert!(log.contains("in workspace: some_name") && log.contains("--skip golden"), "{log}");
-        let (code, text) = run("target/debug/deps/good\t.\tx/good\ntarget/debug/deps/bad\t.\tx/bad\n");
-        assert_eq!(code, Some(1), "{text}");
-        assert!(text.contains("4 passed, 1 failed") && text.contains("a::b"), "{text}");
-        fs::remove_dir_all(&folder).unwrap();
-    }
-
-    #[cfg(target_os = "linux")]
-    fn write_program(file: &Path, text: &str) {
-        use std::os::unix::fs::PermissionsExt;
-        fs::write(file, format!("#!/bin/sh\n{text}\n")).unwrap();
-        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();
     }
 }

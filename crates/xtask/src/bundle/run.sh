@@ -1,34 +1,53 @@
 #!/bin/sh
 # Runs the tests of a bundle of shadowfit on a graphics adapter of this machine, without Rust:
 #
-#   ./run.sh [--adapter NAME] [FILTER...]
+#   ./run.sh [--adapter NAME] [--limit SECONDS] [FILTER...]
 #
 # NAME is `software`, `any` or a part of an adapter's name (default: $SHADOWFIT_ADAPTER, or `any`). A FILTER is a part of a
-# test's path. The bundle leaves out golden pictures, which belong to one software driver, and tests of the real window,
-# which need an X server. A test that needs more than the adapter has, as most do on OpenGL, is refused, which is no
-# failure. The output of each program is in logs. Exit code: 0, 1 if a test fails, 2 after bad input.
+# test's path. A test program that runs longer than the limit (default: 1200 seconds) is stopped and counts as failed, if
+# the machine has the command `timeout`. The bundle leaves out golden pictures, which belong to one software driver, and
+# tests of the real window, which need an X server. A test that needs more than the adapter has, as most do on OpenGL, is
+# refused, which is no failure. The output of each program is in logs. Exit code: 0, 1 if a test fails, 2 after bad input.
 set -u
 
-here=$(cd "$(dirname "$0")" && pwd)
+refuse() {
+    echo "error: $1" >&2
+    exit 2
+}
+
+here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd) || exit 2
 workspace=$here/workspace
 logs=$here/logs
 adapter=${SHADOWFIT_ADAPTER:-any}
+limit=1200
 
-case "${1:-}" in
---adapter)
-    [ $# -ge 2 ] || { echo "error: --adapter needs a name" >&2; exit 2; }
-    adapter=$2
-    shift 2
-    ;;
---help | -h)
-    sed -n '2,9s/^# \{0,1\}//p' "$0"
-    exit 0
-    ;;
--*)
-    echo "error: unknown option $1; --help lists them" >&2
-    exit 2
-    ;;
+# Each word leaves the list at its front. Filters come back at its end.
+words=$#
+while [ "$words" -gt 0 ]; do
+    word=$1
+    shift
+    words=$((words - 1))
+    case $word in
+    --adapter | --limit)
+        [ "$words" -gt 0 ] || refuse "$word needs a value"
+        if [ "$word" = --adapter ]; then adapter=$1; else limit=$1; fi
+        shift
+        words=$((words - 1))
+        ;;
+    --adapter=*) adapter=${word#*=} ;;
+    --limit=*) limit=${word#*=} ;;
+    --help | -h)
+        sed -n '2,10s/^# \{0,1\}//p' "$0"
+        exit 0
+        ;;
+    -*) refuse "unknown option $word; --help lists them" ;;
+    *) set -- "$@" "$word" ;;
+    esac
+done
+case $limit in
+'' | *[!0-9]*) refuse "--limit needs a number of seconds, not '$limit'" ;;
 esac
+[ -s "$here/tests.txt" ] || refuse "$here/tests.txt, the list of the test programs, is missing or empty"
 
 export SHADOWFIT_ADAPTER="$adapter"
 # Unoptimised code needs larger stacks than the usual 2 MiB of a thread.
@@ -42,55 +61,117 @@ label=$("$workspace/target/debug/examples/adapters" --adapter "$adapter") || exi
 echo "adapter: $label"
 threads=$(nproc 2>/dev/null || echo 2)
 threads=$((threads * 2))
-mkdir -p "$logs"
-rm -f "$logs"/*.log
+# Systems other than Linux may lack the command, or its option -k.
+limited=
+if timeout -k 1 1 true 2>/dev/null; then
+    limited="timeout -k 10 $limit"
+fi
+mkdir -p "$logs" || exit 2
+rm -f "$logs"/*.log "$logs/table" "$logs/early" "$logs/failed" "$logs/run"
 : >"$logs/table"
 
-# Adds up a number of all `test result` lines of a log.
-count() {
-    sed -n "s/^test result: .* \([0-9][0-9]*\) $2.*/\1/p" "$1" | { sum=0; while read -r n; do sum=$((sum + n)); done; echo $sum; }
-}
-
-# Runs a test program in a shell of its own: run PROGRAM PACKAGE LOG [ARGUMENT...]
-run() (
+# Becomes a test program, with the limit, in a shell that runs in the background: become PROGRAM PACKAGE [ARGUMENT...]
+become() {
     program=$workspace/$1
     export CARGO_MANIFEST_DIR="$workspace/$2"
-    log=$3
-    shift 3
-    cd "$CARGO_MANIFEST_DIR" && exec "$program" "$@" >>"$log" 2>&1 </dev/null
-)
+    shift 2
+    # The limit is a command with its arguments, so it has no quotes.
+    cd "$CARGO_MANIFEST_DIR" && exec $limited "$program" "$@" >"$logs/run" 2>&1 </dev/null
+}
 
-tab=$(printf '\t')
-while IFS=$tab read -r program package name <&3; do
-    log=$logs/$(echo "$name" | tr / -).log
-    start=$(date +%s)
-    run "$program" "$package" "$log" "$@" --skip golden --skip window:: --skip own_process "--test-threads=$threads"
+# Prints the numbers of result lines and of passed, failed, refused and ignored tests of the last run. A failed test is
+# refused if its section of the output has a line that begins with LACKING. Adds the other failed tests to a list.
+judge() {
+    awk -v list="$logs/failed" '
+        /^test result: / {
+            results++
+            for (i = 2; i <= NF; i++) {
+                if ($i == "passed;") passed += $(i - 1)
+                if ($i == "failed;") failed += $(i - 1)
+                if ($i == "ignored;") ignored += $(i - 1)
+            }
+            test = ""
+        }
+        /^test .* \.\.\. FAILED$/ { names[$2] }
+        /^---- .* stdout ----$/ { test = $2; names[test] }
+        /^LACKING: / && test != "" && !(test in lacking) { lacking[test]; refused++ }
+        END {
+            for (name in names) if (!(name in lacking)) print name >>list
+            print results + 0, passed + 0, failed + 0, refused + 0, ignored + 0
+        }' "$logs/run"
+}
+
+# Runs a test program, and adds its results to those of its line in the table: tally NAME PROGRAM PACKAGE LOG [ARGUMENT...]
+tally() {
+    name=$1
+    program=$2
+    package=$3
+    log=$4
+    shift 4
+    : >"$logs/run"
+    # In the background, so that an interrupt reaches this shell at once.
+    become "$program" "$package" "$@" &
+    child=$!
+    wait "$child"
     code=$?
+    child=
+    cat "$logs/run" >>"$log"
+    set -- $(judge)
+    run_failed=$(($3 > $4 ? $3 - $4 : 0))
+    # The exit code that this result explains. A refused test fails, too.
+    explained=0
+    [ "$3" = 0 ] || explained=101
+    if [ "$1" = 0 ] || [ "$code" != "$explained" ]; then
+        run_failed=$((run_failed + 1))
+        why="exit code $code"
+        [ "$code" != 124 ] || [ -z "$limited" ] || why="no end after $limit seconds"
+        echo "$name: $why" >>"$logs/early"
+        echo "ENDED EARLY: $name: $why" >>"$log"
+    fi
+    passed=$((passed + $2))
+    failed=$((failed + run_failed))
+    refused=$((refused + $4))
+    ignored=$((ignored + $5))
+}
+
+child=
+trap '[ -z "$child" ] || kill "$child"; exit 130' INT TERM HUP
+
+all_passed=0
+all_failed=0
+all_refused=0
+tab=$(printf '\t')
+while IFS=$tab read -r file folder target <&3; do
+    log=$logs/$(echo "$target" | tr / -).log
+    start=$(date +%s)
+    passed=0
+    failed=0
+    refused=0
+    ignored=0
+    tally "$target" "$file" "$folder" "$log" "$@" --skip golden --skip window:: --skip own_process \
+        "--test-threads=$threads"
     # These tests measure their process, so each has one of its own.
-    alone=$(cd "$workspace/$package" && "$workspace/$program" --list --format terse "$@" 2>/dev/null |
+    alone=$(cd "$workspace/$folder" &&
+        "$workspace/$file" --list --format terse "$@" --skip golden --skip window:: 2>/dev/null |
         sed -n 's/: test$//p' | grep own_process)
     for test in $alone; do
-        run "$program" "$package" "$log" --exact "$test" || code=1
+        tally "$target, $test" "$file" "$folder" "$log" --exact "$test"
     done
-    passed=$(count "$log" passed)
-    failed=$(count "$log" failed)
-    # Tests that need more than the adapter has.
-    refused=$(grep -c '^LACKING: ' "$log")
-    [ "$failed" -le "$refused" ] && [ "$failed" != 0 ] && code=0
-    failed=$((failed > refused ? failed - refused : 0))
-    ignored=$(count "$log" ignored)
-    # A program that ends without a result has crashed.
-    [ "$code" = 0 ] || [ "$failed" != 0 ] || failed=1
     verdict=ok
     [ "$failed" = 0 ] || verdict=FAILED
     if [ "$((passed + failed + refused))" != 0 ]; then
         seconds=$(($(date +%s) - start))
-        line=$(printf '%-7s %6d %6d %7d %7d %5ds  %s' "$verdict" "$passed" "$failed" "$refused" "$ignored" "$seconds" "$name")
-        echo "$line" | tee -a "$logs/table"
+        printf '%-7s %6d %6d %7d %7d %5ds  %s\n' "$verdict" "$passed" "$failed" "$refused" "$ignored" "$seconds" \
+            "$target" | tee -a "$logs/table"
     fi
-    echo "$passed $failed" >>"$logs/sums.log"
+    all_passed=$((all_passed + passed))
+    all_failed=$((all_failed + failed))
+    all_refused=$((all_refused + refused))
 done 3<"$here/tests.txt"
+rm -f "$logs/run"
 
+[ "$((all_passed + all_failed + all_refused))" != 0 ] ||
+    refuse "no test was run: each test is ignored, left out, or has none of the filters in its path: $*"
 echo
 echo "verdict passed failed refused ignored  time  program"
 cat "$logs/table"
@@ -99,8 +180,8 @@ skipped=$(grep -h '^SKIPPED' "$logs"/*.log | sort -u)
 [ -z "$skipped" ] || printf '%s\n\n' "$skipped"
 refusals=$(grep -h '^LACKING' "$logs"/*.log | sort | uniq -c)
 [ -z "$refusals" ] || printf 'refused:\n%s\n\n' "$refusals"
-failures=$(sed -n 's/^test \(.*\) \.\.\. FAILED$/\1/p' "$logs"/*.log | sort -u)
-[ -z "$failures" ] || printf 'failed or refused:\n%s\n\n' "$failures"
-total=$(awk '{ p += $1; f += $2 } END { print p + 0, f + 0 }' "$logs/sums.log")
-echo "${total% *} passed, ${total#* } failed on $label. Left out: golden pictures (one software driver) and the window."
-[ "${total#* }" = 0 ]
+[ ! -s "$logs/failed" ] || printf 'failed:\n%s\n\n' "$(sort -u "$logs/failed")"
+[ ! -s "$logs/early" ] || printf 'ended early:\n%s\n\n' "$(cat "$logs/early")"
+echo "$all_passed passed, $all_failed failed, $all_refused refused on $label." \
+    "Left out: golden pictures (one software driver) and the window."
+[ "$all_failed" = 0 ]
