@@ -1,7 +1,7 @@
 //! The viewer as a program: what it says and how it ends when it is given nonsense.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use crate::support::{
     NOTES, SCENE_WITH_NOTES, adapter_name, assets, example_program, files_below, test_gpu, viewer_program,
@@ -266,6 +266,28 @@ fn a_script_without_a_window_saves_into_the_folder_and_ends_by_how_its_lines_wen
         assert_eq!(output.status.code(), Some(REFUSED), "{line}: {message}");
         assert!(message.contains(&format!("error: bad.txt:3: {line}: ")), "{message}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_output_ends_quietly_and_a_full_one_in_exit_code_2() {
+    let scratch = Scratch::new("outputs");
+    let full = || std::fs::File::create("/dev/full").expect("a device of Linux");
+    let start = |arguments: &[&str], output: Stdio, errors: Stdio| {
+        let mut command = Command::new(viewer_program());
+        command.current_dir(&scratch.0).args(arguments).stdout(output).stderr(errors);
+        command.spawn().expect("the viewer starts")
+    };
+    let mut closed = start(&["--parameters"], Stdio::piped(), Stdio::piped());
+    drop(closed.stdout.take());
+    let ended = closed.wait_with_output().expect("a child");
+    assert_eq!((ended.status.code(), ended.stderr.as_slice()), (Some(0), &b""[..]));
+    let ended = start(&["--parameters"], full().into(), Stdio::piped()).wait_with_output().expect("a child");
+    let message = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(REFUSED), "{message}");
+    assert!(message.starts_with("error: cannot write to the standard output: "), "{message}");
+    let refused = start(&["--headless", "out", "no_such_scene.glb"], Stdio::null(), full().into()).wait();
+    assert_eq!(refused.expect("a child").code(), Some(REFUSED));
 }
 
 #[test]

@@ -13,6 +13,7 @@ use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
 
+use crate::output;
 use crate::script::{self, Line};
 use crate::source::{OPTION_PREFIX, SceneSource};
 
@@ -115,19 +116,18 @@ const SIZE: [u32; 2] = [1280, 720];
 /// Parses the process's arguments; ends the process after help, version or a list, and after wrong arguments.
 pub(crate) fn parse() -> Arguments {
     let arguments = Arguments::parse();
-    if arguments.parameters {
-        print!("{}", parameter_list());
-        std::process::exit(0);
-    }
-    if arguments.sample.as_deref() == Some("list") {
-        print!("{}", sample_list());
-        std::process::exit(0);
-    }
-    if arguments.actions {
-        print!("{}", action_list());
-        std::process::exit(0);
-    }
-    arguments
+    let list = if arguments.parameters {
+        parameter_list()
+    } else if arguments.sample.as_deref() == Some("list") {
+        sample_list()
+    } else if arguments.actions {
+        action_list()
+    } else {
+        return arguments;
+    };
+    let Err(error) = output::print(list) else { std::process::exit(0) };
+    output::tell(format_args!("error: {error:#}"));
+    std::process::exit(2)
 }
 
 impl Arguments {

@@ -8,6 +8,8 @@ use shadowfit_params::device_check::CheckReport;
 use shadowfit_render::{AdapterChoice, Gpu, GpuError, Wanted};
 use shadowfit_study::{check_device_async, in_background_async, unchecked};
 
+use crate::output;
+
 /// A check that is under way or has ended; nothing while its dialog is closed.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceCheck {
@@ -111,7 +113,7 @@ fn without_device(reason: &str) -> CheckReport {
 ///
 /// # Errors
 ///
-/// When there is no such adapter or it cannot be opened.
+/// When there is no such adapter or it cannot be opened, or the report cannot be written.
 #[cfg(not(target_family = "wasm"))]
 pub(crate) fn run(adapter: &AdapterChoice) -> anyhow::Result<bool> {
     let gpu = pollster::block_on(Gpu::headless(adapter))?;
@@ -119,10 +121,11 @@ pub(crate) fn run(adapter: &AdapterChoice) -> anyhow::Result<bool> {
     let report = shadowfit_study::check_device(&gpu, &AtomicBool::new(false), &mut |report| {
         let ended = report.ended();
         for row in report.rows.iter().take(ended).skip(told) {
-            eprintln!("{}/{} {}: {} ({:.1} s)", told + 1, report.rows.len(), row.name, row.state.word(), row.seconds);
             told += 1;
+            let (name, word, seconds) = (row.name, row.state.word(), row.seconds);
+            output::tell(format_args!("{told}/{} {name}: {word} ({seconds:.1} s)", report.rows.len()));
         }
     });
-    print!("{}", report.text());
+    output::print(report.text())?;
     Ok(report.has_passed())
 }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use shadowfit_render::Spent;
 
 use crate::monkey::memory;
+use crate::output;
 
 /// Frames between two lines, and the time that they are not farther apart than.
 const LOG_EVERY: (u64, Duration) = (60, Duration::from_secs(4));
@@ -62,28 +63,32 @@ impl FrameLog {
         }
         if let Some(title) = ready.filter(|_| !self.is_ready) {
             self.is_ready = true;
-            eprintln!("ready: {title} after {:.2} s", self.start.elapsed().as_secs_f32());
+            output::tell(format_args!("ready: {title} after {:.2} s", self.start.elapsed().as_secs_f32()));
         }
         if self.frames.is_multiple_of(LOG_EVERY.0) || self.last_line.elapsed() >= LOG_EVERY.1 {
             let seconds = self.start.elapsed().as_secs();
             let memory = memory().map_or_else(String::new, |bytes| format!(", {:.0} MB", bytes as f64 / 1e6));
             let [longest, most_cpu] = [self.longest, self.most_cpu].map(ms);
-            eprintln!(
+            output::tell(format_args!(
                 "frame {} at {seconds} s: {frame_ms:.1} ms, longest block {longest:.1} ms, own CPU time up to {most_cpu:.1} \
                  ms{memory}",
                 self.frames
-            );
+            ));
             (self.longest, self.most_cpu, self.last_line) = (Duration::ZERO, Duration::ZERO, Instant::now());
         }
     }
 
     /// Prints the last lines.
     pub(crate) fn end(&self) {
-        eprintln!("{} frames, longest block {:.1} ms", self.frames, ms(self.longest_of_all));
+        output::tell(format_args!("{} frames, longest block {:.1} ms", self.frames, ms(self.longest_of_all)));
         let [median, late] = [0.5, 0.999].map(|share| self.quantile(share));
         let (loads, longest) = (self.loads.0, ms(self.loads.1));
-        eprintln!("own CPU time of frames without loads: median {median:.2} ms, 99.9% below {late:.2} ms");
-        eprintln!("{loads} frames loaded a scene or made pipelines: own CPU time up to {longest:.2} ms");
+        output::tell(format_args!(
+            "own CPU time of frames without loads: median {median:.2} ms, 99.9% below {late:.2} ms"
+        ));
+        output::tell(format_args!(
+            "{loads} frames loaded a scene or made pipelines: own CPU time up to {longest:.2} ms"
+        ));
     }
 
     /// The time that a share of the frames stays below, in milliseconds.

@@ -16,6 +16,7 @@ use shadowfit_study::make_folder;
 use crate::cli::Arguments;
 use crate::files::write_png;
 use crate::interface::{Canvas, Interface, InterfaceInput};
+use crate::output;
 use crate::saved::Saved;
 use crate::source::SceneSource;
 use crate::stage::Stage;
@@ -49,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     }
     let scene = arguments.load_scene()?;
     if let Some(file) = &arguments.scene {
-        scene.warnings(file).for_each(|warning| eprintln!("{warning}"));
+        scene.warnings(file).for_each(output::tell);
     }
     let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     let mut stage = Stage::new(gpu, scene, SAMPLES)?;
@@ -64,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     let size = arguments.size();
     gpu.unless_lost(|| render_pictures(&mut stage, folder, size, &mut |path| progress.wrote(path)))
         .context("the graphics device was lost; start again, with smaller pictures if it was too slow")??;
-    Ok(())
+    progress.end()
 }
 
 /// Tells of pictures while they are rendered: each one's name on the standard output as soon as it is written, and how
@@ -73,23 +74,34 @@ struct Progress {
     bar: ProgressBar,
     count: usize,
     written: usize,
+    /// The first error of the lines that were printed.
+    printed: Result<()>,
 }
 
 impl Progress {
     fn begin(count: usize, name: &str, stage: &Stage, folder: &Path) -> Result<Self> {
         let noun = if count == 1 { "picture" } else { "pictures" };
-        println!("{count} {noun} of {name} by {}, in {}:", stage.gpu().name(), folder.display());
+        output::print(format_args!("{count} {noun} of {name} by {}, in {}:\n", stage.gpu().name(), folder.display()))?;
         let bar = ProgressBar::new(count as u64);
         bar.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} pictures, {elapsed} so far, {eta} left")?);
         bar.enable_steady_tick(TICK);
-        Ok(Self { bar, count, written: 0 })
+        Ok(Self { bar, count, written: 0, printed: Ok(()) })
     }
 
     fn wrote(&mut self, path: &Path) {
         self.written += 1;
         self.bar.inc(1);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        self.bar.suspend(|| println!("  {}/{} {name}", self.written, self.count));
+        let line = format!("  {}/{} {name}\n", self.written, self.count);
+        let printed = self.bar.suspend(|| output::print(line));
+        if self.printed.is_ok() {
+            self.printed = printed;
+        }
+    }
+
+    /// Returns the first error of the lines that were printed.
+    fn end(mut self) -> Result<()> {
+        std::mem::replace(&mut self.printed, Ok(()))
     }
 }
 
@@ -149,7 +161,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     drop((viewer, canvas));
     timings.step("end");
     if arguments.timings {
-        eprint!("{}", timings.table());
+        output::tell(timings.table().trim_end());
     }
     ended
 }

@@ -29,6 +29,7 @@ mod link;
 mod loading;
 mod monkey;
 mod narration;
+mod output;
 mod outside;
 mod playback;
 mod sample_figures;
@@ -73,7 +74,7 @@ pub fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            output::tell(format_args!("error: {error:#}"));
             ExitCode::from(2)
         }
     }

@@ -31,6 +31,7 @@ use crate::input::Input;
 use crate::interface::{Interface, InterfaceInput, InterfaceOutput, Layout};
 use crate::link::Link;
 use crate::loading::Loading;
+use crate::output;
 use crate::playback::Player;
 use crate::sample_figures::Measuring;
 use crate::saved::{Saved, Store};
@@ -320,7 +321,7 @@ impl Viewer {
                 Effect::Drop(path) => self.commands.push_back(request(Command::OpenFile(path))),
                 Effect::LoseDevice => self.stage.gpu().device.destroy(),
                 Effect::Refuse(refusal) => self.window_requests.refusal = Some(refusal),
-                Effect::Print(text) => eprintln!("{text}"),
+                Effect::Print(text) => output::tell(text),
             }
         }
         let saves = self.commands.iter().any(|request| matches!(request.command, Command::Screenshot(_)));
@@ -370,7 +371,7 @@ impl Viewer {
     fn tell(&mut self, outcome: Result<String>) {
         let text = outcome.unwrap_or_else(|error| {
             if let Some(line) = &self.line {
-                eprintln!("error: {line}: {error:#}");
+                output::tell(format_args!("error: {line}: {error:#}"));
                 self.player.failed = true;
             }
             format!("{error:#}")

@@ -9,6 +9,7 @@ use shadowfit_render::Gpu;
 use super::{Progress, SAMPLES};
 use crate::cli::Arguments;
 use crate::files::write_png;
+use crate::output;
 use crate::stage::Stage;
 
 /// Renders the pictures of a sample: the technique as its source has it, without shadows, and beside its comparison,
@@ -49,7 +50,7 @@ pub(super) fn run(
             save(&mut stage, Some(variant), &file(variant), &[])?;
         }
     }
-    drop(progress);
+    progress.end()?;
     if sample.is_measurable {
         tell_figures(arguments, (sample, named), size)?;
     }
@@ -77,7 +78,7 @@ fn write_picture(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
     let target = stage.target(size);
     stage.draw(&target);
     if let Some(problem) = stage.problem() {
-        eprintln!("{}: {problem}", path.display());
+        output::tell(format_args!("{}: {problem}", path.display()));
     }
     let mut pixels = target.read(stage.gpu())?;
     if stage.sample_halves().is_some() {
@@ -109,7 +110,7 @@ fn tell_figures(
     let camera = sample.seen_by(variant, size[0] as f32 / size[1] as f32);
     let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     for (name, value) in SampleFigures::measure(gpu, sample, &values, &camera, 0.0)?.lines() {
-        println!("{name}: {value}");
+        output::print(format_args!("{name}: {value}\n"))?;
     }
     Ok(())
 }

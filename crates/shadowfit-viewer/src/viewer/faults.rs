@@ -10,6 +10,7 @@ use web_time::Instant;
 
 use super::Viewer;
 use crate::loading::Loading;
+use crate::output;
 use crate::source::SceneSource;
 
 /// A device that is lost sooner than this after it was made anew would be lost again and again, in seconds.
@@ -33,7 +34,7 @@ impl Renewals {
                  start the viewer again, or with `--software`, which needs no graphics card"
             );
         }
-        eprintln!("the graphics device was lost ({why}); it is made anew");
+        output::tell(format_args!("the graphics device was lost ({why}); it is made anew"));
         Ok(())
     }
 }
@@ -88,7 +89,7 @@ impl Viewer {
             if !self.told_faults.insert(fault.to_string()) {
                 continue;
             }
-            eprintln!("error: {fault}");
+            output::tell(format_args!("error: {fault}"));
             match fault {
                 DeviceFault::OutOfMemory(_) => {
                     self.say("The GPU has no memory left: choose smaller or fewer maps, or a smaller window or scene");

@@ -13,6 +13,7 @@ use crate::cli::check_animation;
 use crate::files::{self, settings_of_png};
 use crate::link::LinkedScene;
 use crate::loading::Loading;
+use crate::output;
 use crate::playback::Player;
 use crate::sample_figures::Measuring;
 use crate::script;
@@ -94,7 +95,7 @@ impl Viewer {
             Ok(prepared) => self.show(loading.source, prepared),
             Err(error) if self.start.is_pending && is_of_last_time => {
                 let message = format!("The scene of the last time cannot be opened: {error:#}");
-                eprintln!("{message}");
+                output::tell(&message);
                 self.say(message);
                 self.open(SceneSource::default());
             }

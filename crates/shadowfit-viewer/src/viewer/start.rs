@@ -13,6 +13,7 @@ use shadowfit_study::NamedTechnique;
 use super::Viewer;
 use crate::cli::Arguments;
 use crate::link::Link;
+use crate::output;
 use crate::saved::{Saved, Store};
 use crate::script::Line;
 use crate::source::SceneSource;
@@ -73,7 +74,7 @@ impl Viewer {
         let (saved, message) = self.store.as_mut().map_or((None, None), Store::load);
         if let Some(message) = message {
             // Whoever starts it in a terminal sees it there, too.
-            eprintln!("{message}");
+            output::tell(&message);
             self.say(message);
         }
         let saved = saved.unwrap_or_default();
@@ -171,7 +172,7 @@ impl Viewer {
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
         if let Some(message) = store.keep(&self.saved) {
             // Whoever started it in a terminal sees it there, too: at the end the panel is gone.
-            eprintln!("{message}");
+            output::tell(&message);
             self.say(message);
         }
     }
