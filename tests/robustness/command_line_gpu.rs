@@ -128,7 +128,12 @@ fn missing_empty_and_foreign_files_end_in_exit_code_2_with_their_name() {
 #[test]
 fn the_check_of_the_software_adapter_passes_and_reports_every_row() {
     let scratch = Scratch::new("check");
-    let output = run(&scratch.0, &["--check"]);
+    let check = |arguments: &[&str]| {
+        let mut command = Command::new(viewer_program());
+        command.current_dir(&scratch.0).args(["--adapter", adapter_name(), "--check"]).args(arguments);
+        command.output().expect("the viewer starts")
+    };
+    let output = check(&[]);
     let (report, progress) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.status.code(), Some(0), "{report}\n{progress}");
     for row in ["Look-up", "Map formats", "Kept maps", "Exact edges", "Visible points", "Coverage"] {
@@ -140,7 +145,12 @@ fn the_check_of_the_software_adapter_passes_and_reports_every_row() {
     }
     assert_eq!(report.matches("tolerance").count(), 6, "{report}");
     assert!(scratch.files().is_empty(), "the check leaves files behind");
-    assert_refused(&scratch, &["--check", "--headless", "out"], &["--check", "--headless"]);
+    for arguments in [&["--headless", "out"][..], &["no/such/scene.glb"], &["--sample", "list"], &["--parameters"]] {
+        let output = check(arguments);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{arguments:?}: {message}");
+        assert!(message.contains("--check"), "{arguments:?}: {message}");
+    }
 }
 
 #[test]

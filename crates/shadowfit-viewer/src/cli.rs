@@ -101,14 +101,36 @@ pub struct Arguments {
     pub timings: bool,
 
     /// Checks the graphics device in about a minute, instead of opening a window: its maps, look-ups, passes and rays
-    /// against the same on the CPU. Prints a report for an issue, and ends with exit code 1 if a check fails.
-    #[arg(long, conflicts_with_all = ["headless", "script", "link"])]
+    /// against the same on the CPU. Prints a report for an issue, and ends with exit code 1 if a check fails. Takes no other
+    /// options than those of the adapter.
+    #[arg(long, conflicts_with_all = NOT_WITH_CHECK)]
     pub check: bool,
 
     /// Prints to the standard error when the window is ready, and the frame time now and then.
     #[arg(long)]
     pub log_frames: bool,
 }
+
+/// Arguments that mean nothing to a check of the graphics device: all except those of the adapter.
+const NOT_WITH_CHECK: [&str; 17] = [
+    "scene",
+    "sample",
+    "scene_index",
+    "animation",
+    "headless",
+    "size",
+    "technique",
+    "set",
+    "link",
+    "parameters",
+    "script",
+    "actions",
+    "state",
+    "no_state",
+    "no_play",
+    "timings",
+    "log_frames",
+];
 
 /// Size of the window, and of pictures, if not given, in pixels.
 const SIZE: [u32; 2] = [1280, 720];
@@ -316,6 +338,8 @@ fn range(parameter: &Parameter) -> String {
 
 #[cfg(test)]
 mod tests {
+    use clap::CommandFactory as _;
+
     use super::*;
 
     #[test]
@@ -323,6 +347,25 @@ mod tests {
         assert_eq!(parse_size("640x360"), Ok([640, 360]));
         for bad in ["", "640", "640x", "x360", "0x0", "-5x10", "99999x100", "640x360x2", "axb", "8x8"] {
             assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_check_takes_the_adapter_and_refuses_all_other_arguments() {
+        for allowed in [&[][..], &["--adapter", "nvidia"], &["--software"]] {
+            let arguments = ["viewer", "--check"].iter().chain(allowed);
+            assert!(Arguments::try_parse_from(arguments).is_ok(), "{allowed:?}");
+        }
+        let is_adapter = |id: &str| ["adapter", "software", "check"].contains(&id);
+        for argument in Arguments::command().get_arguments().filter(|argument| !is_adapter(argument.get_id().as_str()))
+        {
+            let flag = argument.get_long().map(|name| format!("--{name}"));
+            let number = if argument.get_id() == "size" { "64x64" } else { "0" };
+            let value = argument.get_action().takes_values().then(|| number.to_owned());
+            let given: Vec<String> = flag.into_iter().chain(value).collect();
+            let refused = Arguments::try_parse_from(["viewer", "--check"].map(str::to_owned).iter().chain(&given));
+            let kind = refused.expect_err(&given.join(" ")).kind();
+            assert_eq!(kind, clap::error::ErrorKind::ArgumentConflict, "{given:?}");
         }
     }
 
