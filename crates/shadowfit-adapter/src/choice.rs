@@ -72,17 +72,22 @@ impl AdapterChoice {
             return fastest(instance, surface).await;
         }
         let mut adapters = adapters(instance).await;
-        adapters.retain(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)));
-        let infos: Vec<wgpu::AdapterInfo> = adapters.iter().map(wgpu::Adapter::get_info).collect();
-        match infos.iter().position(|info| self.matches(info)) {
+        let can_present = |adapter: &wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
+        let infos: Vec<_> = adapters.iter().map(|adapter| (adapter.get_info(), can_present(adapter))).collect();
+        match infos.iter().position(|(info, can_present)| *can_present && self.matches(info)) {
             Some(index) => Ok(adapters.swap_remove(index)),
             None => Err(self.error(&infos)),
         }
     }
 
-    /// Returns the error of a choice that fits none of these adapters.
-    fn error(&self, infos: &[wgpu::AdapterInfo]) -> AdapterError {
-        let present = infos.iter().map(label).collect();
+    /// Returns the error of a choice that fits none of the adapters that can draw to the window. Each adapter of the machine
+    /// comes with a flag for that.
+    fn error(&self, infos: &[(wgpu::AdapterInfo, bool)]) -> AdapterError {
+        if let Some((info, _)) = infos.iter().find(|(info, _)| self.matches(info)) {
+            let able = infos.iter().filter(|(_, can_present)| *can_present).map(|(info, _)| label(info)).collect();
+            return AdapterError::CannotPresent { adapter: label(info), able };
+        }
+        let present = infos.iter().map(|(info, _)| label(info)).collect();
         match self {
             Self::Any => AdapterError::None("none is present".into()),
             Self::Software => AdapterError::NoSoftware { present },
@@ -167,10 +172,23 @@ mod tests {
     #[test]
     fn a_name_without_an_adapter_lists_the_adapters_of_the_machine() {
         let infos = [info("NVIDIA H200", wgpu::DeviceType::DiscreteGpu), info("llvmpipe", wgpu::DeviceType::Cpu)];
+        let infos = [false, true].map(|can_present| infos.clone().map(|info| (info, can_present))).concat();
         let error = AdapterChoice::Named("radeon".into()).error(&infos).to_string();
         assert!(error.contains("\"radeon\""), "{error}");
         assert!(error.contains("NVIDIA H200 (Vulkan, discrete GPU)"), "{error}");
         assert!(error.contains("llvmpipe (Vulkan, software)"), "{error}");
+    }
+
+    #[test]
+    fn an_adapter_that_cannot_draw_to_the_window_is_said_to_be_there() {
+        let (gpu, mesa) = (info("NVIDIA H200", wgpu::DeviceType::DiscreteGpu), info("llvmpipe", wgpu::DeviceType::Cpu));
+        let infos = [(gpu, false), (mesa.clone(), true)];
+        let error = AdapterChoice::Named("nvidia".into()).error(&infos).to_string();
+        let expected = "NVIDIA H200 (Vulkan, discrete GPU) cannot draw to this window. These adapters can:\n  \
+                        llvmpipe (Vulkan, software)";
+        assert_eq!(error, expected);
+        let error = AdapterChoice::Software.error(&[(mesa, false)]).to_string();
+        assert_eq!(error, "llvmpipe (Vulkan, software) cannot draw to this window. No adapter of this machine can");
     }
 
     #[test]

@@ -20,6 +20,13 @@ pub enum AdapterError {
         /// [Labels](label) of the adapters of this machine.
         present: Vec<String>,
     },
+    /// The machine has the adapter, but it cannot draw to the window.
+    CannotPresent {
+        /// [Label](label) of the adapter.
+        adapter: String,
+        /// Labels of the adapters that can draw to the window.
+        able: Vec<String>,
+    },
 }
 
 impl fmt::Display for AdapterError {
@@ -28,10 +35,16 @@ impl fmt::Display for AdapterError {
         match self {
             Self::None(reason) => write!(f, "no graphics adapter was found ({reason}). {hint}"),
             Self::NoSoftware { present } => {
-                write!(f, "no software graphics adapter was found. {hint} {}", list(present))
+                write!(f, "no software graphics adapter was found. {hint} {}", on_machine(present))
             }
             Self::NoSuchName { name, present } => {
-                write!(f, "no graphics adapter has {name:?} in its name. {}", list(present))
+                write!(f, "no graphics adapter has {name:?} in its name. {}", on_machine(present))
+            }
+            Self::CannotPresent { adapter, able } if able.is_empty() => {
+                write!(f, "{adapter} cannot draw to this window. No adapter of this machine can")
+            }
+            Self::CannotPresent { adapter, able } => {
+                write!(f, "{adapter} cannot draw to this window. These adapters can:{}", lines(able))
             }
         }
     }
@@ -39,11 +52,15 @@ impl fmt::Display for AdapterError {
 
 impl core::error::Error for AdapterError {}
 
-fn list(present: &[String]) -> String {
+fn on_machine(present: &[String]) -> String {
     if present.is_empty() {
         return "This machine has no adapter.".into();
     }
-    present.iter().fold("This machine has:".into(), |text, label| text + "\n  " + label)
+    format!("This machine has:{}", lines(present))
+}
+
+fn lines(labels: &[String]) -> String {
+    labels.iter().fold(String::new(), |text, label| text + "\n  " + label)
 }
 
 /// Returns the name of an adapter with its API and its kind, such as `NVIDIA H200 (Vulkan, discrete GPU)`.
