@@ -27,6 +27,8 @@ mod scene;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use clap::Parser;
+use shadowfit_adapter::AdapterOptions;
 use ultraviolet::projection::rh_yup::perspective_reversed_infinite_z_wgpu_dx_gl as perspective;
 use ultraviolet::{DVec3, Mat4, Vec3, Vec4};
 
@@ -150,6 +152,18 @@ struct Targets {
     picture: wgpu::TextureView,
 }
 
+#[derive(Parser)]
+#[command(about = "Draws a few frames of a small engine and writes the last one")]
+struct Args {
+    /// File that the picture is written into
+    picture: Option<PathBuf>,
+    /// Draws with exact edges
+    #[arg(long)]
+    exact: bool,
+    #[command(flatten)]
+    adapter: AdapterOptions,
+}
+
 struct Engine {
     gpu: Gpu,
     scene: Scene,
@@ -165,13 +179,12 @@ struct Engine {
 }
 
 fn main() -> Result<()> {
-    let (flags, paths): (Vec<_>, Vec<_>) = std::env::args_os().skip(1).partition(|argument| argument == "--exact");
-    let is_exact = !flags.is_empty();
-    let usual = if is_exact { "out/engine_integration_exact.png" } else { "out/engine_integration.png" };
-    let path = paths.first().map_or_else(|| PathBuf::from(usual), PathBuf::from);
+    let args = Args::parse();
+    let usual = if args.exact { "out/engine_integration_exact.png" } else { "out/engine_integration.png" };
+    let path = args.picture.unwrap_or_else(|| PathBuf::from(usual));
     let forward = Vec3::new(0.26, -0.14, -1.0).normalized();
     let mut camera = Camera { eye: PLACE + DVec3::new(-8.0, 3.4, 15.5), forward };
-    let mut engine = Engine::new(pollster::block_on(Gpu::open())?, is_exact)?;
+    let mut engine = Engine::new(pollster::block_on(Gpu::open(&args.adapter))?, args.exact)?;
     for frame in 0..FRAMES {
         camera.eye += DVec3::new(0.02, 0.0, -0.02);
         let drawn = engine.draw(&camera, frame)?;

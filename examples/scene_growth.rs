@@ -39,6 +39,8 @@ struct Args {
 
 fn main() -> Result<()> {
     let args = Args::parse();
+    // A machine without the adapter is refused before the table begins. Each scene opens a device of its own.
+    adapter::open(&args.adapter);
     println!(
         "| scene | triangles | nodes | load s | ready s | rays s | first frame ms | frame ms | moving ms | peak MiB |"
     );

@@ -88,7 +88,8 @@ fn no_line_outside_of_the_steps_has_to_do_with_shadows() {
     for file in FILES {
         let text = example(file);
         for line in marked(&text).1 {
-            let lower = line.to_lowercase();
+            // The choice of the adapter has nothing to do with shadows but its crate's name.
+            let lower = line.to_lowercase().replace("shadowfit_adapter", "");
             assert!(!WORDS.iter().any(|word| lower.contains(word)), "{file}: {line}");
         }
     }

@@ -1,7 +1,11 @@
 //! What this engine has of wgpu: a device, targets, pipelines, and pixels that are read back.
 
 use anyhow::Result;
+use shadowfit_adapter::{AdapterOptions, instance};
 use wgpu::util::DeviceExt;
+
+/// Exit code after bad input, as of clap's own complaints.
+const BAD_INPUT: i32 = 2;
 
 /// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
 pub(crate) const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 960, height: 540, depth_or_array_layers: 1 };
@@ -37,10 +41,13 @@ pub(crate) struct Pipeline<'a> {
 }
 
 impl Gpu {
-    /// The default adapter.
-    pub(crate) async fn open() -> Result<Self> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
+    /// Opens the adapter of the command line. Without such an adapter, says which adapters there are and ends the program
+    /// with exit code 2.
+    pub(crate) async fn open(options: &AdapterOptions) -> Result<Self> {
+        let adapter = options.choice().find(&instance(), None).await.unwrap_or_else(|error| {
+            eprintln!("error: {error}");
+            std::process::exit(BAD_INPUT)
+        });
         let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
         Ok(Self { device, queue })
     }

@@ -71,6 +71,11 @@ enum Part {
 }
 
 impl Part {
+    /// Whether the part takes a graphics device, which owns the maps.
+    fn takes_device(self) -> bool {
+        matches!(self, Self::Frames | Self::Maps)
+    }
+
     fn measure(self, extent: &Extent) -> Result<Found> {
         match self {
             Self::Fits => fits::measure(extent),
@@ -119,8 +124,14 @@ fn main() -> Result<()> {
     let extent = Extent::new(args.quick, args.adapter);
     args.out.iter().try_for_each(|out| check_place(out))?;
     args.pictures.iter().try_for_each(|folder| make_folder(folder))?;
+    let wants = |part: &Part| args.only.is_empty() || args.only.contains(part);
+    let parts = || Part::value_variants().iter().copied().filter(wants);
+    if parts().any(Part::takes_device) {
+        // A machine without the adapter is refused before anything is measured.
+        adapter::open(&extent.adapter);
+    }
     let mut text = String::new();
-    for part in Part::value_variants().iter().copied().filter(|part| args.only.is_empty() || args.only.contains(part)) {
+    for part in parts() {
         let Found { table, pictures } = part.measure(&extent)?;
         println!("{table}");
         let _ = writeln!(text, "{table}");

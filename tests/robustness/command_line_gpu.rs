@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use shadowfit_adapter::ADAPTER_VARIABLE;
+
 use crate::support::{
     NOTES, SCENE_WITH_NOTES, adapter_name, assets, example_program, files_below, test_gpu, viewer_program,
 };
@@ -188,17 +190,23 @@ fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
 fn an_adapter_that_the_machine_lacks_ends_each_program_with_exit_code_2_and_a_list_of_adapters() {
     let scratch = Scratch::new("adapter");
     let present = test_gpu().name();
-    for (program, arguments) in [
-        ("viewer", &["--headless", "out"][..]),
-        ("report", &["courtyard", "-o", "out"]),
-        ("growth", &["--quick", "--only", "frames"]),
-    ] {
-        let mut command = Command::new(example_program(program));
-        command.current_dir(&scratch.0).args(arguments).args(["--adapter", "no such adapter"]);
-        let output = command.output().expect("the program starts");
-        let message = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(REFUSED), "{program}: {message}");
-        assert!(message.contains("\"no such adapter\"") && message.contains(&present), "{program}: {message}");
+    for (program, arguments) in
+        [("viewer", &["--headless", "out"][..]), ("report", &["courtyard", "-o", "out"]), ("growth", &["--quick"])]
+    {
+        for is_option in [true, false] {
+            let mut command = Command::new(example_program(program));
+            command.current_dir(&scratch.0).args(arguments);
+            if is_option {
+                command.args(["--adapter", "no such adapter"]);
+            } else {
+                command.env(ADAPTER_VARIABLE, "no such adapter");
+            }
+            let output = command.output().expect("the program starts");
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(REFUSED), "{program}: {message}");
+            assert!(message.contains("\"no such adapter\"") && message.contains(&present), "{program}: {message}");
+            assert!(output.stdout.is_empty(), "{program} begins: {}", String::from_utf8_lossy(&output.stdout));
+        }
     }
     assert!(scratch.files().is_empty(), "{:?}", scratch.files());
 }

@@ -57,7 +57,15 @@ impl fmt::Display for AdapterChoice {
     }
 }
 
+/// Environment variable that chooses the adapter of programs and tests: `software`, `any` or a part of a name.
+pub const ADAPTER_VARIABLE: &str = "SHADOWFIT_ADAPTER";
+
 impl AdapterChoice {
+    /// Returns the choice of the environment variable [`ADAPTER_VARIABLE`]. An empty variable counts as unset.
+    pub fn from_env() -> Option<Self> {
+        std::env::var_os(ADAPTER_VARIABLE)?.to_string_lossy().parse().ok()
+    }
+
     /// Returns the chosen adapter. It can draw to `surface`, if one is given.
     ///
     /// # Errors

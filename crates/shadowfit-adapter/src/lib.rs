@@ -5,7 +5,7 @@ mod error;
 #[cfg(feature = "clap")]
 mod options;
 
-pub use choice::{AdapterChoice, EmptyName, adapters, instance};
+pub use choice::{ADAPTER_VARIABLE, AdapterChoice, EmptyName, adapters, instance};
 pub use error::{AdapterError, label};
 #[cfg(feature = "clap")]
 pub use options::AdapterOptions;

@@ -2,10 +2,7 @@
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-use shadowfit_adapter::AdapterChoice;
-
-/// Environment variable that chooses the adapter of every test that draws: `software`, `any` or a part of a name.
-pub const ADAPTER: &str = "SHADOWFIT_ADAPTER";
+use shadowfit_adapter::{ADAPTER_VARIABLE, AdapterChoice};
 
 /// An open device of the tests' adapter.
 #[derive(Clone, Debug)]
@@ -48,17 +45,11 @@ impl<T: Clone> Drop for Lent<T> {
     }
 }
 
-/// Returns the choice of the environment variable [`ADAPTER`]. Without it tests draw on the software adapter even beside a
+/// Returns the choice of the environment variable [`ADAPTER_VARIABLE`]. Without it tests draw on the software adapter even beside a
 /// GPU, because its pictures are nearly the same on every machine.
-///
-/// # Panics
-///
-/// If the variable is empty.
 pub fn adapter_choice() -> &'static AdapterChoice {
-    static CHOICE: LazyLock<AdapterChoice> = LazyLock::new(|| {
-        let text = std::env::var_os(ADAPTER).map_or("software".into(), |text| text.to_string_lossy().into_owned());
-        text.parse().unwrap_or_else(|error| panic!("{ADAPTER}: {error}"))
-    });
+    static CHOICE: LazyLock<AdapterChoice> =
+        LazyLock::new(|| AdapterChoice::from_env().unwrap_or(AdapterChoice::Software));
     &CHOICE
 }
 
@@ -87,7 +78,7 @@ pub fn filter_step(info: &wgpu::AdapterInfo) -> f32 {
 ///
 /// # Panics
 ///
-/// If the machine lacks the adapter of [`ADAPTER`]. `cargo xtask test` leaves out the tests that draw on machines without
+/// If the machine lacks the adapter of [`ADAPTER_VARIABLE`]. `cargo xtask test` leaves out the tests that draw on machines without
 /// any adapter.
 pub fn test_gpu() -> TestGpu {
     static FREE: Mutex<Vec<TestGpu>> = Mutex::new(Vec::new());
@@ -103,11 +94,12 @@ pub fn test_gpu() -> TestGpu {
 ///
 /// # Panics
 ///
-/// If the machine lacks the adapter of [`ADAPTER`].
+/// If the machine lacks the adapter of [`ADAPTER_VARIABLE`].
 pub fn open_test_gpu(features: wgpu::Features, required_limits: wgpu::Limits) -> TestGpu {
     let instance = shadowfit_adapter::instance();
     let adapter = pollster::block_on(adapter_choice().find(&instance, None));
-    let adapter = adapter.unwrap_or_else(|error| panic!("this test draws. {ADAPTER}={}: {error}", adapter_name()));
+    let adapter =
+        adapter.unwrap_or_else(|error| panic!("this test draws. {ADAPTER_VARIABLE}={}: {error}", adapter_name()));
     let descriptor = wgpu::DeviceDescriptor {
         required_features: adapter.features() & features,
         required_limits: required_limits.or_worse_values_from(&adapter.limits()),
@@ -123,7 +115,7 @@ pub fn open_test_gpu(features: wgpu::Features, required_limits: wgpu::Limits) ->
 ///
 /// # Panics
 ///
-/// If the machine lacks the adapter of [`ADAPTER`].
+/// If the machine lacks the adapter of [`ADAPTER_VARIABLE`].
 #[cfg(feature = "render")]
 pub fn renderer_gpu() -> shadowfit_render::Gpu {
     static FREE: Mutex<Vec<shadowfit_render::Gpu>> = Mutex::new(Vec::new());
@@ -137,14 +129,14 @@ pub fn renderer_gpu() -> shadowfit_render::Gpu {
 ///
 /// # Panics
 ///
-/// If the machine lacks the adapter of [`ADAPTER`].
+/// If the machine lacks the adapter of [`ADAPTER_VARIABLE`].
 #[cfg(feature = "render")]
 pub fn open_renderer_gpu() -> shadowfit_render::Gpu {
     opened(adapter_choice())
 }
 
 /// Returns the software adapter as the renderer opens it, for golden pictures. They are the same on every machine,
-/// whatever [`ADAPTER`] says.
+/// whatever [`ADAPTER_VARIABLE`] says.
 ///
 /// # Panics
 ///
@@ -161,5 +153,5 @@ pub fn golden_gpu() -> shadowfit_render::Gpu {
 #[cfg(feature = "render")]
 fn opened(choice: &AdapterChoice) -> shadowfit_render::Gpu {
     let gpu = pollster::block_on(shadowfit_render::Gpu::headless(choice));
-    gpu.unwrap_or_else(|error| panic!("this test draws. {ADAPTER}={choice}: {error}"))
+    gpu.unwrap_or_else(|error| panic!("this test draws. {ADAPTER_VARIABLE}={choice}: {error}"))
 }

@@ -14,9 +14,7 @@ pub mod read_back;
 pub mod wgsl;
 
 pub use folder::package_folder;
-pub use gpu::{
-    ADAPTER, Lent, TestGpu, adapter_choice, adapter_name, filter_step, open_test_gpu, subpixel_step, test_gpu,
-};
+pub use gpu::{Lent, TestGpu, adapter_choice, adapter_name, filter_step, open_test_gpu, subpixel_step, test_gpu};
 #[cfg(feature = "render")]
 pub use gpu::{golden_gpu, open_renderer_gpu, renderer_gpu};
 pub use lacking::lacking;
