@@ -94,6 +94,19 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Err(Failed { command: shown, code: status.code() }.into())
 }
 
+/// Runs `command` and returns its standard output, without the white space at its ends. Its errors are shown.
+///
+/// # Errors
+/// When the program cannot be started, or ends with a status other than 0.
+pub(crate) fn printed_by(command: &mut Command) -> Result<String> {
+    let shown = shown(command);
+    let output = command.stderr(Stdio::inherit()).output().with_context(|| format!("cannot start `{shown}`"))?;
+    if output.status.success() {
+        return Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned());
+    }
+    Err(Failed { command: shown, code: output.status.code() }.into())
+}
+
 /// From now on, an interrupt or a request to end also ends every program that this one has started, and those that they
 /// have started: servers, displays and browsers would outlive a test runner that ends at once.
 pub(crate) fn end_children_on_interrupt() {
@@ -221,6 +234,14 @@ mod tests {
         assert_eq!(exit_code_of(&anyhow::anyhow!("no such thing")), 1);
         let by_signal: anyhow::Error = Failed { command: "viewer".into(), code: None }.into();
         assert_eq!(exit_code_of(&by_signal), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_program_s_output_is_returned_or_its_exit_code_handed_on() {
+        let shell = |text: &str| printed_by(Command::new("sh").args(["-c", text]));
+        assert_eq!(shell("echo ' a name '").unwrap(), "a name");
+        assert_eq!(exit_code_of(&shell("echo text; exit 2").unwrap_err()), 2);
     }
 
     #[test]

@@ -6,8 +6,9 @@
 //! Tests with `own_process` in their path measure or limit their process, so they count among the others.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::iter;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
@@ -131,6 +132,10 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     let mut suite = Suite { tier, features: setup::features(&machine), left_out, adapter: None };
     if gpu {
         suite.draw_on(suite.hardware_adapter()?);
+    } else if let Some(name) = std::env::var_os(ADAPTER).filter(|name| !name.is_empty() && machine.can_render()) {
+        // Every test that draws would say the same.
+        let label = suite.adapters(["--adapter".into(), name]).context(format!("{ADAPTER} is set"))?;
+        println!("tests draw on {label}");
     }
     if tier != Tier::Quick {
         // The tests that start a program would otherwise start the one of an earlier build.
@@ -191,14 +196,20 @@ struct Suite {
 }
 
 impl Suite {
-    /// Returns the name of the first adapter of this machine that is no software rasteriser.
+    /// Returns the name of this machine's GPU, a discrete one if there is one.
     fn hardware_adapter(&self) -> Result<String> {
+        let found = self.adapters(["--hardware".into()]);
+        let name = found.context("`--gpu` needs a GPU. Without it, tests draw on the software adapter")?;
+        ensure!(!name.is_empty(), "the GPU has no name, so tests cannot choose it");
+        Ok(name)
+    }
+
+    /// Builds the example that looks for graphics adapters, and returns its output. It lists the adapters if it finds none
+    /// that fits.
+    fn adapters<const N: usize>(&self, arguments: [OsString; N]) -> Result<String> {
         process::run(process::cargo("build").args(self.packages()).args(["--example", "adapters"]))?;
         let program = format!("debug/examples/adapters{}", std::env::consts::EXE_SUFFIX);
-        let mut adapters = Command::new(process::target_folder().join(program));
-        let output = adapters.arg("--hardware").stderr(Stdio::inherit()).output().context("the example adapters")?;
-        ensure!(output.status.success(), "`--gpu` needs a GPU. Without it, tests draw on the software adapter");
-        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+        process::printed_by(Command::new(process::target_folder().join(program)).args(arguments))
     }
 
     /// Lets the tests draw on an adapter, without the tests that need the software driver.
