@@ -17,4 +17,4 @@ pub use folder::package_folder;
 pub use gpu::{Lent, TestGpu, adapter_choice, adapter_name, filter_step, open_test_gpu, subpixel_step, test_gpu};
 #[cfg(feature = "render")]
 pub use gpu::{golden_gpu, open_renderer_gpu, renderer_gpu};
-pub use lacking::lacking;
+pub use lacking::{lacking, require_fine_steps, require_large_triangles};
