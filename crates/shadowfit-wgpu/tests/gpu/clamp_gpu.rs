@@ -37,8 +37,11 @@ fn clamped_maps_are_the_same_texel_for_texel_in_every_format_and_depth() {
                 Harness::with_maps(gpu, &map, &view, &maps, &[casters(&fit)]).stored(0)
             });
             let (near, far) = if depth == DepthConvention::Reversed { (1.0, 0.0) } else { (0.0, 1.0) };
-            let at_near = clamped.iter().filter(|depth| **depth == near).count();
-            let between = clamped.iter().filter(|depth| **depth != near && **depth != far).count();
+            // Shaders may take numbers below the least normal one for zero: where they find a depth by comparisons, a
+            // stored zero comes back as any of them.
+            let is_at = |depth: f32, plane: f32| (depth - plane).abs() < f32::MIN_POSITIVE;
+            let at_near = clamped.iter().filter(|depth| is_at(**depth, near)).count();
+            let between = clamped.iter().filter(|depth| !is_at(**depth, near) && !is_at(**depth, far)).count();
             assert!(at_near > 1000 && between > 1000, "{at_near} texels at the near plane, {between} beyond");
             let differ = clamped.iter().zip(&emulated).filter(|(a, b)| (*a - *b).abs() > step).count();
             assert!(differ * 10_000 <= clamped.len(), "{format:?} {depth:?}: {differ} texels of {}", clamped.len());

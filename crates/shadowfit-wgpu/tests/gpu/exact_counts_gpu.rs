@@ -154,8 +154,11 @@ fn depth_clamp_alone_keeps_a_caster_before_the_near_plane_and_stores_it_there() 
                     ShadowMapDescriptor { resolution, maps: 1, format, filter, depth, depth_clamp, ..other };
                 for (point, answer) in plane().iter().zip(answers_under(BEFORE_THE_NEAR_PLANE, &descriptor)) {
                     let is_kept = depth_clamp && is_under_the_caster(point);
-                    let expected = if is_kept { (0.0, near) } else { (1.0, far) };
-                    assert_eq!((answer.factor, answer.stored), expected, "{descriptor:?} {point:?}");
+                    let (factor, stored) = if is_kept { (0.0, near) } else { (1.0, far) };
+                    // Shaders may take numbers below the least normal one for zero: where they find a depth by
+                    // comparisons, a stored zero comes back as any of them.
+                    let is_there = (answer.stored - stored).abs() < f32::MIN_POSITIVE;
+                    assert!(answer.factor == factor && is_there, "{descriptor:?} {point:?}: {answer:?}");
                 }
             }
         }
