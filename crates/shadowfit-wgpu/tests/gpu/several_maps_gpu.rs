@@ -137,10 +137,11 @@ fn a_map_in_the_corner_of_a_larger_layer_is_read_like_one_that_fills_it() {
         });
         let shadowed = answers[0].iter().filter(|factor| **factor < 0.5).count();
         assert!((1500..2700).contains(&shadowed), "{filter:?}: {shadowed} of {} points in shadow", points.len());
-        for (point, (full, corner)) in points.iter().zip(answers[0].iter().zip(&answers[1])) {
-            // Texture coordinates of another size are rounded otherwise.
-            assert!((full - corner).abs() < 0.02, "{filter:?}, {point:?}: {full} and {corner}");
-        }
+        let [full, corner] = &answers;
+        // Texture coordinates of another size are rounded otherwise.
+        let differ: Vec<_> = (0..points.len()).filter(|index| (full[*index] - corner[*index]).abs() >= 0.02).collect();
+        let shown = differ.iter().take(3).map(|index| (points[*index], full[*index], corner[*index]));
+        assert!(differ.is_empty(), "{filter:?}: {} points differ, as {:?}", differ.len(), shown.collect::<Vec<_>>());
     }
 }
 
