@@ -6,9 +6,9 @@ use shadowfit::glam::{DVec3, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_testing::subpixel_step;
-use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView, count_on_cpu};
+use shadowfit_wgpu::demand::{DemandPassError, DemandView, count_on_cpu};
 
-use super::demand_picture::{Counts, Drawing, cuboid, draw, infinite, quad, read, record, seen};
+use super::demand_picture::{Counts, Drawing, cuboid, demand_pass, draw, infinite, quad, read, record, seen};
 use super::engine::Engine;
 
 /// Width and height of the pictures, in pixels.
@@ -286,7 +286,7 @@ fn shares_of_points_do_not_depend_on_the_resolution() {
 #[test]
 fn counts_carry_the_stamp_of_their_picture_and_only_the_newest_is_given_once() {
     let gpu = Engine::shared();
-    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = demand_pass(&gpu, 1);
     assert_eq!(pass.wait(), Ok(None), "nothing was recorded");
     let first = DemandView { max_distance: 20.0, ..view(DepthConvention::Reversed, SIZE) };
     let second = DemandView { direction: Vec3::new(-0.5, -0.6, 0.2), ..view(DepthConvention::Reversed, SIZE) };
@@ -314,7 +314,7 @@ fn demand_counts(gpu: &Engine, view: &DemandView, texture: &wgpu::TextureView) -
 #[test]
 fn recording_ends_where_pictures_pile_up_and_goes_on_when_they_are_dropped_or_taken() {
     let gpu = Engine::shared();
-    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = demand_pass(&gpu, 1);
     let view = view(DepthConvention::Reversed, SIZE);
     let texture = draw(&gpu, &view, &scene(), &Drawing::new(SIZE));
     for _ in 0..2 {
@@ -332,7 +332,7 @@ fn recording_ends_where_pictures_pile_up_and_goes_on_when_they_are_dropped_or_ta
 #[test]
 fn what_cannot_be_counted_is_an_error_that_says_why() {
     let gpu = Engine::shared();
-    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = demand_pass(&gpu, 1);
     let good = view(DepthConvention::Reversed, SIZE);
     let texture = draw(&gpu, &good, &scene(), &Drawing::new(SIZE));
     let multisampled = draw(&gpu, &good, &scene(), &Drawing { samples: 4, ..Drawing::new(SIZE) });
@@ -366,7 +366,7 @@ fn what_cannot_be_counted_is_an_error_that_says_why() {
 #[test]
 fn counts_of_a_lost_device_are_an_error_each_time() {
     let gpu = Engine::open(wgpu::Limits::default());
-    let mut pass = DemandPass::new(&gpu.device, &gpu.queue, 1).expect("a device that computes");
+    let mut pass = demand_pass(&gpu, 1);
     let view = view(DepthConvention::Reversed, SIZE);
     let texture = draw(&gpu, &view, &scene(), &Drawing::new(SIZE));
     record(&gpu, &mut pass, &view, &texture);

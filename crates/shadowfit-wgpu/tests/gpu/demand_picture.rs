@@ -61,10 +61,15 @@ pub(super) fn read(gpu: &Engine, depth: &wgpu::TextureView) -> Depths {
     Depths { width: depth.texture().width(), values: gpu.texels(depth.texture()) }
 }
 
+/// Makes the pass for depth textures of a number of samples.
+pub(super) fn demand_pass(gpu: &Engine, samples: u32) -> DemandPass {
+    gpu.require_depth_loads();
+    DemandPass::new(&gpu.device, &gpu.queue, samples).expect("a device that computes")
+}
+
 /// Runs the pass over a texture, and waits for it.
 pub(super) fn seen(gpu: &Engine, view: &DemandView, depth: &wgpu::TextureView) -> Seen {
-    let mut pass =
-        DemandPass::new(&gpu.device, &gpu.queue, depth.texture().sample_count()).expect("a device that computes");
+    let mut pass = demand_pass(gpu, depth.texture().sample_count());
     record(gpu, &mut pass, view, depth);
     pass.wait().expect("the device answers").expect("a picture was recorded")
 }

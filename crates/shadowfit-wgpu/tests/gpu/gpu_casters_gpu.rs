@@ -50,6 +50,7 @@ struct Found {
 impl Pair {
     fn new(town: &Town) -> Self {
         let gpu = Engine::shared();
+        gpu.require_compute();
         let technique = Technique::default().with_resolution(SIDE, SIDE).with_max_distance(60.0);
         let maps = || SunShadows::new(&gpu.device, &gpu.queue, &technique).expect("maps");
         let (by_shader, by_lists) = (maps(), maps());

@@ -111,6 +111,7 @@ impl<'a> Harness<'a> {
         casters: &[Vec<Vec3>],
         group: u32,
     ) -> Self {
+        gpu.require_map(descriptor);
         let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
         map.prepare(&gpu.queue, view, maps).expect("fits of this map");
         let pipeline = CasterShader { group, ..CasterShader::new(&map, Shape::Triangles) }.pipeline(gpu);

@@ -178,6 +178,9 @@ impl Painter {
         suns: &[(&SunShadows, u32, &'static str)],
         layout: &wgpu::PipelineLayout,
     ) -> Self {
+        if suns.len() > 1 {
+            engine.require_bindings();
+        }
         let shaders: Vec<_> = suns
             .iter()
             .map(|(sun, _, prefix)| CasterShader { prefix, ..CasterShader::new(sun.map(), Shape::Boxes) })

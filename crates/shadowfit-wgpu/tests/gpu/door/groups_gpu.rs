@@ -17,6 +17,7 @@ const LIGHT: &str = "
 ";
 
 fn shadows(device: &Engine, technique: &Technique, first_binding: u32) -> SunShadows {
+    device.require_map(&technique.into());
     SunShadows::with_first_binding(&device.device, &device.queue, technique, first_binding).expect("maps")
 }
 

@@ -33,6 +33,7 @@ struct Day {
 
 impl Day {
     fn new(device: Engine, technique: &Technique, steps: Option<SunSteps>) -> Self {
+        device.require_map(&technique.into());
         let mut sun = SunShadows::new(&device.device, &device.queue, technique).expect("maps");
         sun.set_light_steps(steps).expect("steps");
         let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
@@ -85,6 +86,7 @@ impl Day {
 
     /// Lets the sun see a wall that fills the view, so many metres ahead.
     fn see_wall(&mut self, metres: f32) {
+        self.device.require_depth_loads();
         let (camera, convention) = (camera(EYE), DepthConvention::Reversed);
         let clip_from_world = camera.clip_from_world(convention);
         let depth = self.device.depth_texture();

@@ -30,6 +30,9 @@ fn texture(
 }
 
 fn sun_in(device: &Engine, technique: &Technique, first_binding: u32, texture: &MapTexture) -> SunShadows {
+    if texture.base_layer > 0 {
+        device.require_base_layers();
+    }
     SunShadows::in_texture(&device.device, &device.queue, technique, first_binding, texture).expect("maps in a texture")
 }
 

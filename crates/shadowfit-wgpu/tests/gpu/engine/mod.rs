@@ -7,10 +7,12 @@ pub(crate) mod picture;
 pub(crate) mod points;
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use bytemuck::{NoUninit, Pod};
-use shadowfit_testing::{Lent, TestGpu, lacking, open_test_gpu, read_back, subpixel_step};
+use shadowfit::settings::FilterKind;
+use shadowfit_testing::{Lent, TestGpu, lacking, open_test_gpu, read_back, require_fine_steps};
+use shadowfit_wgpu::ShadowMapDescriptor;
 use wgpu::util::DeviceExt;
 
 /// A device of the software adapter. A test has it to itself and finds the pipelines of the tests before it: most tests draw
@@ -23,7 +25,17 @@ pub(crate) struct Engine {
     /// Pipelines by their WGSL and their states.
     draws: Made<wgpu::RenderPipeline>,
     computes: Made<wgpu::ComputePipeline>,
+    /// Whether the device compiles compute shaders, once it was tried.
+    compiles_compute: Arc<OnceLock<bool>>,
 }
+
+/// A small compute shader that uses what all of the tests' compute shaders use: a storage buffer of any length.
+const COMPUTE: &str = "
+@group(0) @binding(0) var<storage, read_write> values: array<u32>;
+@compute @workgroup_size(1) fn write_one() {
+    values[0] = 1u;
+}
+";
 
 /// Things that were made for a text.
 type Made<T> = Arc<Mutex<HashMap<String, T>>>;
@@ -60,13 +72,83 @@ impl Engine {
         LENT.with(Lent::get)
     }
 
-    /// Ends a test whose counts need corners that are rounded to 1/256 pixel, as GPUs do: coarser steps leave other pixels
-    /// unsure.
+    /// Ends a test whose counts need corners that are rounded to 1/256 pixel: coarser steps leave other pixels unsure.
     pub(crate) fn require_fine_steps(&self) {
+        require_fine_steps(&self.adapter.get_info());
+    }
+
+    /// Ends a test in which shaders read depth textures as numbers. OpenGL's cannot: naga writes every depth texture as a
+    /// sampler that compares, and GLSL loads no texels of these.
+    pub(crate) fn require_depth_loads(&self) {
+        self.require_other_than_opengl("loads of depths in shaders");
+    }
+
+    /// Ends a test with maps in a texture from a later layer than the first one on. wgpu's OpenGL has no views of textures:
+    /// its shaders read a texture from layer 0 on.
+    pub(crate) fn require_base_layers(&self) {
+        self.require_other_than_opengl("bind groups of a texture's later layers");
+    }
+
+    /// Ends a test on OpenGL.
+    fn require_other_than_opengl(&self, what: &str) {
         let info = self.adapter.get_info();
-        if subpixel_step(&info) > 1.0 / 256.0 {
-            lacking(&info, "256 steps in a pixel");
+        if info.backend == wgpu::Backend::Gl {
+            lacking(&info, what);
         }
+    }
+
+    /// Ends a test with shadow maps that the adapter cannot draw, or whose depths its shaders cannot read as PCSS does.
+    pub(crate) fn require_map(&self, map: &ShadowMapDescriptor) {
+        let texture = map.texture();
+        self.require(texture.format, texture.usage);
+        if map.filter == FilterKind::Pcss && map.format.is_depth() {
+            self.require_depth_loads();
+        }
+    }
+
+    /// Ends a test with compute shaders on devices without them.
+    pub(crate) fn require_compute(&self) {
+        if !self.compiles_compute() && !self.is_complete() {
+            lacking(&self.adapter.get_info(), "compute shaders");
+        }
+    }
+
+    /// Ends a test in which one shader has several uniforms or textures, where wgpu binds all of them as the first one. In its
+    /// OpenGL backend shaders state the numbers of their bindings if the driver lists compute shaders, but naga writes the
+    /// numbers from GLSL 4.20 on only. A context of OpenGL 3.3 whose driver lists compute shaders has neither.
+    pub(crate) fn require_bindings(&self) {
+        let info = self.adapter.get_info();
+        let flags = self.adapter.get_downlevel_capabilities().flags;
+        let is_old = opengl_version(&info).is_some_and(|version| version < [4, 2]);
+        if is_old && flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+            lacking(&info, "bindings that shaders number, as GLSL 4.20 does");
+        }
+    }
+
+    /// Whether the adapter has everything that WebGPU asks for. There a compute shader that does not compile is an error.
+    fn is_complete(&self) -> bool {
+        self.adapter.get_downlevel_capabilities().is_webgpu_compliant()
+    }
+
+    /// Whether wgpu compiles a small compute shader: flags and limits of OpenGL follow from the driver's extensions, but GLSL
+    /// 3.30, which wgpu may get beside them, has no compute shaders.
+    fn compiles_compute(&self) -> bool {
+        *self.compiles_compute.get_or_init(|| {
+            // Outside the scopes: WGSL that is not valid must not look like a lack.
+            let module = self.module(COMPUTE);
+            let scopes = [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
+                .map(|filter| self.device.push_error_scope(filter));
+            let _tried = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: None,
+                layout: None,
+                module: &module,
+                entry_point: Some("write_one"),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            let errors = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
+            errors.flatten().count() == 0
+        })
     }
 
     /// Opens a device of its own without optional features.
@@ -75,7 +157,14 @@ impl Engine {
     }
 
     pub(crate) fn of(TestGpu { adapter, device, queue }: TestGpu) -> Self {
-        Self { adapter, device, queue, draws: Made::default(), computes: Made::default() }
+        Self {
+            adapter,
+            device,
+            queue,
+            draws: Made::default(),
+            computes: Made::default(),
+            compiles_compute: Arc::default(),
+        }
     }
 
     pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
@@ -100,6 +189,11 @@ impl Engine {
         usage: wgpu::TextureUsages,
     ) -> wgpu::TextureView {
         self.require(format, usage);
+        // wgpu's OpenGL has several samples in render buffers alone: it asks for a texture of them by the target
+        // `GL_TEXTURE_2D`, which OpenGL refuses.
+        if samples > 1 && usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+            self.require_other_than_opengl("multisampled textures that shaders read");
+        }
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -153,6 +247,7 @@ impl Engine {
         wgsl: &str,
         entry: &str,
     ) -> wgpu::ComputePipeline {
+        self.require_compute();
         made(&self.computes, wgsl.to_owned(), || {
             self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: None,
@@ -189,6 +284,13 @@ impl Engine {
         self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
         bytemuck::pod_collect_to_vec(&read.slice(..).get_mapped_range().expect("the buffer is mapped"))
     }
+}
+
+/// Returns the version of OpenGL; `None` for OpenGL ES, and for other backends.
+fn opengl_version(info: &wgpu::AdapterInfo) -> Option<[u32; 2]> {
+    let mut numbers = info.driver_info.split(['.', ' ']).map(str::parse);
+    let version = [numbers.next()?.ok()?, numbers.next()?.ok()?];
+    (info.backend == wgpu::Backend::Gl).then_some(version)
 }
 
 /// Records a compute pass of one dispatch.

@@ -53,6 +53,9 @@ impl Engine {
     /// Evaluates the function `answer` of some WGSL at points: `fn answer(position: vec3<f32>, normal: vec3<f32>, pixel:
     /// vec2<f32>) -> Answer`. Point i is pixel (i mod `row`, i / `row`).
     pub(crate) fn ask(&self, wgsl: &str, bound: &[Bound<'_>], points: &[Point], row: u32) -> Vec<Values> {
+        if bound.len() > 1 {
+            self.require_bindings();
+        }
         let rows = (points.len() as u32).div_ceil(row).max(1);
         let wgsl = format!("{wgsl}{POINTS}const ROW = {row}u; const ROWS = {rows}u;");
         let layouts: Vec<_> = bound.iter().map(|bound| Some(bound.layout)).collect();

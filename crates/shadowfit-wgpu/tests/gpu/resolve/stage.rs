@@ -115,6 +115,10 @@ const LOAD: &str = "
 impl Stage {
     pub(super) fn new(technique: &Technique, things: Vec<Thing>) -> Self {
         let gpu = Engine::shared();
+        gpu.require_map(&technique.into());
+        if matches!(technique.edges, Edges::Traced { .. }) {
+            gpu.require_depth_loads();
+        }
         let sun = SunShadows::new(&gpu.device, &gpu.queue, technique).expect("maps");
         let pass = ResolvePass::new(&gpu.device, &gpu.queue).expect("a device that computes");
         let mut rays = RayScene::new(&gpu.device, &gpu.queue).expect("a device that traces");
