@@ -9,7 +9,7 @@ use shadowfit_classics::mapped::{
     Shading, ShadowTest,
 };
 use shadowfit_classics::sky_box::{SkyBox, SkyPicture, face_of};
-use shadowfit_testing::filter_step;
+use shadowfit_testing::{filter_step, subpixel_step};
 
 use crate::scenes::{Pictures, SIZE, camera};
 
@@ -41,17 +41,37 @@ fn seen(pictures: &mut Pictures, sky: &SkyBox, camera: &PerspectiveCamera) -> Ve
     pictures.read()
 }
 
-/// World direction through a pixel's middle.
-fn ray(camera: &PerspectiveCamera, pixel: usize) -> Vec3 {
-    let at = UVec2::new(pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]).as_vec2() + 0.5;
+/// A pixel's middle, in pixels.
+fn middle(pixel: usize) -> Vec2 {
+    UVec2::new(pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]).as_vec2() + 0.5
+}
+
+/// World direction through a place of the picture, in pixels.
+fn ray(camera: &PerspectiveCamera, at: Vec2) -> Vec3 {
     let ndc = at / Vec2::new(SIZE[0] as f32, SIZE[1] as f32) * 2.0 - 1.0;
     let tangent = (camera.fov_y * 0.5).tan();
     let view = Vec3::new(ndc.x * tangent * camera.aspect, -ndc.y * tangent, -1.0);
     camera.view_from_world().transpose().transform_vector3(view)
 }
 
+/// Texels of a face along u or v, whichever are more, that a pixel's width and height cover together.
+fn texels_per_pixel(camera: &PerspectiveCamera, pixel: usize) -> f32 {
+    // So little that it is the same face.
+    const PART: f32 = 0.01;
+    let uv = |offset: Vec2| face_of(ray(camera, middle(pixel) + offset)).1;
+    let [right, down] = [Vec2::X, Vec2::Y].map(|axis| (uv(axis * PART) - uv(Vec2::ZERO)).abs());
+    (right + down).max_element() * FACE as f32 / PART
+}
+
+/// A colour between four texels.
+struct Filtered {
+    color: Vec3,
+    /// Change over a texel along u and along v, added: the greatest of the channels and of both rows or columns.
+    change: f32,
+}
+
 /// What a linear filter makes of a picture in a direction; `None` where it would read across an edge.
-fn filtered(picture: &SkyPicture, direction: Vec3) -> Option<Vec3> {
+fn filtered(picture: &SkyPicture, direction: Vec3) -> Option<Filtered> {
     let (face, uv) = face_of(direction);
     let at = uv * picture.size as f32 - 0.5;
     let corner = at.floor();
@@ -64,7 +84,10 @@ fn filtered(picture: &SkyPicture, direction: Vec3) -> Option<Vec3> {
         Vec3::new(r, g, b)
     };
     let part = at - corner;
-    Some(texel(0, 0).lerp(texel(1, 0), part.x).lerp(texel(0, 1).lerp(texel(1, 1), part.x), part.y))
+    let [[a, b], [c, d]] = [0, 1].map(|y| [0, 1].map(|x| texel(x, y)));
+    let greatest = |one: Vec3, other: Vec3| one.abs().max(other.abs()).max_element();
+    let change = greatest(b - a, d - c) + greatest(c - a, d - b);
+    Some(Filtered { color: a.lerp(b, part.x).lerp(c.lerp(d, part.x), part.y), change })
 }
 
 #[test]
@@ -72,17 +95,21 @@ fn every_direction_shows_what_its_face_has_there() {
     let mut pictures = Pictures::new(&[], 1);
     let sky = SkyBox::new(&pictures.gpu, LIGHTS[0], 1);
     let picture = SkyPicture::new(LIGHTS[0], FACE);
-    // Half a level of rounding, and a step of the filter's weights in each axis: a texel beside the sun's rim differs by up to
-    // 100 levels.
-    let tolerance = 0.7 + 200.0 * filter_step(&pictures.gpu.adapter.get_info());
+    let info = pictures.gpu.adapter.get_info();
+    let (weights, corners) = (filter_step(&info), subpixel_step(&info));
     let mut compared = [0; 6];
     for forward in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, Vec3::ONE, Vec3::NEG_ONE] {
         let camera = PerspectiveCamera { forward, up: Vec3::new(0.4, 0.5, 0.7), fov_y: 1.4, ..camera() };
         for (pixel, color) in seen(&mut pictures, &sky, &camera).into_iter().enumerate() {
-            let direction = ray(&camera, pixel);
+            let direction = ray(&camera, middle(pixel));
             let Some(expected) = filtered(&picture, direction) else { continue };
-            let error = (Vec3::from(color.map(f32::from)) - expected).abs().max_element();
-            assert!(error <= tolerance, "{direction}: {color:?}, not {expected}");
+            let error = (Vec3::from(color.map(f32::from)) - expected.color).abs().max_element();
+            // Half a level of rounding, and a step of the filter's weights in each axis. The box's corners are rounded to
+            // steps of a pixel, which moves what lies between them by a step at most.
+            let moved = weights + corners * texels_per_pixel(&camera, pixel);
+            let tolerance = 0.7 + moved * expected.change;
+            let Filtered { color: expected, .. } = expected;
+            assert!(error <= tolerance, "{direction}: {color:?}, not {expected}: {error} levels of {tolerance}");
             compared[face_of(direction).0] += 1;
         }
     }
@@ -110,7 +137,8 @@ fn the_sun_is_where_the_light_is() {
         let camera = PerspectiveCamera { forward: to_light + Vec3::new(0.05, -0.03, 0.04), fov_y: 0.4, ..camera() };
         let picture = seen(&mut pictures, &sky, &camera);
         let bright = |(_, color): &(usize, &[u8; 3])| color[0] == 255 && color[2] >= 249;
-        let sun: Vec<Vec3> = picture.iter().enumerate().filter(bright).map(|(pixel, _)| ray(&camera, pixel)).collect();
+        let sun: Vec<Vec3> =
+            picture.iter().enumerate().filter(bright).map(|(pixel, _)| ray(&camera, middle(pixel))).collect();
         let middle: Vec3 = sun.iter().map(|direction| direction.normalize()).sum();
         let angle = middle.angle_between(to_light).to_degrees();
         println!("{} pixels of sun, {angle} degrees from the light", sun.len());
