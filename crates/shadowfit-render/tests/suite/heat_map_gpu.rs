@@ -48,14 +48,24 @@ fn expected(pictures: &mut Pictures, seen: &Seen) -> Vec<Option<f32>> {
     probe.pixels.iter().enumerate().map(at).collect()
 }
 
-/// Pixels that are as expected, and those that are not.
-fn compare(technique: &Technique, scene: Option<Scene>) -> [usize; 2] {
+/// Numbers of pixels of a picture.
+#[derive(Debug)]
+struct Counts {
+    same: usize,
+    different: usize,
+    /// Of the different ones those that may be: a border between two maps passes their middles within half a step of the
+    /// adapter's corners, so that the picture may read the other map.
+    allowed: usize,
+}
+
+/// Compares the colours of pixels with their figures.
+fn compare(technique: &Technique, scene: Option<Scene>) -> Counts {
     let scene = scene.unwrap_or_else(shadowfit_scene::builtin::default_scene);
     let Stage { mut pictures, seen } = Stage::of(technique, 1, &scene);
     let expected = expected(&mut pictures, &seen);
     let drawn = pictures.picture(&Frame { overlay: Overlay::PixelsPerTexel, ..seen.frame() });
     let step = subpixel_step(&pictures.gpu.adapter.get_info());
-    let mut counts = [0; 2];
+    let (mut same, mut different) = (0, 0);
     for (pixel, color) in drawn.into_iter().enumerate() {
         let Some(figure) = expected[pixel] else { continue };
         // The corners of the surface lie up to a step beside their places, which moves its points by as much.
@@ -64,9 +74,17 @@ fn compare(technique: &Technique, scene: Option<Scene>) -> [usize; 2] {
         // Colours change in bands, so that those of the ends alone may both be others.
         let nearby = (-4_i8..=4).map(|part| figure + allowed * f32::from(part) / 4.0);
         let least = nearby.map(|figure| difference(color, pixels_per_texel_color(figure))).fold(f32::MAX, f32::min);
-        counts[usize::from(least > LEVELS)] += 1;
+        *(if least > LEVELS { &mut different } else { &mut same }) += 1;
     }
-    counts
+    let borders = (0..expected.len()).filter(|pixel| is_above_a_border(&expected, *pixel)).count();
+    Counts { same, different, allowed: (borders as f32 * step) as usize }
+}
+
+/// Whether the pixel below reads another map. Its figure is then more than twice or less than half as large, which it is
+/// nowhere within one map.
+fn is_above_a_border(expected: &[Option<f32>], pixel: usize) -> bool {
+    let below = expected.get(pixel + SIZE[0] as usize).copied().flatten();
+    expected[pixel].zip(below).is_some_and(|(above, below)| above.min(below) < 0.5 * above.max(below))
 }
 
 /// Change of the figure to the pixels above and below, per pixel.
@@ -86,15 +104,15 @@ fn floor() -> Scene {
 #[test]
 fn pixels_per_texel_of_a_plane_are_those_of_the_diagnostics() {
     let technique = technique("stable-4").with_resolution(512, 512);
-    let [same, different] = compare(&technique, Some(floor()));
-    assert!(same > 3000 && different == 0, "{same} and {different}");
+    let counts = compare(&technique, Some(floor()));
+    assert!(counts.same > 3000 && counts.different <= counts.allowed, "{counts:?}");
 }
 
 #[test]
 fn pixels_per_texel_of_the_scene_are_those_of_the_diagnostics() {
     for name in ["windows-4", "stable-4", "focused-1"] {
         let technique = technique(name).with_resolution(512, 512);
-        let [same, different] = compare(&technique, None);
+        let Counts { same, different, .. } = compare(&technique, None);
         println!("{name}: {same} and {different}");
         // Points on the border between two maps may go either way, and normals of slivers are rounded.
         assert!(same > 8000 && different * 200 < same, "{name}: {same} and {different}");
