@@ -3,9 +3,11 @@
 use shadowfit::Technique;
 use shadowfit::glam::{Affine3A, Quat, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat, Softness};
+use shadowfit_testing::subpixel_step;
 use shadowfit_truth::PictureTally;
 
 use super::shapes::{Arrangement, NO_BIAS, floor, single, solid};
+use crate::support::test_gpu;
 
 /// A box on a floor, from above and aside.
 fn box_on_a_floor() -> Arrangement {
@@ -66,7 +68,12 @@ fn eight_bits_of_depth_have_acne_without_their_steps_in_the_bias() {
         println!("{format:?}: {:?}", shares(&tally));
         shares(&tally)[0]
     });
-    assert!(fine == 0.0 && grey > 0.01, "{fine} {grey}");
+    // The bias has room for 1/256 texel. Corners may lie half a step of the rasteriser beside their places, which moves the
+    // depths of a plane as if the look-ups reached as much farther. They reach beyond the bias only from points whose
+    // look-ups lie in the last part of a texel.
+    let step = f64::from(subpixel_step(&test_gpu().adapter.get_info()));
+    let beyond = (step * 0.5 - 1.0 / 256.0).max(0.0);
+    assert!(fine <= beyond && grey > beyond + 0.01, "{fine} {grey}, {beyond} beyond the bias");
 }
 
 #[test]
