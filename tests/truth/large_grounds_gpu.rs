@@ -9,8 +9,10 @@ use shadowfit::glam::Vec3;
 use shadowfit::settings::{MapFormat, MapSettings};
 use shadowfit::{PRESETS, Preset, Technique};
 use shadowfit_testing::pairs::{all_pairs, full_product};
+use shadowfit_testing::require_large_triangles;
 
 use super::shapes::{Arrangement, floor, solid};
+use crate::support::test_gpu;
 
 /// Sides of the ground, in metres.
 const GROUNDS: [f32; 6] = [10.0, 100.0, 1e3, 1e4, 3e4, 1e5];
@@ -95,6 +97,7 @@ fn no_plane_shadows_itself_in_the_full_product_of_grounds_walls_suns_presets_and
 
 /// Asserts that the pictures of cells have no false shadow away from edges, and prints the most by preset and ground.
 fn assert_no_false_shadow(rows: &[Vec<usize>]) {
+    require_large_triangles(&test_gpu().adapter.get_info());
     let most = Mutex::new(BTreeMap::<_, BTreeMap<u32, (f64, usize)>>::new());
     let judge = |row: &Vec<usize>| {
         let cell = Cell::of(row);
@@ -139,6 +142,7 @@ fn a_far_mountain_shadows_half_of_the_ground_with_all_presets_and_formats() {
 /// Asserts that pictures of a ground are right. A mountain stands 20 km toward the sun, and its shadow ends along a line
 /// through the picture. The depth ranges of all maps are 20 km, too, so the bias must be large.
 fn assert_right_beside_a_mountain(techniques: impl Iterator<Item = (&'static Preset, MapFormat)>) {
+    require_large_triangles(&test_gpu().adapter.get_info());
     let (away, height) = (20e3, 3e3);
     let mountain = solid(Vec3::new(-8e3, 0.0, away), Vec3::new(0.0, height, away + 1e3));
     let (sin, cos) = 4.0_f32.to_radians().sin_cos();
