@@ -224,7 +224,8 @@ fn level_ground_is_lit_as_far_as_the_horizon_by_normals_of_ten_bits() {
     let seen = super::twin_gpu::look(1, DepthConvention::Reversed, Some(NormalEncoding::Unsigned));
     for forward in [Vec3::NEG_Z, Vec3::X, Vec3::new(-0.6, 0.0, 0.8)] {
         let eye = DVec3::new(0.0, 1.7, 0.0);
-        let camera = PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y: 0.01, near: 0.5, far: 4000.0, ..seen.camera };
+        let camera =
+            PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y: 0.01, near: 0.5, far: 4000.0, ..seen.camera };
         let look = Look { camera, ..sized(seen, [160, 90]) };
         let drawn = stage.draw(&look);
         let (factors, counts) = stage.traced(&look, &drawn, |_| ());
