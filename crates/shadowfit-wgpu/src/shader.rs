@@ -146,7 +146,8 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
 
 /// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
 /// map, by its index (`i32`, as `shadowfit_map_index` gives it), holds at a texel (`vec2<i32>`). Shaders of the backend
-/// [`wgpu::Backend::Gl`] cannot read depth textures as numbers: they find the depth by 31 comparisons, as exactly.
+/// [`wgpu::Backend::Gl`] cannot read depth textures as numbers: they find the depth by 31 comparisons. Drivers may round the
+/// compared number to the format of the map, and may give the least normal number for zero.
 pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>, backend: wgpu::Backend) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
     let wrap = |entry: u32| {
