@@ -1,6 +1,6 @@
 //! The dialog of the check of the graphics device: the sentence, a line for each check, and the report to copy.
 
-use egui::{Align, Align2, Context, Label, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2, Window};
+use egui::{Align, Align2, Context, Id, Label, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2, Window};
 use shadowfit_params::device_check::{CheckReport, CheckRow, CheckState};
 
 use crate::Command;
@@ -25,6 +25,9 @@ const MARGIN: f32 = 12.0;
 
 /// More than title bar, sentence, buttons and margins take, in points.
 const AROUND: f32 = 210.0;
+
+/// How long the button says that the report was copied, in seconds.
+const COPIED: f64 = 2.0;
 
 /// Title of the dialog.
 const TITLE: &str = "Check this GPU";
@@ -167,10 +170,14 @@ fn buttons(ui: &mut Ui, report: &CheckReport, command: &mut Option<Command>) {
     if report.has_ended() {
         caption(ui, "Please attach the report to issues about shadows on this device.");
     }
+    let (copied_at, now) = (Id::unique("shadowfit report copied"), ui.input(|input| input.time));
+    let is_copied = ui.data(|data| data.get_temp(copied_at)).is_some_and(|at: f64| now - at < COPIED);
     ui.columns_const(|[copy, again, close]: &mut [Ui; 3]| {
         copy.add_enabled_ui(report.has_ended(), |ui| {
-            if main_button(ui, "Copy report", "", fill).clicked() {
+            if main_button(ui, if is_copied { "Copied" } else { "Copy report" }, "", fill).clicked() {
                 *command = Some(Command::CopyCheck);
+                ui.data_mut(|data| data.insert_temp(copied_at, now));
+                ui.ctx().request_repaint_after_secs(COPIED as f32);
             }
         });
         let (label, asked) =

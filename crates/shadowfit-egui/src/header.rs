@@ -41,7 +41,7 @@ pub(crate) fn show(
 /// From the right to the left.
 fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Option<Command>) {
     if panel.has(Part::DeviceCheck) {
-        let check = "Compares this device's maps, look-ups and rays with the CPU's, in about a minute.";
+        let check = "Compares this device's maps, look-ups and rays with the CPU's, in a minute or less on a GPU.";
         let items = [
             ("Table of keys", "Shows the table of keys.", Command::ToggleHelp),
             (CHECK_THIS_GPU, check, Command::CheckDevice),

@@ -100,7 +100,7 @@ pub struct Arguments {
     #[arg(long, requires_all = ["headless", "script"])]
     pub timings: bool,
 
-    /// Checks the graphics device in about a minute, instead of opening a window: its maps, look-ups, passes and rays
+    /// Checks the graphics device, in a minute or less on a GPU, instead of opening a window: its maps, look-ups, passes and rays
     /// against the same on the CPU. Prints a report for an issue, and ends with exit code 1 if a check fails. Takes no other
     /// options than those of the adapter.
     #[arg(long, conflicts_with_all = NOT_WITH_CHECK)]

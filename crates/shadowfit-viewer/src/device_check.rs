@@ -8,6 +8,7 @@ use shadowfit_params::device_check::CheckReport;
 use shadowfit_render::{AdapterChoice, Gpu, GpuError, Wanted};
 use shadowfit_study::{check_device_async, in_background_async, unchecked};
 
+#[cfg(not(target_family = "wasm"))]
 use crate::output;
 
 /// A check that is under way or has ended; nothing while its dialog is closed.

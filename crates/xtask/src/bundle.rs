@@ -67,7 +67,7 @@ pub(crate) fn bundle(folder: &Path, gles: bool) -> Result<()> {
     }
     fs::write(folder.join(TESTS), list)?;
     write_runner(&folder.join("run.sh"))?;
-    println!("the bundle is in {}. Run it with: ./run.sh [--adapter NAME] [FILTER...]", folder.display());
+    println!("the bundle is in {0}. Run it with: {0}/run.sh [--adapter NAME] [FILTER...]", folder.display());
     // The programs have most of their code in common, which a dictionary larger than a program finds.
     println!("pack it with: XZ_OPT=--lzma2=preset=4,dict=512MiB tar -C {} -cJf bundle.tar.xz .", folder.display());
     Ok(())

@@ -61,7 +61,8 @@ enum Task {
         all: bool,
         /// Parts of the paths of the tests to run; without doc tests, page and Bevy.
         names: Vec<String>,
-        /// Draws on this machine's GPU instead of the software adapter, without golden pictures and the window.
+        /// Draws on this machine's GPU instead of the software adapter, without golden pictures and the window. The variable
+        /// `SHADOWFIT_ADAPTER` names any other adapter.
         #[arg(long)]
         gpu: bool,
     },

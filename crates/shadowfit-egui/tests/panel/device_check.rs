@@ -63,6 +63,7 @@ fn a_check_that_has_ended_shows_results_and_reasons_and_can_be_copied_and_run_ag
     }
     assert_eq!(harness.get_all_by_label("12.3 s").count(), 3);
     assert_eq!(pressed(&mut harness, "Copy report"), [Command::CopyCheck]);
+    harness.get_by_label("Copied");
     assert_eq!(pressed(&mut harness, "Check again"), [Command::CheckDevice]);
 }
 

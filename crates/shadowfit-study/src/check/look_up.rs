@@ -76,7 +76,7 @@ async fn run_with(
     let is_within = wrong == 0 && partly * 100 > factors;
     Ok(Outcome::of(
         is_within,
-        format!("{wrong} of {factors} factors differ, {partly} of them at edges; greatest difference {worst:.4}"),
+        format!("{wrong} of {factors} factors differ; {partly} factors lie at edges; greatest difference {worst:.4}"),
     ))
 }
 
