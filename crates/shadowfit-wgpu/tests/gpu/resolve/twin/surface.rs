@@ -99,7 +99,12 @@ impl Twin {
         let toward_eye = |normal: Vec3| if dot(normal, away) > 0.0 { -normal } else { normal };
         let stored = self.stored_normal(pixel);
         let is_stored = dot(stored, away).abs() > STORED_TILT * away.length();
-        let (normal, steps, most_steps, is_known, tilt) = if !is_stored {
+        let (normal, steps, most_steps, is_known, tilt) = if is_stored {
+            let normal = toward_eye(stored);
+            let [across, down] = [m[0], m[1]].map(|change| dot(stored, moved(change)));
+            let steps = -Vec2::new(across, down) / dot(stored, ray);
+            (normal, steps, steps.abs(), true, STORED_TILT)
+        } else {
             let (across, most_across, is_flat_across) = self.change(pixel, [1, 0], depth);
             let (down, most_down, is_flat_down) = self.change(pixel, [0, 1], depth);
             let (right, below) = (moved(m[0] + m[2] * across), moved(m[1] + m[2] * down));
@@ -108,11 +113,6 @@ impl Twin {
             let rise = dot(ray, normal).abs() * self.rounding(depth);
             let tilt = BENT + rise * (1.0 / right.length() + 1.0 / below.length());
             (toward_eye(normal), Vec2::new(across, down), Vec2::new(most_across, most_down), is_known, tilt)
-        } else {
-            let normal = toward_eye(stored);
-            let [across, down] = [m[0], m[1]].map(|change| dot(stored, moved(change)));
-            let steps = -Vec2::new(across, down) / dot(stored, ray);
-            (normal, steps, steps.abs(), true, STORED_TILT)
         };
         let is_single = self.is_single(pixel, depth, steps);
         let off = ray * (ROUNDINGS * self.rounding(depth) + SNAP * (most_steps.x + most_steps.y));
