@@ -11,7 +11,7 @@ struct shadowfit_RaySought {
     normal: vec3<f32>,
 }
 
-// Cosine of the greatest angle between a known normal and that of its own triangle: far more than normals are rounded by.
+// Cosine of the greatest angle between a known normal and its triangle: far more than the rounding of normals.
 const SHADOWFIT_RAYS_SAME_NORMAL: f32 = 0.9995;
 
 // A triangle that a short ray from the eye meets.

@@ -109,10 +109,7 @@ mod tests {
     fn gpu_traced_edges_agree_with_the_cpu_and_not_with_a_scene_that_has_moved() {
         let (gpu, is_cancelled) = (shadowfit_testing::renderer_gpu(), AtomicBool::new(false));
         let mut bench = Bench::new(&gpu, &is_cancelled).expect("a scene");
-        let info = gpu.adapter.get_info();
-        if shadowfit_testing::subpixel_step(&info) > 1.0 / NEEDED as f32 {
-            shadowfit_testing::lacking(&info, "256 steps in a pixel");
-        }
+        shadowfit_testing::require_fine_steps(&gpu.adapter.get_info());
         let found = pollster::block_on(run(&mut bench)).expect("it runs");
         assert!(matches!(found, Outcome::Passed(_)), "{found:?}");
         // The truth of another light.

@@ -231,7 +231,7 @@ pub(super) async fn depths(gpu: &Gpu, view: &wgpu::TextureView) -> Result<Depths
     Ok(Depths { width: size[0], values: numbers.read(gpu).await? })
 }
 
-/// Pixels by which triangles are moved at most, and the number of steps in which they are.
+/// Range over which triangles are moved, in pixels, and the number of steps.
 const RANGE: f32 = 0.5;
 const PARTS: u32 = 512;
 
@@ -253,7 +253,7 @@ pub(super) async fn steps_in_a_pixel(gpu: &Gpu) -> Result<u32> {
     let at = |cell: u32| numbers[((cell / columns * 4 + 1) * width + cell % columns * 4 + 1) as usize];
     let mut shown: Vec<f32> = (0..=PARTS).map(at).collect();
     shown.sort_by(f32::total_cmp);
-    // What is nearer together than half of the finest step differs by the rounding of f32.
+    // Numbers that differ by less than half of the finest step differ by the rounding of f32.
     let finest = RANGE / PARTS as f32;
     let steps = shown.windows(2).filter(|pair| pair[1] - pair[0] > 0.5 * finest).count();
     Ok((steps as f32 / RANGE) as u32)
