@@ -12,8 +12,8 @@ use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 #[cfg(feature = "rays")]
 use crate::cache::StaleMap;
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
-use crate::layers::Layers;
-use crate::map::stored_casters;
+use crate::maps::shadow_map::stored_casters;
+use crate::maps::static_layers::Layers;
 use crate::{
     Culling, MAX_MAPS, MapTexture, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule,
 };
@@ -174,7 +174,7 @@ impl CachedMaps {
     ) -> Result<(), ShadowMapError> {
         self.skip();
         let view = frame.map_view();
-        crate::map_view::check(self.map.descriptor(), &view, fitted)?;
+        crate::maps::view::check(self.map.descriptor(), &view, fitted)?;
         // 1. Which of them are drawn now, and which are read as they are.
         self.cache.settings = self.cache_settings();
         self.cache.schedule = self.schedule;

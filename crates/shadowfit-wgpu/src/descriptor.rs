@@ -1,11 +1,16 @@
 //! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
 
+mod error;
+mod limits;
+mod texture_error;
+
 use shadowfit::selection::MapReading;
 use shadowfit::settings::{CasterPolicy, Edges, FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, Technique};
 
-use crate::ShadowMapError;
-use crate::limits::RESOLUTIONS;
+pub use error::ShadowMapError;
+pub use limits::RESOLUTIONS;
+pub use texture_error::MapTextureError;
 
 /// Size, number, format and filter of a [`ShadowMap`](crate::ShadowMap), and how points read it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -77,27 +77,22 @@
 //! - [`CasterUniform`], [`ReceiverUniform`] and [`MapUniform`] are the uniforms of the WGSL, for engines that bind them
 //!   themselves.
 
+// Rooms, each of which uses those above it: `descriptor` says how maps are, `wgsl` writes the text of the look-ups, `maps`
+// holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `resolve` makes its
+// edges exact.
 mod bindings;
 mod cache;
 mod cached_maps;
 mod caught;
-mod culling;
 pub mod demand;
 mod descriptor;
-mod error;
-mod layers;
-mod limits;
-mod map;
-mod map_texture;
-mod map_view;
+mod maps;
 mod pixels;
 mod read_back;
 #[cfg(feature = "rays")]
 pub mod resolve;
-mod shader;
-mod sun_frame;
-mod sun_shadows;
-mod uniform;
+mod sun;
+mod wgsl;
 
 #[cfg(any(test, fuzzing))]
 #[doc(hidden)]
@@ -108,16 +103,10 @@ pub mod fuzzed {
 
 pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use cached_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
-pub use culling::CullingPiece;
-pub use descriptor::ShadowMapDescriptor;
-pub use error::ShadowMapError;
-pub use layers::layers_wgsl;
-pub use limits::RESOLUTIONS;
-pub use map::ShadowMap;
-pub use map_texture::{MapTexture, MapTextureError};
-pub use map_view::MapView;
-pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
+pub use descriptor::{MapTextureError, RESOLUTIONS, ShadowMapDescriptor, ShadowMapError};
+pub use maps::{
+    CasterUniform, FadingUniform, MapTexture, MapUniform, MapView, ReceiverUniform, ShadowMap, layers_wgsl,
+};
 pub use shadowfit::settings::MAX_MAPS;
-pub use sun_frame::SunFrame;
-pub use sun_shadows::{SunShadows, SunShadowsError, SunSteps};
-pub use uniform::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};
+pub use sun::{SunFrame, SunShadows, SunShadowsError, SunSteps};
+pub use wgsl::{CullingPiece, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};

@@ -5,8 +5,8 @@ use shadowfit::scroll::TexelRect;
 
 use super::{CachedMaps, ShadowPass};
 use crate::cache::PassContent;
-use crate::map::caster_policy;
-use crate::{Culling, CullingPiece};
+use crate::maps::shadow_map::caster_policy;
+use crate::{Culling, CullingPiece, ShadowPiece};
 
 impl<'a> ShadowPass<'a> {
     /// The pass's pieces for shaders.
@@ -15,7 +15,7 @@ impl<'a> ShadowPass<'a> {
         let parts = maps.plan.pieces[pass.pieces.clone()].iter().map(|piece| piece.part.window);
         self.pieces()
             .zip(parts)
-            .map(move |(piece, part)| maps.culling_piece(pass.map, content, part).of_piece(&piece, content))
+            .map(move |(piece, part)| of_piece(&piece, content, &maps.culling_piece(pass.map, content, part)))
     }
 }
 
@@ -36,5 +36,17 @@ impl CachedMaps {
         let moving = (content != PassContent::Static).then_some(*in_view);
         let piece = CullingPiece::new([over].into_iter().chain(moving), self.origin);
         CullingPiece { fixed_planes: over.count, ..piece }
+    }
+}
+
+/// The record of a piece, with the planes of `planes`.
+fn of_piece(piece: &ShadowPiece<'_>, content: PassContent, planes: &CullingPiece) -> CullingPiece {
+    CullingPiece {
+        viewport: piece.viewport,
+        scissor: piece.scissor,
+        map: piece.map as u32,
+        fixed: (content != PassContent::Moving).into(),
+        moving: (content != PassContent::Static).into(),
+        ..*planes
     }
 }

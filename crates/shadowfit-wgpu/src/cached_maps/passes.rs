@@ -2,7 +2,7 @@
 
 use super::CachedMaps;
 use crate::cache::{FramePlan, PassContent, PassPlan};
-use crate::layers::Opening;
+use crate::maps::static_layers::Opening;
 
 /// A pass into a map. A map that is kept unchanged has none.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,7 @@ use shadowfit::{CasterVolume, FittedMap};
 
 use super::CachedMaps;
 use crate::cache::{Casters, Culling, PassContent, PassPlan};
-use crate::map::stored_casters;
+use crate::maps::shadow_map::stored_casters;
 use crate::{MapView, ShadowMapError};
 
 /// A rectangle of a map that is drawn in a frame.

@@ -195,7 +195,7 @@ const DEPTHS: u32 = {DEPTHS}u;
 const CLASSES: u32 = {CLASSES}u;
 const MIN_FACING: f32 = {MIN_FACING};
 {}",
-        include_str!("../shaders/demand.wgsl")
+        include_str!("demand.wgsl")
     )
 }
 

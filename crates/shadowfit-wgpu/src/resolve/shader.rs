@@ -7,7 +7,7 @@ use shadowfit_rays::{RayWgslOptions, rays_wgsl};
 use super::noise;
 use super::uniform::{MAX_POINTS, MAX_UNKNOWN};
 use super::view::NormalEncoding;
-use crate::shader::loads_wgsl;
+use crate::wgsl::loads_wgsl;
 use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
 
 /// Threads of a workgroup that traces, as many as a pixel may have rays.
@@ -29,7 +29,7 @@ const COARSEST_FOOTPRINT: f32 = 3.0;
 /// Texels along a side of a block of the finest level of a pyramid.
 pub(super) const BLOCK: u32 = 4;
 
-const LIST: &str = include_str!("../shaders/resolve_list.wgsl");
+const LIST: &str = include_str!("list.wgsl");
 
 /// What the WGSL of the passes depends on, beside the maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,15 +57,12 @@ pub fn resolve_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Opt
 /// texture at a binding of the group: 0 for [`ResolvePass::group`](super::ResolvePass::group), any other one for a
 /// bind group of the engine's own with [`ResolvePass::factors`](super::ResolvePass::factors).
 pub fn resolved_wgsl(options: &WgslOptions<'_>, binding: u32) -> String {
-    options.fill(include_str!("../shaders/resolved.wgsl"), binding)
+    options.fill(include_str!("resolved.wgsl"), binding)
 }
 
 pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String {
-    let four = if descriptor.format.is_depth() {
-        include_str!("../shaders/four_depth.wgsl")
-    } else {
-        include_str!("../shaders/four_float.wgsl")
-    };
+    let four =
+        if descriptor.format.is_depth() { include_str!("four_depth.wgsl") } else { include_str!("four_float.wgsl") };
     let is_reversed = descriptor.depth == DepthConvention::Reversed;
     let (toward_light, closer) = if is_reversed { (1.0, ">=") } else { (-1.0, "<=") };
     let nearest = if is_reversed { 1.0 } else { 0.0 };
@@ -76,8 +73,7 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
          {BLOCK};\n"
     );
     let list = LIST.replace("LIST_COUNT", "atomic<u32>");
-    let pass =
-        [include_str!("../shaders/resolve_classify.wgsl"), include_str!("../shaders/resolve_soft.wgsl")].concat();
+    let pass = [include_str!("classify.wgsl"), include_str!("soft.wgsl")].concat();
     let pass = pass.replace("COMPARE", closer).replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string());
     [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass].concat()
 }
@@ -87,8 +83,8 @@ pub(super) fn pyramid(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let is_reversed = descriptor.depth == DepthConvention::Reversed;
     let closer = if is_reversed { ">=" } else { "<=" };
     let constants = format!("const BLOCK: i32 = {BLOCK};\n");
-    let blocks = include_str!("../shaders/resolve_blocks.wgsl").replace("COMPARE", closer);
-    let levels = include_str!("../shaders/resolve_levels.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
+    let blocks = include_str!("blocks.wgsl").replace("COMPARE", closer);
+    let levels = include_str!("levels.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
     let loads = loads_wgsl(descriptor, &WgslOptions::group(RECEIVER_GROUP));
     [[loads, constants, blocks].concat(), levels]
 }
@@ -99,20 +95,20 @@ pub(super) fn arguments(descriptor: &ShadowMapDescriptor) -> String {
         "const MAX_GROUPS: u32 = {MAX_GROUPS}u;\nconst PIXELS: u32 = {pixels}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n"
     );
     let list = LIST.replace("LIST_COUNT", "u32");
-    [&constants, &list, include_str!("../shaders/resolve_arguments.wgsl")].concat()
+    [&constants, &list, include_str!("arguments.wgsl")].concat()
 }
 
 pub(super) fn select() -> String {
     let constants =
         format!("const NOISE_SIDE: u32 = {}u;\nconst TRACE_THREADS: u32 = {TRACE_THREADS}u;\n", noise::SIDE);
     let list = LIST.replace("LIST_COUNT", "u32");
-    [&constants, &list, include_str!("../shaders/resolve_select.wgsl")].concat()
+    [&constants, &list, include_str!("select.wgsl")].concat()
 }
 
 /// `counts`: an engine's own test of hits.
 pub(super) fn surfaces(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let constants = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
-    let pass = include_str!("../shaders/resolve_surfaces.wgsl");
+    let pass = include_str!("surfaces.wgsl");
     [&starts(descriptor, shape, counts), &constants, pass].concat()
 }
 
@@ -120,7 +116,7 @@ pub(super) fn surfaces(descriptor: &ShadowMapDescriptor, shape: Shape, counts: O
 fn starts(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
     let list = LIST.replace("LIST_COUNT", "u32");
-    [&look_up(descriptor), &rays, &shared(shape), &list, include_str!("../shaders/resolve_start.wgsl")].concat()
+    [&look_up(descriptor), &rays, &shared(shape), &list, include_str!("start.wgsl")].concat()
 }
 
 /// `counts`: an engine's own test of hits.
@@ -134,12 +130,8 @@ pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Opti
     // Whatever the filter, rays to a sun with a radius are compared with casters at their distance.
     let filter = if is_soft { FilterKind::Pcss } else { descriptor.filter };
     let starts = starts(&ShadowMapDescriptor { filter, ..*descriptor }, shape, counts);
-    let estimate = if is_soft {
-        include_str!("../shaders/resolve_estimate_sun.wgsl")
-    } else {
-        include_str!("../shaders/resolve_estimate_area.wgsl")
-    };
-    let pass = include_str!("../shaders/resolve_trace.wgsl");
+    let estimate = if is_soft { include_str!("estimate_sun.wgsl") } else { include_str!("estimate_area.wgsl") };
+    let pass = include_str!("trace.wgsl");
     [&starts, &threads, estimate, pass].concat()
 }
 
@@ -161,7 +153,7 @@ fn shared(Shape { samples, normals }: Shape) -> String {
     let constants = format!(
         "\nalias DepthTexture = {texture};\nconst SAMPLES: u32 = {samples}u;\nconst NORMALS: u32 = {normals};\n\n"
     );
-    let text = include_str!("../shaders/resolve.wgsl")
+    let text = include_str!("resolve.wgsl")
         .replace("MAX_POINTS", &MAX_POINTS.to_string())
         .replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string())
         .replace("DEPTH_INDEX", index);

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use shadowfit::settings::Edges;
 
-use crate::shader::in_disc;
+use crate::wgsl::in_disc;
 
 /// Most points of a pixel.
 pub(super) const MAX_POINTS: usize = Edges::MAX_SAMPLES as usize;

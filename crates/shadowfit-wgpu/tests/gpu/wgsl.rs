@@ -181,8 +181,8 @@ fn every_wgsl_file_stands_whole_in_some_module() {
     let package = package_folder(env!("CARGO_MANIFEST_DIR"));
     let crates = package.parent().expect("the crates' folder");
     let texts: Vec<&str> = MODULES.iter().map(|shader| shader.source.as_str()).collect();
-    for name in ["shadowfit-wgpu", "shadowfit-rays"] {
-        assert_every_file_is_used(&crates.join(name).join("src/shaders"), &texts, filled);
+    for folder in ["wgpu/src", "rays/src"] {
+        assert_every_file_is_used(&crates.join(format!("shadowfit-{folder}")), &texts, filled);
     }
 }
 

@@ -13,13 +13,13 @@ pub(super) fn two_sets(look_up: &str) -> String {
         .replace("shadowfit_receiver: shadowfit_Receiver;", "shadowfit_fading: shadowfit_Fading;")
         .replace("fn shadowfit_turned(", "fn shadowfit_turned_now(")
         .replace("fn shadowfit_map_index(", "fn shadowfit_map_index_now(");
-    [&of_now(&now), include_str!("../shaders/fading.wgsl"), "\n", &before].concat()
+    [&of_now(&now), include_str!("fading.wgsl"), "\n", &before].concat()
 }
 
 /// Views of the present maps, from those of the only ones.
 pub(super) fn stored(stored: &str) -> String {
     let now = stored.replace("fn shadowfit_stored(", "fn shadowfit_stored_now(");
-    [&of_now(&now), include_str!("../shaders/fading_stored.wgsl")].concat()
+    [&of_now(&now), include_str!("fading_stored.wgsl")].concat()
 }
 
 /// A text that reads the present maps.

@@ -7,8 +7,8 @@ use shadowfit::glam::Vec3;
 use shadowfit::settings::{Edges, FilterKind, MAX_MAPS, MapFormat, MapSelection, Softness};
 use shadowfit::{DepthConvention, FitError};
 
-use crate::limits::RESOLUTIONS;
-use crate::map_texture::MapTextureError;
+use super::limits::RESOLUTIONS;
+use super::texture_error::MapTextureError;
 
 /// Why a [`ShadowMap`](crate::ShadowMap) could not be made or prepared.
 #[derive(Clone, Debug, PartialEq)]

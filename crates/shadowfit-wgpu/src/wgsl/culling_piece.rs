@@ -5,8 +5,6 @@ use bytemuck::{Pod, Zeroable};
 use shadowfit::CasterVolume;
 use shadowfit::glam::{DVec3, Vec4};
 
-use crate::{PassContent, ShadowPiece};
-
 /// A piece of a pass for shaders that cull casters: `shadowfit_CullingPiece` of [`culling_wgsl`](crate::culling_wgsl),
 /// an element of its storage buffer.
 #[repr(C)]
@@ -15,9 +13,9 @@ pub struct CullingPiece {
     /// Planes (n, d) with unit normals that point inward: a point p, in metres relative to the origin of the frame, is
     /// inside where n·p + d >= 0. Everything is inside unused ones.
     pub planes: [[f32; 4]; CullingPiece::MAX_PLANES],
-    /// [`ShadowPiece::viewport`].
+    /// [`ShadowPiece::viewport`](crate::ShadowPiece::viewport).
     pub viewport: [f32; 4],
-    /// [`ShadowPiece::scissor`].
+    /// [`ShadowPiece::scissor`](crate::ShadowPiece::scissor).
     pub scissor: [u32; 4],
     /// Number of the map.
     pub map: u32,
@@ -56,17 +54,5 @@ impl CullingPiece {
         }
         (piece.fixed_planes, piece.moving_planes) = (count as u32, count as u32);
         piece
-    }
-
-    /// The same for a piece of a pass.
-    pub(crate) fn of_piece(self, piece: &ShadowPiece<'_>, content: PassContent) -> Self {
-        Self {
-            viewport: piece.viewport,
-            scissor: piece.scissor,
-            map: piece.map as u32,
-            fixed: (content != PassContent::Moving).into(),
-            moving: (content != PassContent::Static).into(),
-            ..self
-        }
     }
 }

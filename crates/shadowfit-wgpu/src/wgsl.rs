@@ -1,12 +1,15 @@
-//! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
+//! The WGSL of casters and receivers, put together from the pieces in `wgsl/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
+mod culling_piece;
 mod fading;
 
 use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
 
-use crate::{CullingPiece, MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
+use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
+
+pub use culling_piece::CullingPiece;
 
 /// Look-ups over the disc of [`FilterKind::Pcss`].
 const PCSS_TAPS: u32 = 16;
@@ -79,10 +82,10 @@ impl WgslOptions<'_> {
 pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let color = match descriptor.format {
         MapFormat::Depth32Float | MapFormat::Depth16Unorm => "",
-        MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => include_str!("shaders/color_float.wgsl"),
-        MapFormat::Rgba8Packed => include_str!("shaders/color_packed.wgsl"),
+        MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => include_str!("wgsl/color_float.wgsl"),
+        MapFormat::Rgba8Packed => include_str!("wgsl/color_packed.wgsl"),
     };
-    options.fill(&[include_str!("shaders/caster.wgsl"), color].concat(), descriptor.first_binding)
+    options.fill(&[include_str!("wgsl/caster.wgsl"), color].concat(), descriptor.first_binding)
 }
 
 /// WGSL for shaders that cull casters:
@@ -99,7 +102,7 @@ pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) 
 /// Reads a storage buffer of [`CullingPiece`]s at binding 0 of the group: those of
 /// [`SunShadows::culling_pieces`](crate::SunShadows::culling_pieces).
 pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
-    options.fill(include_str!("shaders/culling.wgsl"), 0)
+    options.fill(include_str!("wgsl/culling.wgsl"), 0)
 }
 
 /// WGSL for the shaders that light what receives shadows, in any stage:
@@ -118,26 +121,25 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 /// [cross-fades](ShadowMapDescriptor::cross_fades), the factor is a mix of two sets of maps while one of them fades out.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
-    let texel =
-        if loads_texels(descriptor) { [load, include_str!("shaders/texel.wgsl")].concat() } else { String::new() };
+    let texel = if loads_texels(descriptor) { [load, include_str!("wgsl/texel.wgsl")].concat() } else { String::new() };
     let look_up = match (descriptor.format.is_depth(), descriptor.filter) {
-        (true, _) => [include_str!("shaders/compare_depth.wgsl"), ""],
+        (true, _) => [include_str!("wgsl/compare_depth.wgsl"), ""],
         (false, FilterKind::Point) => {
-            [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")]
+            [include_str!("wgsl/compare_float.wgsl"), include_str!("wgsl/compare_float_point.wgsl")]
         }
-        (false, _) => [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")],
+        (false, _) => [include_str!("wgsl/compare_float.wgsl"), include_str!("wgsl/compare_float_2x2.wgsl")],
     };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
     let pieces = [
-        include_str!("shaders/receiver.wgsl"),
+        include_str!("wgsl/receiver.wgsl"),
         texture,
         &texel,
         &look_up.concat(),
-        include_str!("shaders/look_up.wgsl"),
+        include_str!("wgsl/look_up.wgsl"),
         &filter(descriptor.filter),
         &choice(descriptor),
-        include_str!("shaders/turn.wgsl"),
-        include_str!("shaders/factor.wgsl"),
+        include_str!("wgsl/turn.wgsl"),
+        include_str!("wgsl/factor.wgsl"),
     ];
     let one_set = pieces.concat().replace("COMPARE", closer);
     let text = if descriptor.cross_fades { fading::two_sets(&one_set) } else { one_set };
@@ -166,13 +168,13 @@ fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
         (0..maps).map(wrap).collect::<String>()
     );
     let is_reversed = descriptor.depth == DepthConvention::Reversed;
-    let compared = include_str!("shaders/texel_compared.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
+    let compared = include_str!("wgsl/texel_compared.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
     let load = match (loads_texels(descriptor), backend) {
         (true, _) => "",
         (false, wgpu::Backend::Gl) => &compared,
         (false, _) => texture(descriptor.format).1,
     };
-    let one_set = [load, &wraps, include_str!("shaders/stored.wgsl")].concat();
+    let one_set = [load, &wraps, include_str!("wgsl/stored.wgsl")].concat();
     let text = if descriptor.cross_fades { fading::stored(&one_set) } else { one_set };
     options.fill(&text, descriptor.first_binding)
 }
@@ -193,14 +195,12 @@ fn loads_texels(descriptor: &ShadowMapDescriptor) -> bool {
 fn texture(format: MapFormat) -> (&'static str, &'static str) {
     match format {
         MapFormat::Depth32Float | MapFormat::Depth16Unorm => {
-            (include_str!("shaders/texture_depth.wgsl"), include_str!("shaders/texel_depth.wgsl"))
+            (include_str!("wgsl/texture_depth.wgsl"), include_str!("wgsl/texel_depth.wgsl"))
         }
         MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => {
-            (include_str!("shaders/texture_color.wgsl"), include_str!("shaders/texel_float.wgsl"))
+            (include_str!("wgsl/texture_color.wgsl"), include_str!("wgsl/texel_float.wgsl"))
         }
-        MapFormat::Rgba8Packed => {
-            (include_str!("shaders/texture_color.wgsl"), include_str!("shaders/texel_packed.wgsl"))
-        }
+        MapFormat::Rgba8Packed => (include_str!("wgsl/texture_color.wgsl"), include_str!("wgsl/texel_packed.wgsl")),
     }
 }
 
@@ -211,17 +211,17 @@ fn filter(filter: FilterKind) -> String {
             "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {:?};\n\n",
             Softness::LOOK_UP_SQUARE
         );
-        [&constants, include_str!("shaders/disc.wgsl"), &disc_taps(taps), file].concat()
+        [&constants, include_str!("wgsl/disc.wgsl"), &disc_taps(taps), file].concat()
     };
     match filter {
-        FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl").to_owned(),
-        FilterKind::Pcf3x3 => include_str!("shaders/filter_tent_3x3.wgsl").to_owned(),
-        FilterKind::Pcf5x5 => include_str!("shaders/filter_tent_5x5.wgsl").to_owned(),
-        FilterKind::Pcf7x7 => include_str!("shaders/filter_tent_7x7.wgsl").to_owned(),
-        FilterKind::Vogel8 => disc(8, include_str!("shaders/filter_vogel.wgsl")),
-        FilterKind::Vogel16 => disc(16, include_str!("shaders/filter_vogel.wgsl")),
-        FilterKind::Vogel32 => disc(32, include_str!("shaders/filter_vogel.wgsl")),
-        FilterKind::Pcss => disc(PCSS_TAPS, include_str!("shaders/filter_pcss.wgsl")),
+        FilterKind::Point | FilterKind::Hardware2x2 => include_str!("wgsl/filter_single.wgsl").to_owned(),
+        FilterKind::Pcf3x3 => include_str!("wgsl/filter_tent_3x3.wgsl").to_owned(),
+        FilterKind::Pcf5x5 => include_str!("wgsl/filter_tent_5x5.wgsl").to_owned(),
+        FilterKind::Pcf7x7 => include_str!("wgsl/filter_tent_7x7.wgsl").to_owned(),
+        FilterKind::Vogel8 => disc(8, include_str!("wgsl/filter_vogel.wgsl")),
+        FilterKind::Vogel16 => disc(16, include_str!("wgsl/filter_vogel.wgsl")),
+        FilterKind::Vogel32 => disc(32, include_str!("wgsl/filter_vogel.wgsl")),
+        FilterKind::Pcss => disc(PCSS_TAPS, include_str!("wgsl/filter_pcss.wgsl")),
     }
 }
 
@@ -269,8 +269,8 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
     };
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
     let rule = match descriptor.selection {
-        MapSelection::Coverage { .. } => include_str!("shaders/choice_coverage.wgsl"),
-        MapSelection::ViewDepth { .. } => include_str!("shaders/choice_view_depth.wgsl"),
+        MapSelection::Coverage { .. } => include_str!("wgsl/choice_coverage.wgsl"),
+        MapSelection::ViewDepth { .. } => include_str!("wgsl/choice_view_depth.wgsl"),
     };
     let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.selection.blend());
     format!(

@@ -7,11 +7,11 @@ use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
 
+use super::texture::is_array;
+use super::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
+use super::view::check;
 use crate::bindings;
 use crate::caught::caught;
-use crate::map_texture::is_array;
-use crate::map_view::check;
-use crate::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
 use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.

@@ -7,6 +7,7 @@
 //! ```
 
 mod error;
+mod frame;
 mod new_maps;
 mod other_set;
 mod steps;
@@ -21,13 +22,14 @@ use crate::cached_maps::CachedMaps;
 use crate::demand::{DemandPass, DemandPassError, DemandView, supported};
 use crate::{
     Casters, Culling, CullingPiece, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass,
-    ShadowPiece, SunFrame, UpdateSchedule,
+    ShadowPiece, UpdateSchedule,
 };
 
 use other_set::OtherSet;
 use steps::StepState;
 
 pub use error::SunShadowsError;
+pub use frame::SunFrame;
 pub use steps::SunSteps;
 
 /// The shadows of one directional light: its maps, the parts of them that are kept, and what the last frames showed.

@@ -139,7 +139,7 @@ impl StaticLayers {
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some(LABEL), ..Default::default() });
         // A texture each: OpenGL's shaders read arrays as a whole alone.
         let layer = || {
-            let view = crate::map::texture(device, descriptor, (format, 1)).create_view(&Default::default());
+            let view = super::shadow_map::texture(device, descriptor, (format, 1)).create_view(&Default::default());
             let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&sampler)];
             let group = bindings::group(device, LABEL, &layout, (0, &resources));
             (view, group)
@@ -204,9 +204,9 @@ impl<'a> Shape<'a> {
 /// validate it.
 pub fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let far = if descriptor.depth == DepthConvention::Reversed { "0.0" } else { "1.0" };
-    let clear = include_str!("shaders/clear.wgsl").replace("FAR", far);
+    let clear = include_str!("clear.wgsl").replace("FAR", far);
     let caster = caster_wgsl(descriptor, &WgslOptions::group(1));
-    let mend = [&caster, &clear, include_str!("shaders/mend.wgsl")].concat();
+    let mend = [&caster, &clear, include_str!("mend.wgsl")].concat();
     [clear, mend]
 }
 
