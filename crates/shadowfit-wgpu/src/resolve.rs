@@ -49,6 +49,7 @@ mod result;
 mod shader;
 mod source;
 mod uniform;
+mod verdict;
 mod view;
 
 pub use any_hit::AnyHit;

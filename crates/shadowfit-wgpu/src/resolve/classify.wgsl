@@ -4,12 +4,8 @@
 @group(1) @binding(4) var<storage, read_write> list: List;
 @group(1) @binding(5) var texels: sampler;
 
-// What is found beside factors.
-const UNSURE: f32 = 2.0;
-const FACES_AWAY: f32 = 3.0;
-const BEYOND: f32 = 4.0;
-const NO_SURFACE: f32 = 5.0;
-const TOO_WIDE: f32 = 6.0;
+// The factor in the texture where the filter decides.
+const FILTER_DECIDES: f32 = -1.0;
 // Blocks of 2x2 texels along a side of the greatest footprint that is looked at in a map.
 const MOST_BLOCKS: f32 = 6.0;
 
@@ -39,10 +35,9 @@ fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32, ri
     return vec2<f32>(dot(select(vec4<f32>(0.0), vec4<f32>(1.0), is_lit), vec4<f32>(1.0)), dot(counts, vec4<f32>(1.0)));
 }
 
-// What the texels say that the filter reads around the points of a pixel: 1 where none is nearer to the light than the
-// point's plane, 0 where all shadow it, UNSURE otherwise, and TOO_WIDE where they do not all lie in the map or are too
-// many. spread: by how much the points differ from the one that is projected, in texels.
-fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> f32 {
+// The verdict of the texels that the filter reads around the points of a pixel: LIT, SHADOWED, UNSURE or TOO_WIDE.
+// spread: by how much the points differ from the one that is projected, in texels.
+fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> u32 {
     let first = floor(projected.texel - spread - 0.5) - (FOOTPRINT - 1.0);
     let last = floor(projected.texel + spread - 0.5) + FOOTPRINT;
     let blocks = ceil((last - first + 1.0) * 0.5);
@@ -59,7 +54,7 @@ fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f3
         }
     }
     let read = 4.0 * blocks.x * blocks.y;
-    return select(select(UNSURE, 1.0, counts.x == read), 0.0, counts.y == read);
+    return select(select(UNSURE, LIT, counts.x == read), SHADOWED, counts.y == read);
 }
 
 // By how much the starts of a pixel's rays differ from its first sample in a map, in texels: they are points of it, and lie
@@ -112,12 +107,12 @@ fn unsure_maps(position: vec3<f32>) -> u32 {
     return maps;
 }
 
-// x: what a map, by its place in the order, says about a pixel: 1, 0, UNSURE or TOO_WIDE. y: the same, but where the cone of a sun with a radius is too
-// wide what the texels say that are right around the pixel.
-fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<f32> {
+// x: the verdict of a map, by its place in the order: LIT, SHADOWED, UNSURE or TOO_WIDE. y: the same, except where the cone
+// of a sun with a radius is too wide: there it is the verdict of the texels right around the pixel.
+fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<u32> {
     let map = shadowfit_entry(entry);
     if (unsure & (1u << map.layer)) != 0u {
-        return vec2<f32>(UNSURE);
+        return vec2<u32>(UNSURE);
     }
     let projected = shadowfit_project(map, surface.position, surface.normal);
     let spread = spread_in(entry, map, surface);
@@ -126,17 +121,17 @@ fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<f32> {
     if IS_SOFT {
         verdict = soft_footprint(map, projected, spread, rise);
         if verdict != TOO_WIDE {
-            return vec2<f32>(verdict);
+            return vec2<u32>(verdict);
         }
     }
     let near = footprint(map, projected, spread, rise);
-    return vec2<f32>(select(near, verdict, IS_SOFT), near);
+    return vec2<u32>(select(near, verdict, IS_SOFT), near);
 }
 
-// What the maps say about a pixel: 1, 0 or UNSURE. The finest one decides in which its footprint is whole and not too
+// The verdict of all maps: LIT, SHADOWED or UNSURE. The finest one decides in which its footprint is whole and not too
 // wide; by view depth others may lack what shadows it. Where the cone of a sun with a radius is too wide for finer maps,
 // the first of them must not contradict: close to the pixel it has casters and gaps that are narrower than a coarse texel.
-fn verdict_of_maps(surface: Surface, unsure: u32) -> f32 {
+fn verdict_of_maps(surface: Surface, unsure: u32) -> u32 {
     let choice = shadowfit_choose(surface.position);
     if choice.first < 0 || choice.first == choice.clamped {
         return UNSURE;
@@ -155,30 +150,36 @@ fn verdict_of_maps(surface: Surface, unsure: u32) -> f32 {
     return select(verdict, UNSURE, verdict == TOO_WIDE || is_contrary);
 }
 
-// The factor of a pixel, or what is found beside factors.
-fn verdict_of(pixel: vec2<i32>) -> f32 {
+// A pixel's verdict, and the factor that goes into the texture.
+struct Classified {
+    verdict: u32,
+    factor: f32,
+}
+
+fn classified(pixel: vec2<i32>) -> Classified {
     let depth = depth_at(pixel);
     if depth == 0.0 {
-        return NO_SURFACE;
+        return Classified(NO_SURFACE, FILTER_DECIDES);
     }
     let surface = surface_of(pixel, depth);
     let faded = shadowfit_faded(surface.position);
     if faded >= 1.0 {
-        return BEYOND;
+        return Classified(BEYOND, 1.0);
     }
     let facing = dot(surface.normal, shadowfit_receiver.to_light);
     if surface.is_known && surface.is_single && facing <= -surface.tilt {
-        return FACES_AWAY;
+        return Classified(FACES_AWAY, 0.0);
     }
     let unsure = unsure_maps(surface.position);
     if !surface.is_single || (unsure >> 31u) != 0u {
-        return FILTERED;
+        return Classified(FILTERED, FILTER_DECIDES);
     }
     if !surface.is_known || facing < surface.tilt {
-        return UNSURE;
+        return Classified(UNSURE, FILTER_DECIDES);
     }
     let verdict = verdict_of_maps(surface, unsure);
-    return select(mix(verdict, 1.0, faded), UNSURE, verdict == UNSURE);
+    let factor = mix(select(0.0, 1.0, verdict == LIT), 1.0, faded);
+    return Classified(verdict, select(factor, FILTER_DECIDES, verdict == UNSURE));
 }
 
 // Adds the counts of a workgroup to those of the list, and reserves places on it. Additions of 0 are left out: all workgroups
@@ -202,10 +203,9 @@ fn add_counts() {
 fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     var verdict = NO_SURFACE;
     if all(id.xy < resolve.size) {
-        verdict = verdict_of(vec2<i32>(id.xy));
-        var factor = select(verdict, FILTERED, verdict == UNSURE || verdict == NO_SURFACE);
-        factor = select(select(factor, 0.0, verdict == FACES_AWAY), 1.0, verdict == BEYOND);
-        let untraced = bitcast<f32>(bitcast<u32>(factor) & ~TRACED_BIT);
+        let found = classified(vec2<i32>(id.xy));
+        verdict = found.verdict;
+        let untraced = bitcast<f32>(bitcast<u32>(found.factor) & ~TRACED_BIT);
         textureStore(factors, resolve.corner + id.xy, vec4<f32>(untraced, 0.0, 0.0, 0.0));
     }
     // Neighbours reserve their places together.
@@ -213,7 +213,7 @@ fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocat
     if verdict == UNSURE {
         slot = atomicAdd(&unsure_count, 1u);
     }
-    if verdict <= UNSURE {
+    if verdict <= FILTERED {
         atomicAdd(&facing_count, 1u);
     }
     if verdict == FILTERED {

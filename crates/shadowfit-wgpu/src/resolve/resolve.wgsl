@@ -52,8 +52,6 @@ struct Resolve {
 @group(1) @binding(2) var normals: texture_2d<f32>;
 @group(1) @binding(3) var factors: texture_storage_2d<r32float, write>;
 
-// What stands in the texture where the filter decides.
-const FILTERED: f32 = -1.0;
 // The lowest bit of a factor says whether the pixel was traced.
 const TRACED_BIT: u32 = 1u;
 

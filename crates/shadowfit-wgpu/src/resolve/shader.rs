@@ -6,6 +6,7 @@ use shadowfit_rays::{RayWgslOptions, rays_wgsl};
 
 use super::noise;
 use super::uniform::{MAX_POINTS, MAX_UNKNOWN};
+use super::verdict::Verdict;
 use super::view::NormalEncoding;
 use crate::wgsl::loads_wgsl;
 use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
@@ -75,7 +76,7 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
     let list = LIST.replace("LIST_COUNT", "atomic<u32>");
     let pass = [include_str!("classify.wgsl"), include_str!("soft.wgsl")].concat();
     let pass = pass.replace("COMPARE", closer).replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string());
-    [&look_up(descriptor), four, &shared(shape), &list, &constants, &pass].concat()
+    [&look_up(descriptor), four, &shared(shape), &list, &constants, &Verdict::wgsl(), &pass].concat()
 }
 
 /// The WGSL of the passes that bound a map's depths: entry points `gather_blocks` and `join_blocks`.

@@ -89,9 +89,9 @@ fn rise_in(p: shadowfit_Projected, blocks: Blocks, rounding: f32) -> f32 {
     return TOWARD_LIGHT * dot(abs(p.gradient), vec2<f32>(blocks.side - 1.0) * 0.5) + rounding;
 }
 
-// What the blocks of a region say: 1 where nothing that is higher than the plane within its block stands in the way of any
-// ray, 0 where all of them cover the point.
-fn verdict_of_blocks(p: shadowfit_Projected, blocks: Blocks, around: vec2<f32>, rounding: f32) -> f32 {
+// The verdict of the blocks of a region: LIT where nothing that is higher than the plane within its block stands in the way
+// of any ray, SHADOWED where all of them cover the point.
+fn verdict_of_blocks(p: shadowfit_Projected, blocks: Blocks, around: vec2<f32>, rounding: f32) -> u32 {
     let counts = block_counts(p, blocks);
     // From a block's middle to its outer texels.
     let half = vec2<f32>(blocks.side - 1.0) * 0.5;
@@ -112,11 +112,11 @@ fn verdict_of_blocks(p: shadowfit_Projected, blocks: Blocks, around: vec2<f32>, 
             is_covered = is_covered && !(plane COMPARE found.y);
         }
     }
-    return select(select(UNSURE, 0.0, is_covered), 1.0, is_lit);
+    return select(select(UNSURE, SHADOWED, is_covered), LIT, is_lit);
 }
 
-// What a map says about a pixel under a sun with a radius: 1, 0, UNSURE or TOO_WIDE.
-fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> f32 {
+// The verdict of a map under a sun with a radius: LIT, SHADOWED, UNSURE or TOO_WIDE.
+fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> u32 {
     let around = spread + FOOTPRINT;
     // How high casters may be: as high as the map has any, and then as high as those in that cone.
     var found = vec2<f32>(NEAREST);
@@ -139,13 +139,13 @@ fn soft_footprint(map: shadowfit_Map, p: shadowfit_Projected, spread: vec2<f32>,
         let rounding = map.constant_depth + TOWARD_LIGHT * ROUNDED_TEXEL * steepness;
         let blocks = blocks_around(p, radius + around, MANY_BLOCKS);
         verdict = verdict_of_blocks(p, blocks, around, rounding);
-        if verdict == 1.0 {
+        if verdict == LIT {
             // Casters that are lower than the plane rises within its block, such as ledges of a wall that the light grazes,
             // stand in the way close to the point only, where texels are looked at one by one.
             let low = 2.0 * abs(rise_in(p, blocks, rounding) * p.penumbra);
             let near = footprint(map, p, spread + low, 0.0);
-            verdict = select(near, UNSURE, near == 0.0);
+            verdict = select(near, UNSURE, near == SHADOWED);
         }
     }
-    return select(verdict, UNSURE, verdict == 0.0 && !is_lid);
+    return select(verdict, UNSURE, verdict == SHADOWED && !is_lid);
 }

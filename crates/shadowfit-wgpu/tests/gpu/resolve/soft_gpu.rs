@@ -7,7 +7,7 @@ use shadowfit_truth::Tracer;
 use shadowfit_wgpu::resolve::NormalEncoding;
 
 use super::stage::{Look, Stage, traced};
-use super::twin::{Twin, Verdict};
+use super::twin::Twin;
 use super::twin_gpu::{compare, look, start, things};
 
 /// Angular radii: the sun's, and one of a degree, in radians.
@@ -89,9 +89,9 @@ fn sure_pixels(stage: &mut Stage, look: &Look, tracer: &Tracer) -> SurePixels {
     let (factors, _) = stage.traced(look, &drawn, |_| ());
     let twin = Twin::new(stage, look, &drawn);
     let mut found = SurePixels::default();
-    for (index, (verdict, factor)) in twin.verdicts().iter().zip(factors).enumerate() {
+    for (index, (classified, factor)) in twin.verdicts().iter().zip(factors).enumerate() {
         // Without those that face away or are beyond the distance of shadows.
-        if matches!(verdict, Verdict::Sure(_)) && (factor == 0.0 || factor == 1.0) {
+        if classified.is_sure() && (factor == 0.0 || factor == 1.0) {
             let is_lit = usize::from(factor == 1.0);
             found.all[is_lit] += 1;
             found.wrong[is_lit] += usize::from(twin.lit_of(index, RAYS, tracer) != RAYS * is_lit as u32);

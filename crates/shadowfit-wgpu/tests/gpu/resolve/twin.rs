@@ -1,5 +1,5 @@
-//! What the first resolve pass finds about each pixel, in plain Rust: the arithmetic of `resolve.wgsl`,
-//! `resolve_classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
+//! The first resolve pass in plain Rust: the arithmetic of `resolve.wgsl`,
+//! `classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
 //! back. Suns with a radius are in `twin/soft.rs`, and the rays of the later passes, and the maps' estimate beside them, in
 //! `twin/rays.rs` and `twin/estimate.rs`.
 
@@ -13,6 +13,9 @@ mod rays;
 mod soft;
 #[path = "twin/surface.rs"]
 mod surface;
+#[path = "../../../src/resolve/verdict.rs"]
+#[allow(dead_code, reason = "the WGSL of the verdicts is for the crate itself")]
+mod verdict;
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec2, Vec3, Vec4};
 use shadowfit::{Bias, DepthConvention, FittedMap};
@@ -20,20 +23,21 @@ use shadowfit_wgpu::resolve::NormalEncoding;
 use shadowfit_wgpu::{MapUniform, MapView, ReceiverUniform, ShadowMapDescriptor};
 
 use self::surface::Surface;
+pub(super) use self::verdict::Verdict;
 use super::stage::{Drawn, Look, Stage};
 
-/// What is found about a pixel.
+/// A pixel's verdict, and its factor where the maps are sure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict {
-    NoSurface,
-    /// Beyond the distance of shadows.
-    Beyond,
-    FacesAway,
-    /// Left to the filter.
-    Filtered,
-    Unsure,
-    /// The maps are sure.
-    Sure(f32),
+pub(super) struct Classified {
+    pub(super) verdict: Verdict,
+    pub(super) factor: f32,
+}
+
+impl Classified {
+    /// Whether the maps decide the factor.
+    pub(super) fn is_sure(self) -> bool {
+        matches!(self.verdict, Verdict::Lit | Verdict::Shadowed)
+    }
 }
 
 /// By how much thresholds are moved, to see which pixels lie next to one: in texels for places, as a share for the others;
@@ -98,14 +102,6 @@ struct Projected {
     gradient: Vec2,
 }
 
-/// What the texels around a point say.
-enum Footprint {
-    /// They do not all lie in the map, or are too many.
-    TooWide,
-    Unsure,
-    Sure(f32),
-}
-
 impl Twin {
     /// Of the picture that a stage has drawn and resolved.
     pub(super) fn new(stage: &Stage, look: &Look, drawn: &Drawn) -> Self {
@@ -141,47 +137,49 @@ impl Twin {
         }
     }
 
-    /// The verdict of each pixel, rows from the top.
-    pub(super) fn verdicts(&self) -> Vec<Verdict> {
+    /// Classifies each pixel, rows from the top.
+    pub(super) fn verdicts(&self) -> Vec<Classified> {
         let [width, height] = self.size;
-        (0..width * height).map(|index| self.verdict([index % width, index / width])).collect()
+        (0..width * height).map(|index| self.classified([index % width, index / width])).collect()
     }
 
-    /// The verdicts of a pixel where thresholds are a little lower or higher.
-    pub(super) fn nearby(&mut self, index: usize, slack: Slack) -> Vec<Verdict> {
+    /// Classifies a pixel with thresholds that are a little lower or higher.
+    pub(super) fn nearby(&mut self, index: usize, slack: Slack) -> Vec<Classified> {
         let index = (index as u32).cast_signed();
         let at = [index % self.size[0], index / self.size[0]];
         let found = [[-slack, 0.0], [slack, 0.0], [0.0, -slack], [0.0, slack]].map(|slacks| {
             [self.slack, self.radius_slack] = slacks;
-            self.verdict(at)
+            self.classified(at)
         });
         [self.slack, self.radius_slack] = [0.0; 2];
         found.to_vec()
     }
 
-    fn verdict(&self, pixel: [i32; 2]) -> Verdict {
+    fn classified(&self, pixel: [i32; 2]) -> Classified {
+        let of = |verdict, factor| Classified { verdict, factor };
         let depth = self.depth_at(pixel);
         if depth == 0.0 {
-            return Verdict::NoSurface;
+            return of(Verdict::NoSurface, -1.0);
         }
         let surface = self.surface_of(pixel, depth);
         let faded = self.faded(surface.position);
         if faded >= 1.0 {
-            return Verdict::Beyond;
+            return of(Verdict::Beyond, 1.0);
         }
         let facing = dot(surface.normal, self.receiver.to_light.into());
         if surface.is_known && surface.is_single && facing <= self.slack * 0.01 - surface.tilt {
-            return Verdict::FacesAway;
+            return of(Verdict::FacesAway, 0.0);
         }
         if !surface.is_single {
-            return Verdict::Filtered;
+            return of(Verdict::Filtered, -1.0);
         }
         if !surface.is_known || facing < surface.tilt + self.slack * 0.01 {
-            return Verdict::Unsure;
+            return of(Verdict::Unsure, -1.0);
         }
-        match self.of_map(&surface) {
-            Some(factor) => Verdict::Sure(factor * (1.0 - faded) + faded),
-            None => Verdict::Unsure,
+        match self.of_maps(&surface) {
+            Verdict::Lit => of(Verdict::Lit, 1.0),
+            Verdict::Shadowed => of(Verdict::Shadowed, faded),
+            verdict => of(verdict, -1.0),
         }
     }
 
@@ -199,12 +197,12 @@ impl Twin {
         share * share * (3.0 - 2.0 * share)
     }
 
-    /// The factor by the finest map in which a pixel's footprint is whole and not too wide, or by the one that it reads by
-    /// view depth; `None` where it is not sure.
-    fn of_map(&self, surface: &Surface) -> Option<f32> {
+    /// The verdict of the finest map in which a pixel's footprint is whole and not too wide, or of the one that it reads by
+    /// view depth.
+    fn of_maps(&self, surface: &Surface) -> Verdict {
         let choice = self.choose(surface.position);
         if choice.first < 0 || choice.first == choice.clamped {
-            return None;
+            return Verdict::Unsure;
         }
         let mut near = None;
         for entry in choice.first as u32..self.receiver.map_count {
@@ -219,20 +217,17 @@ impl Twin {
             let is_soft = self.descriptor.filter.is_soft();
             let close = || self.footprint(map, &projected, spread, rise);
             match if is_soft { self.soft_footprint(map, &projected, spread, rise) } else { close() } {
-                Footprint::TooWide if self.descriptor.selection.is_by_coverage() => {
+                Verdict::TooWide if self.descriptor.selection.is_by_coverage() => {
                     near = if is_first && is_soft { Some(close()) } else { near };
                 }
-                Footprint::TooWide | Footprint::Unsure => return None,
-                Footprint::Sure(factor) => {
-                    return match near {
-                        Some(Footprint::Sure(near)) if near != factor => None,
-                        Some(Footprint::Unsure) => None,
-                        _ => Some(factor),
-                    };
+                Verdict::TooWide => return Verdict::Unsure,
+                verdict => {
+                    let is_contrary = near.is_some_and(|near| near != Verdict::TooWide && near != verdict);
+                    return if is_contrary { Verdict::Unsure } else { verdict };
                 }
             }
         }
-        None
+        Verdict::Unsure
     }
 
     fn project(&self, map: &MapUniform, position: Vec3, normal: Vec3) -> Projected {
@@ -266,13 +261,13 @@ impl Twin {
         depth * dot(surface.off, surface.normal).abs() / dot(surface.normal, to_light).max(MIN_COSINE)
     }
 
-    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2, rise: f32) -> Footprint {
+    fn footprint(&self, map: &MapUniform, projected: &Projected, spread: Vec2, rise: f32) -> Verdict {
         let first = (projected.texel - spread - 0.5).floor() - (FOOTPRINT - 1.0);
         let last = (projected.texel + spread - 0.5).floor() + FOOTPRINT;
         let blocks = ((last - first + 1.0) * 0.5).ceil();
         let is_whole = first.cmpge(Vec2::ZERO).all() && (first + 2.0 * blocks).cmple(Vec2::from(map.size)).all();
         if !(is_whole && blocks.cmple(Vec2::splat(MOST_BLOCKS)).all()) {
-            return Footprint::TooWide;
+            return Verdict::TooWide;
         }
         let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
         let toward_light = if is_reversed { 1.0 } else { -1.0 };
@@ -297,9 +292,9 @@ impl Twin {
             }
         }
         match (is_shadowed, is_lit) {
-            (true, _) => Footprint::Sure(0.0),
-            (false, true) => Footprint::Sure(1.0),
-            _ => Footprint::Unsure,
+            (true, _) => Verdict::Shadowed,
+            (false, true) => Verdict::Lit,
+            _ => Verdict::Unsure,
         }
     }
 

@@ -11,7 +11,7 @@ use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_wgpu::resolve::NormalEncoding;
 
 use super::stage::{Look, Stage, Thing, traced};
-use super::twin::{NEXT_TO, Twin, Verdict};
+use super::twin::{Classified, NEXT_TO, Twin, Verdict};
 
 const SIZE: [u32; 2] = [160, 90];
 /// Triangles that are drawn together.
@@ -91,12 +91,12 @@ pub(super) fn compare(what: &str, stage: &mut Stage, look: &Look) -> [usize; 2] 
     let (all, counts) = stage.traced(look, &drawn, |_| ());
     let mut twin = Twin::new(stage, look, &drawn);
     let verdicts = twin.verdicts();
-    let agrees = |index: usize, verdict: Verdict| match verdict {
-        Verdict::NoSurface | Verdict::Filtered => sure[index] == -1.0 && all[index] == -1.0,
+    let agrees = |index: usize, found: Classified| match found.verdict {
+        Verdict::NoSurface | Verdict::Filtered | Verdict::TooWide => sure[index] == -1.0 && all[index] == -1.0,
         Verdict::Unsure => sure[index] == -1.0 && all[index] >= 0.0,
         Verdict::Beyond => sure[index] == 1.0,
         Verdict::FacesAway => sure[index] == 0.0,
-        Verdict::Sure(factor) => (sure[index] - factor).abs() <= 1e-5,
+        Verdict::Lit | Verdict::Shadowed => (sure[index] - found.factor).abs() <= 1e-5,
     };
     let others: Vec<usize> = (0..verdicts.len()).filter(|index| !agrees(*index, verdicts[*index])).collect();
     println!("{what}: {} of {} pixels are others; {counts:?}", others.len(), verdicts.len());
@@ -110,10 +110,10 @@ pub(super) fn compare(what: &str, stage: &mut Stage, look: &Look) -> [usize; 2] 
             verdicts[*index], sure[*index], all[*index]
         );
     }
-    let count = |is: fn(&Verdict) -> bool| verdicts.iter().filter(|verdict| is(verdict)).count();
-    let unsure = count(|verdict| *verdict == Verdict::Unsure);
-    let sure = count(|verdict| matches!(verdict, Verdict::Sure(_)));
-    let filtered = count(|verdict| *verdict == Verdict::Filtered);
+    let count = |is: fn(Classified) -> bool| verdicts.iter().filter(|found| is(**found)).count();
+    let unsure = count(|found| found.verdict == Verdict::Unsure);
+    let sure = count(Classified::is_sure);
+    let filtered = count(|found| found.verdict == Verdict::Filtered);
     let near = |a: u32, b: usize| (a as usize).abs_diff(b) <= others.len();
     assert!(near(counts.unsure, unsure) && near(counts.filtered, filtered), "{what}: {counts:?}");
     assert!(near(counts.facing, sure + unsure + filtered) && counts.traced == counts.unsure, "{what}: {counts:?}");

@@ -5,7 +5,7 @@ use shadowfit::DepthConvention;
 use shadowfit::glam::Vec2;
 use shadowfit_wgpu::{MapUniform, ShadowMapDescriptor};
 
-use super::{FOOTPRINT, Footprint, Projected, ROUNDED_TEXEL, Twin};
+use super::{FOOTPRINT, Projected, ROUNDED_TEXEL, Twin, Verdict};
 
 // The constants of the WGSL and of the pyramids.
 const BLOCK: u32 = 4;
@@ -62,7 +62,7 @@ struct Blocks {
 }
 
 impl Twin {
-    pub(super) fn soft_footprint(&self, map: &MapUniform, p: &Projected, spread: Vec2, rise: f32) -> Footprint {
+    pub(super) fn soft_footprint(&self, map: &MapUniform, p: &Projected, spread: Vec2, rise: f32) -> Verdict {
         let around = spread + FOOTPRINT;
         let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
         let nearest = if is_reversed { 1.0 } else { 0.0 };
@@ -70,7 +70,7 @@ impl Twin {
         let mut radius = self.cone(map, p, nearest);
         for _ in 0..3 {
             let Some(blocks) = self.blocks_around(map, p, radius + around, FEW_BLOCKS) else {
-                return Footprint::TooWide;
+                return Verdict::TooWide;
             };
             found = self.bounds_of(map, &blocks);
             radius = self.cone(map, p, found[0]);
@@ -82,7 +82,7 @@ impl Twin {
         } else {
             self.verdict_of_blocks(map, p, radius, spread)
         };
-        if matches!(verdict, Footprint::Sure(0.0)) && !is_lid { Footprint::Unsure } else { verdict }
+        if verdict == Verdict::Shadowed && !is_lid { Verdict::Unsure } else { verdict }
     }
 
     /// Texels around a point within which a caster of a depth may stand in the way of a ray.
@@ -130,9 +130,9 @@ impl Twin {
         all.reduce(|a, b| [nearer(a[0], b[0]), farther(a[1], b[1])]).expect("a block at least")
     }
 
-    fn verdict_of_blocks(&self, map: &MapUniform, p: &Projected, radius: Vec2, spread: Vec2) -> Footprint {
+    fn verdict_of_blocks(&self, map: &MapUniform, p: &Projected, radius: Vec2, spread: Vec2) -> Verdict {
         let around = spread + FOOTPRINT;
-        let Some(blocks) = self.blocks_around(map, p, radius + around, MANY_BLOCKS) else { return Footprint::Unsure };
+        let Some(blocks) = self.blocks_around(map, p, radius + around, MANY_BLOCKS) else { return Verdict::Unsure };
         let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
         let toward_light = if is_reversed { 1.0 } else { -1.0 };
         let steepness = p.gradient.x.abs() + p.gradient.y.abs();
@@ -154,11 +154,11 @@ impl Twin {
         match (is_lit, is_covered) {
             // What is lower than the plane within a block.
             (true, _) => match self.footprint(map, p, spread + low, 0.0) {
-                Footprint::Sure(0.0) => Footprint::Unsure,
+                Verdict::Shadowed => Verdict::Unsure,
                 near => near,
             },
-            (false, true) => Footprint::Sure(0.0),
-            _ => Footprint::Unsure,
+            (false, true) => Verdict::Shadowed,
+            _ => Verdict::Unsure,
         }
     }
 }
