@@ -228,7 +228,7 @@ impl Engine {
 
         // STEP 2: choose a technique. The recommended one has four maps of 2048² texels and a tent of 5×5.
         let technique = Technique::default().with_max_distance(DISTANCE);
-        let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique)?;
+        let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
 
         if is_exact {
             // EXACT resolve: choose traced edges before pipelines are made. Four rays for a pixel make them smooth.

@@ -41,7 +41,7 @@ struct Args {
 fn main() -> Result<()> {
     let gpu = adapter::open(&Args::parse().adapter);
     let technique = Technique::default().with_max_distance(80.0);
-    let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique)?;
+    let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
     let mut town = Town::new(20);
     let casters = GpuCasters::new(&gpu.device, &sun, &town.blocks);
     println!("second  pieces  casters drawn");

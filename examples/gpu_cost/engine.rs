@@ -57,7 +57,7 @@ pub(crate) struct Engine<'a> {
 impl<'a> Engine<'a> {
     pub(crate) fn new(gpu: &'a Gpu, scene: &'a BenchScene, technique: &Technique) -> Result<Self> {
         let device = &gpu.device;
-        let sun = SunShadows::new(device, &gpu.queue, technique)?;
+        let sun = SunShadows::new(device, &gpu.queue, &(*technique).into())?;
         let camera_uniform = bindings::uniform_buffer::<Mat4>(device, "camera");
         let camera_layout = bindings::layout(device, "camera", wgpu::ShaderStages::VERTEX, &[bindings::UNIFORM]);
         let camera_group = bindings::group(device, "camera", &camera_layout, &[camera_uniform.as_entire_binding()]);

@@ -186,7 +186,7 @@ impl Run<'_> {
         let mut halves = Halves { fit: Times::default(), prepare: Times::default(), one_more: f64::INFINITY };
         let last = LEAD + self.extent.frames;
         for _ in 0..self.extent.rounds {
-            let mut sun = SunShadows::new(&self.gpu.device, &self.gpu.queue, technique)?;
+            let mut sun = SunShadows::new(&self.gpu.device, &self.gpu.queue, &(*technique).into())?;
             let mut casters = Handed::new(&self.town.boxes, way.every, is_tree)?;
             let (mut fits, mut rest) = (Vec::new(), Vec::new());
             for frame in 0..=last {

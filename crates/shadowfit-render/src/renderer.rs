@@ -8,7 +8,8 @@ mod picture;
 mod pixel;
 mod plan;
 
-use shadowfit_wgpu::{MAX_MAPS, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunShadows};
+use shadowfit::Technique;
+use shadowfit_wgpu::{MAX_MAPS, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsDescriptor};
 
 use crate::frame::Frame;
 use crate::judged::JudgedInput;
@@ -60,6 +61,11 @@ pub struct Renderer {
     timer: PassTimer,
 }
 
+/// The description of a sun whose maps may be of another size and format than its technique's.
+fn sun_descriptor(technique: Technique, maps: &ShadowMapDescriptor) -> SunShadowsDescriptor {
+    SunShadowsDescriptor { technique, first_binding: maps.first_binding, texture: None, maps: Some(*maps) }
+}
+
 impl Renderer {
     /// A renderer for pictures of `samples` per pixel (1 or 4). Nothing is kept in its maps at first, so that pictures do
     /// not depend on what was drawn before.
@@ -70,7 +76,7 @@ impl Renderer {
     pub fn new(gpu: &Gpu, shadow_map: &ShadowMapDescriptor, samples: u32) -> Result<Self, ShadowMapError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let mut sun = SunShadows::from_descriptor(device, &gpu.queue, shadow_map)?;
+        let mut sun = SunShadows::new(device, &gpu.queue, &sun_descriptor(Technique::default(), shadow_map))?;
         sun.set_caching(false);
         let pipelines = Pipelines::new(device, &layouts, sun.map(), samples);
         let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
@@ -130,7 +136,7 @@ impl Renderer {
     /// [`ShadowMapError`] if the new one cannot be made.
     pub fn set_shadow_map(&mut self, gpu: &Gpu, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
         let old = *self.shadow_map().descriptor();
-        if !self.sun.set_descriptor(descriptor)? {
+        if !self.sun.set_descriptor(&sun_descriptor(*self.sun.technique(), descriptor))? {
             return Ok(());
         }
         // What the shaders read from uniforms may differ; the greatest radius of a filter is a constant in them.

@@ -16,10 +16,12 @@
 //! # }
 //! # fn demo(engine: &Engine, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), Box<dyn std::error::Error>> {
 //! use shadowfit::glam::Vec3;
-//! use shadowfit::{Boxes, DepthConvention, Technique};
-//! use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
+//! use shadowfit::{Boxes, DepthConvention};
+//! use shadowfit_wgpu::{
+//!     Casters, SunFrame, SunShadows, SunShadowsDescriptor, WgslOptions, caster_wgsl, receiver_wgsl,
+//! };
 //!
-//! let mut sun = SunShadows::new(device, queue, &Technique::default())?; // four maps of 2048² texels
+//! let mut sun = SunShadows::new(device, queue, &SunShadowsDescriptor::default())?; // four maps of 2048² texels
 //! // For the vertex shader of the shadow pass, at @group(0), and for the fragment shader of the picture, at @group(1).
 //! let caster = caster_wgsl(sun.map().descriptor(), &WgslOptions::group(0));
 //! let receiver = receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
@@ -52,6 +54,7 @@
 //! | name | is |
 //! |---|---|
 //! | [`SunShadows`] | the shadows of one sun: one object for each |
+//! | [`SunShadowsDescriptor`] | how they are made: technique, bindings, texture |
 //! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, which of them move, and what stands |
 //! | [`ShadowPiece`] | one draw of a pass: casters by number, viewport, scissor rectangle |
 //! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
@@ -108,5 +111,5 @@ pub use maps::{
     CasterUniform, FadingUniform, MapTexture, MapUniform, MapView, ReceiverUniform, ShadowMap, layers_wgsl,
 };
 pub use shadowfit::settings::MAX_MAPS;
-pub use sun::{SunFrame, SunShadows, SunShadowsError, SunSteps};
+pub use sun::{SunFrame, SunShadows, SunShadowsDescriptor, SunShadowsError, SunSteps};
 pub use wgsl::{CullingPiece, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};

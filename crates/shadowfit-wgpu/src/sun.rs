@@ -6,9 +6,9 @@
 //!        └──── record_demand(depth buffer) ◀──── its own passes with receiver_group() and the WGSL
 //! ```
 
+mod descriptor;
 mod error;
 mod frame;
-mod new_maps;
 mod other_set;
 mod steps;
 
@@ -28,6 +28,7 @@ use crate::{
 use other_set::OtherSet;
 use steps::StepState;
 
+pub use descriptor::SunShadowsDescriptor;
 pub use error::SunShadowsError;
 pub use frame::SunFrame;
 pub use steps::SunSteps;

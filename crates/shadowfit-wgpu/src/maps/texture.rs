@@ -7,16 +7,18 @@ use crate::{MapTextureError, ShadowMapDescriptor, ShadowMapError};
 /// ```no_run
 /// # fn demo(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), shadowfit_wgpu::SunShadowsError> {
 /// use shadowfit::Technique;
-/// use shadowfit_wgpu::{MapTexture, ShadowMapDescriptor, SunShadows};
+/// use shadowfit_wgpu::{MapTexture, ShadowMapDescriptor, SunShadows, SunShadowsDescriptor};
 ///
 /// // Four maps of the sun and two of the moon, in one array.
 /// let (by_day, by_night) = (Technique::default(), Technique::default().with_count(2));
 /// let mut descriptor = ShadowMapDescriptor::from(&by_day).texture();
 /// descriptor.size.depth_or_array_layers = 6;
 /// let texture = device.create_texture(&descriptor);
-/// let layers = |base_layer| MapTexture { texture: texture.clone(), base_layer };
-/// let sun = SunShadows::in_texture(device, queue, &by_day, 0, &layers(0))?;
-/// let moon = SunShadows::in_texture(device, queue, &by_night, 3, &layers(4))?;
+/// let layers = |base_layer| Some(MapTexture { texture: texture.clone(), base_layer });
+/// let in_layers = SunShadowsDescriptor { texture: layers(0), ..by_day.into() };
+/// let sun = SunShadows::new(device, queue, &in_layers)?;
+/// let behind_them = SunShadowsDescriptor { texture: layers(4), first_binding: 3, ..by_night.into() };
+/// let moon = SunShadows::new(device, queue, &behind_them)?;
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use shadowfit::{Aabb, Boxes, DepthConvention, PerspectiveCamera, Technique};
 use shadowfit_testing::{TestGpu, test_gpu};
 
 use super::*;
-use crate::{Casters, MapTexture, SunFrame};
+use crate::{Casters, MapTexture, SunFrame, SunShadowsDescriptor};
 
 /// Maps that no caster is drawn into: their texels are written.
 struct Bench {
@@ -36,7 +36,8 @@ impl Bench {
         let texture = device
             .create_texture(&wgpu::TextureDescriptor { usage: needed.usage | wgpu::TextureUsages::COPY_DST, ..needed });
         let maps = MapTexture { texture: texture.clone(), base_layer: 0 };
-        let sun = SunShadows::in_texture(&device, &queue, &technique, 0, &maps).expect("maps");
+        let in_texture = SunShadowsDescriptor { texture: Some(maps), ..technique.into() };
+        let sun = SunShadows::new(&device, &queue, &in_texture).expect("maps");
         let is_reversed = depth == DepthConvention::Reversed;
         Self { device, queue, sun, texture, size, is_reversed, pyramids: None }
     }

@@ -52,7 +52,7 @@ impl Pair {
         let gpu = Engine::shared();
         gpu.require_compute();
         let technique = Technique::default().with_resolution(SIDE, SIDE).with_max_distance(60.0);
-        let maps = || SunShadows::new(&gpu.device, &gpu.queue, &technique).expect("maps");
+        let maps = || SunShadows::new(&gpu.device, &gpu.queue, &technique.into()).expect("maps");
         let (by_shader, by_lists) = (maps(), maps());
         let casters = GpuCasters::new(&gpu.device, &by_shader, &town.blocks);
         Self { gpu, by_shader, by_lists, casters }

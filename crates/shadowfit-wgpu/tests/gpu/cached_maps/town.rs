@@ -192,7 +192,7 @@ pub(super) struct Pair {
 impl Pair {
     pub(super) fn new(technique: &Technique) -> Self {
         let engine = Engine::shared();
-        let maps = || SunShadows::new(&engine.device, &engine.queue, technique).expect("maps");
+        let maps = || SunShadows::new(&engine.device, &engine.queue, &(*technique).into()).expect("maps");
         let (kept, anew) = (maps(), maps());
         let pipeline = CasterShader::new(kept.map(), Shape::Boxes).pipeline(&engine);
         Self { engine, kept, anew, pipeline }

@@ -2,7 +2,7 @@
 
 use shadowfit::Technique;
 use shadowfit::settings::FilterKind;
-use shadowfit_wgpu::SunShadows;
+use shadowfit_wgpu::{SunShadows, SunShadowsDescriptor};
 
 use super::ground::{BOXES, EYE, FORMAT, MOON, Painter, Picture, Quiet, SIDE, SUN, camera, factors_wgsl, frame_of};
 use super::{IN_MOON_SHADOW, IN_SUN_SHADOW, LIT, technique};
@@ -18,7 +18,8 @@ const LIGHT: &str = "
 
 fn shadows(device: &Engine, technique: &Technique, first_binding: u32) -> SunShadows {
     device.require_map(&technique.into());
-    SunShadows::with_first_binding(&device.device, &device.queue, technique, first_binding).expect("maps")
+    let descriptor = SunShadowsDescriptor { first_binding, ..(*technique).into() };
+    SunShadows::new(&device.device, &device.queue, &descriptor).expect("maps")
 }
 
 /// Factors of the sun and of the moon at the three places.

@@ -19,7 +19,7 @@ fn factors(picture: &Picture) -> [u8; 5] {
 fn gpu_a_sun_that_is_off_has_no_pass_and_gives_no_light_from_anywhere() {
     let device = Engine::shared();
     let quiet = Quiet::new(&device);
-    let mut sun = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let mut sun = SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
     let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
     let views = [camera(EYE).frustum().expect("a camera")];
     let frame = frame_of(&views, SUN, &BOXES);
@@ -64,7 +64,7 @@ fn views_beyond() -> [ViewFrustum; 2] {
 fn gpu_views_beyond_the_shadow_distance_have_no_pass_and_are_lit_until_they_come_near() {
     let device = Engine::shared();
     let quiet = Quiet::new(&device);
-    let mut sun = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let mut sun = SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
     let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
     let near = [camera(EYE).frustum().expect("a camera")];
     let mut moved = BOXES;
@@ -94,7 +94,7 @@ fn gpu_views_beyond_the_shadow_distance_have_no_pass_and_are_lit_until_they_come
         sun.update(&device.queue, &again).expect("a good frame");
         assert!(sun.prove(&again).expect("a frame").is_proven());
         let kept = painter.draw(&device, &[(&sun, &moved)]);
-        let mut fresh = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+        let mut fresh = SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
         fresh.update(&device.queue, &again).expect("a good frame");
         let fresh = painter.draw(&device, &[(&fresh, &moved)]);
         assert_eq!(factors(&kept), factors(&fresh), "a stale map");
@@ -109,7 +109,7 @@ fn gpu_views_beyond_the_shadow_distance_have_no_pass_and_are_lit_until_they_come
 fn gpu_a_sun_that_comes_back_has_the_maps_of_a_new_one_in_its_first_frame() {
     let device = Engine::shared();
     let quiet = Quiet::new(&device);
-    let mut sun = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let mut sun = SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
     let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
     let near = [camera(EYE).frustum().expect("a camera")];
     let far = [camera(EYE + DVec3::X * 3.0).frustum().expect("a camera")];
@@ -132,7 +132,7 @@ fn gpu_a_sun_that_comes_back_has_the_maps_of_a_new_one_in_its_first_frame() {
         sun.update(&device.queue, &morning).expect("a good frame");
         assert!(sun.prove(&morning).expect("a good frame").is_proven(), "{what}");
         let picture = painter.draw(&device, &[(&sun, boxes)]);
-        let mut new = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+        let mut new = SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
         new.update(&device.queue, &morning).expect("a good frame");
         assert_eq!(sun.fitted(), new.fitted(), "{what}");
         let expected = painter.draw(&device, &[(&new, boxes)]);

@@ -34,7 +34,7 @@ struct Day {
 impl Day {
     fn new(device: Engine, technique: &Technique, steps: Option<SunSteps>) -> Self {
         device.require_map(&technique.into());
-        let mut sun = SunShadows::new(&device.device, &device.queue, technique).expect("maps");
+        let mut sun = SunShadows::new(&device.device, &device.queue, &(*technique).into()).expect("maps");
         sun.set_light_steps(steps).expect("steps");
         let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
         Self { sun, painter, views: vec![camera(EYE).frustum().expect("a camera")], device }
@@ -112,7 +112,7 @@ impl Day {
 
     /// What a sun without steps shows with the same maps, drawn anew for an angle.
     fn plain(&self, technique: &Technique, angle: f32) -> (Picture, SunShadows) {
-        let mut sun = SunShadows::new(&self.device.device, &self.device.queue, technique).expect("maps");
+        let mut sun = SunShadows::new(&self.device.device, &self.device.queue, &(*technique).into()).expect("maps");
         sun.prepare(&self.device.queue, &self.frame(angle), self.sun.fitted()).expect("a good frame");
         let painter = Painter::new(&self.device, &[(&sun, "shadowfit")]);
         (painter.draw(&self.device, &[(&sun, &BOXES)]), sun)
@@ -146,7 +146,7 @@ fn gpu_a_step_without_a_fade_draws_all_maps_in_one_frame() {
     assert!(day.is_held_at(STEP));
     assert_eq!(picture, day.plain(&technique(), STEP).0);
     // There is one set of maps, and the look-up of a sun without steps.
-    let plain = SunShadows::new(&day.device.device, &day.device.queue, &technique()).expect("maps");
+    let plain = SunShadows::new(&day.device.device, &day.device.queue, &technique().into()).expect("maps");
     let wgsl = |sun: &SunShadows| receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
     assert_eq!(wgsl(&day.sun), wgsl(&plain));
     assert_eq!(day.sun.map().receiver_layout_entries(), plain.map().receiver_layout_entries());
@@ -284,7 +284,7 @@ fn gpu_a_cut_ends_a_step_with_right_maps_and_a_reset_forgets_the_sun() {
         day.sun.cut();
         let picture = day.draw(STEP + LESS);
         assert!(day.is_held_at(STEP), "the direction of the step is held after {frames} frames of it");
-        let mut new = SunShadows::new(&day.device.device, &day.device.queue, &technique()).expect("maps");
+        let mut new = SunShadows::new(&day.device.device, &day.device.queue, &technique().into()).expect("maps");
         new.update(&day.device.queue, &day.frame(STEP)).expect("a good frame");
         let expected = Painter::new(&day.device, &[(&new, "shadowfit")]).draw(&day.device, &[(&new, &BOXES)]);
         assert!(picture.difference(&expected) <= 1, "{}", picture.difference(&expected));
@@ -333,7 +333,7 @@ fn gpu_views_that_walk_are_covered_in_every_frame_of_a_day_and_few_maps_are_draw
 fn gpu_a_sun_that_fades_stands_beside_another_in_one_shader_and_runs_on_a_device_of_webgl2_limits() {
     let device = Engine::with_webgl2_limits();
     let quiet = Quiet::new(&device);
-    let suns = || SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let suns = || SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
     let (mut sun, mut moon) = (suns(), suns());
     assert_eq!(sun.set_light_steps(Some(STEPS)), Ok(true), "pipelines and look-up are others now");
     assert_eq!(sun.set_light_steps(Some(STEPS.with_fade(3))), Ok(false));

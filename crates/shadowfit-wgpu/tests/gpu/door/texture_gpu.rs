@@ -5,8 +5,8 @@ use shadowfit::Technique;
 use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit_testing::TestGpu;
 use shadowfit_wgpu::{
-    Casters, MapTexture, MapTextureError, ShadowMapDescriptor, ShadowMapError, SunFrame, SunShadows, SunShadowsError,
-    SunSteps,
+    Casters, MapTexture, MapTextureError, ShadowMapDescriptor, ShadowMapError, SunFrame, SunShadows,
+    SunShadowsDescriptor, SunShadowsError, SunSteps,
 };
 
 use super::ground::{BOXES, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
@@ -33,7 +33,13 @@ fn sun_in(device: &Engine, technique: &Technique, first_binding: u32, texture: &
     if texture.base_layer > 0 {
         device.require_base_layers();
     }
-    SunShadows::in_texture(&device.device, &device.queue, technique, first_binding, texture).expect("maps in a texture")
+    let descriptor = SunShadowsDescriptor { first_binding, ..in_texture(technique, texture) };
+    SunShadows::new(&device.device, &device.queue, &descriptor).expect("maps in a texture")
+}
+
+/// The description of maps in a texture, with bindings from 0 on.
+fn in_texture(technique: &Technique, texture: &MapTexture) -> SunShadowsDescriptor {
+    SunShadowsDescriptor { texture: Some(texture.clone()), ..(*technique).into() }
 }
 
 /// A frame in which the post moves.
@@ -59,7 +65,7 @@ fn gpu_maps_in_a_texture_of_the_engine_s_give_the_picture_of_internal_ones() {
         let texture = texture(&device, &technique, 7, |_| ());
         let mut own = sun_in(&device, &technique, 0, &MapTexture { texture: texture.clone(), base_layer: 2 });
         assert_eq!(own.map().view().texture(), &texture);
-        let mut internal = SunShadows::new(&device.device, &device.queue, &technique).expect("maps");
+        let mut internal = SunShadows::new(&device.device, &device.queue, &technique.into()).expect("maps");
         assert!(internal.map().texture().is_none());
         let painter = Painter::new(&device, &[(&own, "shadowfit")]);
         for step in 0..3 {
@@ -87,7 +93,7 @@ fn gpu_a_sun_that_steps_fades_within_a_texture_of_the_engine_s_if_it_has_room_fo
 
     let large = MapTexture { texture: texture(&device, &technique, 9, |_| ()), base_layer: 1 };
     let mut own = sun_in(&device, &technique, 0, &large);
-    let mut internal = SunShadows::new(&device.device, &device.queue, &technique).expect("maps");
+    let mut internal = SunShadows::new(&device.device, &device.queue, &technique.into()).expect("maps");
     for sun in [&mut own, &mut internal] {
         sun.set_light_steps(steps).expect("there is room");
     }
@@ -227,10 +233,10 @@ fn gpu_a_texture_that_cannot_hold_the_maps_is_refused_by_name_and_value_and_the_
     );
     let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
     for (texture, error, words) in unsuited(&device) {
-        let error = SunShadowsError::Map(ShadowMapError::Texture(error));
-        let refused = SunShadows::in_texture(&device.device, &device.queue, &technique(), 0, &texture);
+        let error = ShadowMapError::Texture(error);
+        let refused = SunShadows::new(&device.device, &device.queue, &in_texture(&technique(), &texture));
         assert_eq!(refused.expect_err("no maps"), error);
-        assert_eq!(sun.set_technique_in(&technique(), &texture), Err(error.clone()));
+        assert_eq!(sun.set_descriptor(&in_texture(&technique(), &texture)), Err(error.clone()));
         for word in words {
             assert!(error.to_string().contains(word), "{error}: {word}");
         }
@@ -253,9 +259,9 @@ fn gpu_a_texture_that_is_destroyed_or_another_device_s_is_refused_in_the_device_
     destroyed.destroy();
     for texture in [destroyed, texture(&other, &technique(), 4, |_| ())] {
         let texture = MapTexture { texture, base_layer: 0 };
-        let refused = SunShadows::in_texture(&device.device, &device.queue, &technique(), 0, &texture);
+        let refused = SunShadows::new(&device.device, &device.queue, &in_texture(&technique(), &texture));
         let refused = refused.expect_err("no maps");
-        assert!(matches!(refused, SunShadowsError::Map(ShadowMapError::Device(_))), "{refused}");
+        assert!(matches!(refused, ShadowMapError::Device(_)), "{refused}");
     }
     quiet.assert("textures of other devices");
 }
@@ -272,12 +278,13 @@ fn gpu_another_technique_stays_in_the_texture_or_moves_to_one_that_holds_it() {
     // One map more, or larger ones, do not fit.
     let (more, larger) = (wider.with_count(5), wider.with_resolution(512, 512));
     let layers = MapTextureError::Layers { texture: 5, base_layer: 1, maps: 5 };
-    assert_eq!(sun.set_technique(&more), Err(SunShadowsError::Map(ShadowMapError::Texture(layers))));
+    assert_eq!(sun.set_technique(&more), Err(ShadowMapError::Texture(layers)));
     let size = MapTextureError::Size { texture: [256; 2], maps: [512; 2] };
-    assert_eq!(sun.set_technique(&larger), Err(SunShadowsError::Map(ShadowMapError::Texture(size))));
+    assert_eq!(sun.set_technique(&larger), Err(ShadowMapError::Texture(size)));
     assert_eq!((sun.technique(), sun.map().texture()), (&wider, Some(&small)));
     let large = MapTexture { texture: texture(&device, &larger, 4, |_| ()), base_layer: 0 };
-    assert_eq!(sun.set_technique_in(&larger, &large), Ok(()));
+    let moved = SunShadowsDescriptor { first_binding: 2, ..in_texture(&larger, &large) };
+    assert_eq!(sun.set_descriptor(&moved), Ok(true));
     assert_eq!((sun.technique(), sun.map().texture()), (&larger, Some(&large)));
     assert_eq!(sun.map().descriptor().first_binding, 2);
     let painter = Painter::new(&device, &[(&sun, "shadowfit")]);

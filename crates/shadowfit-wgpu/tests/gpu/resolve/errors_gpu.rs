@@ -132,7 +132,7 @@ fn devices_that_lack_something_filter_edges_and_say_what_without_an_error() {
         }
         let (device, queue) = (&engine.device, &engine.queue);
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let mut sun = SunShadows::new(device, queue, &traced(technique(), 1)).expect("maps");
+        let mut sun = SunShadows::new(device, queue, &traced(technique(), 1).into()).expect("maps");
         let rays = RayScene::new(device, queue).ok();
         assert_eq!(rays.is_some(), traces, "{lack:?}");
         let mut pass = ResolvePass::new(device, queue).expect("what engines read at least");

@@ -119,7 +119,7 @@ impl Stage {
         if matches!(technique.edges, Edges::Traced { .. }) {
             gpu.require_depth_loads();
         }
-        let sun = SunShadows::new(&gpu.device, &gpu.queue, technique).expect("maps");
+        let sun = SunShadows::new(&gpu.device, &gpu.queue, &(*technique).into()).expect("maps");
         let pass = ResolvePass::new(&gpu.device, &gpu.queue).expect("a device that computes");
         let mut rays = RayScene::new(&gpu.device, &gpu.queue).expect("a device that traces");
         let mesh = |thing: &Thing| {
