@@ -1,0 +1,117 @@
+//! What tools show of a sun's maps, and the proof that they have no holes.
+
+use shadowfit::glam::DVec2;
+use shadowfit::proof::{CoverageProof, CoverageQuery, Margins, prove};
+use shadowfit::{FittedMap, FittedMaps, Scratch, ShadowFitter, Technique};
+
+use super::{SunFrame, SunShadows, SunShadowsError};
+use crate::demand::DemandPass;
+use crate::{Casters, MapUpdate, MapView};
+
+/// # For tools and debug assertions
+impl SunShadows {
+    /// The technique.
+    pub fn technique(&self) -> &Technique {
+        self.fitter.technique()
+    }
+
+    /// The maps that were fitted last.
+    pub fn fitted(&self) -> &FittedMaps {
+        self.fitter.fitted()
+    }
+
+    /// The maps that shaders read in this frame. A map that waits for another frame is the one that was drawn last.
+    pub fn maps(&self) -> &[FittedMap] {
+        self.maps.maps()
+    }
+
+    /// From where shaders read them: the origin of positions, and the eye and direction that view depths are counted from.
+    /// `None` before the first frame, and while the sun is [off](Self::turn_off).
+    pub fn map_view(&self) -> Option<&MapView> {
+        self.maps.view()
+    }
+
+    /// The rectangles that are drawn in this frame, in the order of the passes, for tools that show them. Some may
+    /// overlap. While the sun [steps](Self::set_light_steps), those of both sets of maps.
+    pub fn updates(&self) -> Vec<MapUpdate> {
+        let mut updates = self.maps.updates();
+        updates.extend(self.other.iter().flat_map(|other| other.maps.updates()));
+        updates
+    }
+
+    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
+    /// static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
+    pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
+        self.maps.holders(casters)
+    }
+
+    /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. Returns
+    /// the proof of the first map that fails. It takes into account that shaders round positions relative to
+    /// [`SunFrame::origin`].
+    ///
+    /// # Errors
+    ///
+    /// [`SunShadowsError::Fit`] as [`prove`]; [`SunShadowsError::NoFrame`] before the first frame, and while the sun
+    /// is [off](Self::turn_off). A frame whose views all begin beyond the shadow distance needs no map.
+    pub fn prove(&self, frame: &SunFrame<'_>) -> Result<CoverageProof, SunShadowsError> {
+        let mut proof = Err(SunShadowsError::NoFrame);
+        if self.map_view().is_some() && !self.is_shadowed(frame) {
+            return Ok(CoverageProof::Proven(Margins { planes: [f32::INFINITY; 6], casters: f32::INFINITY }));
+        }
+        let faded = self.faded().map(|(other, _)| (&other.fitter, &other.maps));
+        for (fitter, maps) in [(&self.fitter, &self.maps)].into_iter().chain(faded) {
+            // Steps hold the direction.
+            let held = fitter.fitted().first().filter(|_| self.steps.is_some());
+            let direction = held.map_or(frame.direction, |map| map.projection.direction);
+            let found = prove_set(&SunFrame { direction, ..*frame }, fitter, maps.maps());
+            if !found.as_ref().is_ok_and(CoverageProof::is_proven) {
+                return found;
+            }
+            proof = found;
+        }
+        proof
+    }
+
+    /// Waits for the GPU, so that the next [`Self::update`] knows what the last picture showed: for headless runs whose
+    /// pictures have to be the same each time.
+    ///
+    /// # Errors
+    ///
+    /// [`SunShadowsError::Demand`] if the device was lost.
+    pub fn wait_for_demand(&mut self) -> Result<(), SunShadowsError> {
+        let seen = self.demand.pass.as_mut().map_or(Ok(None), DemandPass::wait)?;
+        if let Some(seen) = seen {
+            self.see(seen);
+        }
+        Ok(())
+    }
+
+    /// Whether a part of a frame's views lies before the shadow distance.
+    fn is_shadowed(&self, frame: &SunFrame<'_>) -> bool {
+        let distance = self.technique().fit.max_distance;
+        frame.views.iter().any(|view| view.begins_before(distance))
+    }
+}
+
+/// Proves that no map of a set has a hole, for a frame that it was made for.
+fn prove_set(
+    frame: &SunFrame<'_>,
+    fitter: &ShadowFitter,
+    maps: &[FittedMap],
+) -> Result<CoverageProof, SunShadowsError> {
+    let mut storage = vec![DVec2::ZERO; frame.input().scratch()];
+    let (technique, mut proof) = (fitter.technique(), Err(SunShadowsError::NoFrame));
+    for (fitted, read) in fitter.fitted().iter().zip(maps) {
+        // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
+        let FittedMap { projection, bias, .. } = read.relative_to(frame.origin);
+        let map = FittedMap { projection, bias, ..*fitted };
+        let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.projection))
+            .with_normal_offset(map.bias.normal_offset);
+        let found = prove(&frame.input(), &map.projection, &query, &mut Scratch::new(&mut storage))?;
+        if !found.is_proven() {
+            return Ok(found);
+        }
+        proof = Ok(found);
+    }
+    proof
+}
