@@ -7,6 +7,9 @@ use shadowfit_params::tool::ViewMode;
 
 use crate::Artefact;
 
+/// The keys of the views, in the order of [`ViewMode::ALL`].
+pub(crate) const VIEW_KEYS: [&str; ViewMode::ALL.len()] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"];
+
 /// Something that a person asks the host to do. The panel asks only for what its [parts](crate::Part) need, and its
 /// docs say which; the others belong to the table of keys ([`KEYS`](crate::KEYS)) and to what a host adds around the
 /// panel. A host ignores those that it does not support.

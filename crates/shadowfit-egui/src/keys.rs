@@ -6,8 +6,9 @@ use std::sync::LazyLock;
 
 use egui::Key;
 use shadowfit_params::tool::ViewMode;
+use shadowfit_params::view_option;
 
-use crate::views::option;
+use crate::command::VIEW_KEYS;
 use crate::{Artefact, Command, Toggle};
 
 /// A key with the modifiers that it is pressed with.
@@ -57,12 +58,9 @@ const fn group(heading: &'static str, keys: Vec<KeyHelp>) -> KeyGroup {
     KeyGroup { heading, keys }
 }
 
-/// The keys of the views, in the order of [`ViewMode::ALL`].
-pub(crate) const VIEW_KEYS: [&str; ViewMode::ALL.len()] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"];
-
 /// A digit for each view.
 fn views() -> Vec<KeyHelp> {
-    let line = |(keys, mode)| key(keys, option(mode).label.to_lowercase(), Command::View(mode));
+    let line = |(keys, mode)| key(keys, view_option(mode).label.to_lowercase(), Command::View(mode));
     VIEW_KEYS.into_iter().zip(ViewMode::ALL).map(line).collect()
 }
 

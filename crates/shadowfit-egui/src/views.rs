@@ -3,14 +3,11 @@
 use egui::containers::menu::MenuButton;
 use egui::{Button, Response, RichText, Ui};
 use shadowfit_params::tool::{ViewMode, ViewSettings};
-use shadowfit_params::{ChoiceOption, Kind, parameter};
+use shadowfit_params::{ChoiceOption, view_option};
 
 use crate::accessibility::rename;
-use crate::keys::VIEW_KEYS;
+use crate::command::VIEW_KEYS;
 use crate::theme::Palette;
-
-/// Id of the parameter that names and explains the views.
-const MODE: &str = "view.mode";
 
 /// A button for each view, with its name and its key, 1..=9 and 0 in the order of [`ViewMode::ALL`]; the chosen one is
 /// filled. It wraps where the line is too narrow. `no_compute` is why the device has no compute shaders, if it has none:
@@ -24,7 +21,7 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) 
             ui.spacing_mut().button_padding.x = 6.0;
             for (key, mode) in VIEW_KEYS.into_iter().zip(ViewMode::ALL) {
                 let refused = no_compute.filter(|_| mode.needs_compute());
-                if button(ui, option(mode), (key, refused), mode == view.mode).clicked() {
+                if button(ui, view_option(mode), key, refused, mode == view.mode).clicked() {
                     view.mode = mode;
                 }
             }
@@ -40,13 +37,13 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) 
 /// Returns the response of its button, which is [changed](Response::changed) when another view was chosen.
 pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) -> Response {
     let before = view.mode;
-    let (mut response, _) = MenuButton::new(option(view.mode).label).ui(ui, |ui| {
+    let (mut response, _) = MenuButton::new(view_option(view.mode).label).ui(ui, |ui| {
         for mode in ViewMode::ALL {
-            let chosen = Button::selectable(mode == view.mode, option(mode).label);
+            let chosen = Button::selectable(mode == view.mode, view_option(mode).label);
             let refused = no_compute.filter(|_| mode.needs_compute());
-            let response = ui.add_enabled(refused.is_none(), chosen).on_hover_text(option(mode).help);
+            let response = ui.add_enabled(refused.is_none(), chosen).on_hover_text(view_option(mode).help);
             let response = response.on_disabled_hover_text(refused.unwrap_or_default());
-            rename(ui, &response, format!("View: {}", option(mode).label));
+            rename(ui, &response, format!("View: {}", view_option(mode).label));
             if response.clicked() {
                 view.mode = mode;
             }
@@ -59,7 +56,8 @@ pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>)
     response
 }
 
-fn button(ui: &mut Ui, option: &ChoiceOption, (key, refused): (&str, Option<&str>), is_selected: bool) -> Response {
+/// A button of a view. `refused` is the reason why the view cannot be chosen, if it cannot.
+fn button(ui: &mut Ui, option: &ChoiceOption, key: &str, refused: Option<&str>, is_selected: bool) -> Response {
     let palette = Palette::of(ui);
     let weak = if is_selected { palette.on_accent } else { palette.weak };
     let name = RichText::new(option.label);
@@ -69,27 +67,4 @@ fn button(ui: &mut Ui, option: &ChoiceOption, (key, refused): (&str, Option<&str
     let response = response.on_disabled_hover_text(refused.unwrap_or_default());
     rename(ui, &response, format!("View: {}", option.label));
     response
-}
-
-/// The name and the help of a view, from the table of parameters.
-pub(crate) fn option(mode: ViewMode) -> &'static ChoiceOption {
-    let index = ViewMode::ALL.iter().position(|each| *each == mode).unwrap_or(0);
-    match parameter(MODE).map(|parameter| &parameter.kind) {
-        Some(Kind::Choice(options)) => &options[index.min(options.len() - 1)],
-        _ => unreachable!("the views are a choice of the table"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_view_has_a_name_of_its_own() {
-        let mut labels: Vec<&str> = ViewMode::ALL.into_iter().map(|mode| option(mode).label).collect();
-        labels.sort_unstable();
-        labels.dedup();
-        assert_eq!(labels.len(), ViewMode::ALL.len());
-        assert_eq!(option(ViewMode::Outside).label, "Outside");
-    }
 }

@@ -37,7 +37,7 @@ use shadowfit::Technique;
 
 pub use inputs::{BoxSource, Inputs, NAMED_INPUTS, NamedInputs};
 pub use rust_code::to_rust;
-pub use table::PARAMETERS;
+pub use table::{PARAMETERS, view_option};
 pub use text::{ParameterError, format_value, set_from_str};
 
 /// The far plane and the shadow distance are kept at this many times the near distance or more:

@@ -11,6 +11,7 @@ mod tool;
 
 use crate::tool::Settings;
 use crate::{MIN_FAR_PER_NEAR, Parameter, Value};
+pub use tool::view_option;
 
 /// The rows by their files.
 const ROWS: [&[Parameter]; 8] =

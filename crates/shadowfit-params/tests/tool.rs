@@ -1,8 +1,9 @@
-//! The sun's angles and its day.
+//! The sun's angles and its day, and the names of views.
 
 use proptest::prelude::*;
 use shadowfit::glam::Vec3;
-use shadowfit_params::tool::LightSettings;
+use shadowfit_params::tool::{LightSettings, ViewMode};
+use shadowfit_params::view_option;
 
 fn light(azimuth: f32, elevation: f32) -> Vec3 {
     LightSettings { azimuth, elevation, ..LightSettings::default() }.direction()
@@ -92,4 +93,13 @@ fn an_animated_sun_circles_or_passes_over_the_day_and_a_still_one_stays() {
     let day = LightSettings { hour: Some(16.0), ..circling };
     assert!((moved(day, 1.0).hour.unwrap() - 10.0).abs() < 1e-5);
     assert_eq!(moved(day, 1.0).azimuth, day.azimuth);
+}
+
+#[test]
+fn every_view_has_a_name_of_its_own() {
+    let mut labels: Vec<&str> = ViewMode::ALL.into_iter().map(|mode| view_option(mode).label).collect();
+    labels.sort_unstable();
+    labels.dedup();
+    assert_eq!(labels.len(), ViewMode::ALL.len());
+    assert_eq!(view_option(ViewMode::Outside).label, "Outside");
 }

@@ -47,7 +47,7 @@ pub use maps::fit_map;
 pub use picture::{FrameBefore, JudgeJob};
 pub use rays::SceneRays;
 pub use scene::{PosedScene, PrepareError, PreparedScene};
-pub use settings_file::{TRANSLATED, settings_from_toml, settings_to_toml, technique_to_toml};
+pub use settings_file::{settings_from_toml, settings_to_toml, technique_to_toml};
 pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune, tune_async};
 pub use view::View;

@@ -8,14 +8,8 @@ use std::fmt::Write as _;
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, Group, Inputs, Kind, PARAMETERS, Parameter, ParameterError};
+use shadowfit_params::{self as params, Group, Inputs, Kind, PARAMETERS, Parameter};
 use toml::Value;
-
-/// A group that files of earlier versions may have, of settings for single maps: it is ignored.
-const FORMER_GROUP: &str = "override";
-
-/// What users are told of a file that was translated from what an earlier version wrote.
-pub const TRANSLATED: &str = "it was saved by an earlier version, and has been translated";
 
 /// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
 /// `settings.`.
@@ -37,14 +31,13 @@ pub(crate) fn is_of_technique_file(group: Group) -> bool {
     group.is_technique() || group == Group::Input
 }
 
-/// Sets the parameters that a table names, and leaves all others as they are. Says whether the table was
-/// [translated](TRANSLATED) from what an earlier version wrote.
+/// Sets the parameters that a table names, and leaves all others as they are.
 ///
 /// # Errors
 ///
 /// When the table has an unknown group or key, or a value that the parameter does not take. The settings are unchanged
 /// then.
-pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<bool> {
+pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<()> {
     read_settings(table, |_| true, settings)
 }
 
@@ -80,48 +73,19 @@ fn within_ranges(settings: &Settings) -> Settings {
 }
 
 /// Sets the parameters of some groups from a table. Any other group is an error, and the settings are unchanged then.
-pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<bool> {
+pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<()> {
     let mut left = table.clone();
-    let is_former = translate(&mut left);
     let mut read = *settings;
     // In the order of the table: a scheme comes before the numbers that only it has.
     for parameter in PARAMETERS.iter().filter(|parameter| has(parameter.group)) {
         let Some(group) = left.get_mut(parameter.group.id()) else { continue };
         let group = group.as_table_mut().with_context(|| format!("{} is no table", parameter.group.id()))?;
         let Some(value) = group.remove(key(parameter)) else { continue };
-        match params::set_from_str(&mut read, parameter.id, &text_of(&value).with_context(|| parameter.id)?) {
-            // It had no effect with this kind of maps.
-            Err(ParameterError::NotPresent { .. }) if is_former => {}
-            result => result?,
-        }
+        params::set_from_str(&mut read, parameter.id, &text_of(&value).with_context(|| parameter.id)?)?;
     }
     refuse_the_rest(&left, has)?;
     *settings = read;
-    Ok(is_former)
-}
-
-/// Translates a table of an earlier version, in which a technique said what its fits are given and had settings for all
-/// kinds of maps, whatever its own kind. Says whether it was one.
-fn translate(file: &mut toml::Table) -> bool {
-    const MOVED: [(&str, &str); 2] = [("receivers", "boxes"), ("need", "seen")];
-    let mut is_former = file.remove(FORMER_GROUP).is_some();
-    for (former, key) in MOVED {
-        let Some(value) = file.get_mut("fit").and_then(Value::as_table_mut).and_then(|fit| fit.remove(former)) else {
-            continue;
-        };
-        is_former = true;
-        let value = if former == "need" { Value::Boolean(value.as_str() != Some("boxes")) } else { value };
-        let input = file.entry(Group::Input.id()).or_insert_with(|| Value::Table(toml::Table::new()));
-        if let Some(input) = input.as_table_mut() {
-            input.insert(key.to_owned(), value);
-        }
-    }
-    let view = file.get_mut(Group::View.id()).and_then(|view| view.get_mut("mode"));
-    if let Some(mode) = view.filter(|mode| mode.as_str() == Some("need")) {
-        *mode = Value::from("demand");
-        is_former = true;
-    }
-    is_former
+    Ok(())
 }
 
 /// A parameter's name in its group.
@@ -165,9 +129,8 @@ fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::settings::{FitKind, MapSelection, RectangleKind, Shape, SplitScheme, Stabilise};
-    use shadowfit::{OneMap, Slices, Windows};
-    use shadowfit_params::BoxSource;
+    use shadowfit::Slices;
+    use shadowfit::settings::SplitScheme;
     use shadowfit_params::tool::{ErrorMarks, ViewMode};
 
     use super::*;
@@ -215,16 +178,6 @@ mod tests {
     }
 
     #[test]
-    fn settings_of_single_maps_that_earlier_versions_had_are_ignored() {
-        let mut settings = Settings::default();
-        let text = "[bias]\nslope = 2\n[override]\nmap_1_kind = \"sphere\"\nmap_2_resolution = 512";
-        settings_from_toml(&table(text), &mut settings).expect("a file of an earlier version");
-        let mut expected = Settings::default();
-        expected.technique.bias.slope = 2.0;
-        assert_eq!(settings, expected);
-    }
-
-    #[test]
     fn what_is_left_out_stays_and_what_makes_no_sense_is_named() {
         let mut settings = Settings::default();
         settings_from_toml(&table("[bias]\nconstant = 0.5"), &mut settings).expect("one line");
@@ -234,49 +187,12 @@ mod tests {
             ("[bias]\nbent = 1", "bias.bent"),
             ("[sun]\nelevation = 1", "sun"),
             ("view = 3", "view"),
+            ("[fit]\nkind = \"windows\"\n[splits]\nscheme = \"uniform\"", "splits.scheme"),
         ] {
             let before = settings;
             let error = settings_from_toml(&table(text), &mut settings).expect_err(text);
             assert!(format!("{error:#}").contains(word), "{error:#}");
             assert_eq!(settings, before);
         }
-    }
-
-    /// The groups of the maps as versions wrote them in which each technique had settings for all kinds.
-    fn former(kind: &str, count: u32) -> toml::Table {
-        table(&format!(
-            "[fit]\nkind = \"{kind}\"\nreceivers = \"objects\"\nneed = \"boxes\"\nrectangle = \"minimum_square\"\n\
-             max_texel_ratio = 3.0\nmax_distance = 80\n\
-             [splits]\ncount = {count}\nscheme = \"practical\"\nlambda = 0.25\nchoice = \"view_depth\"\nblend = 4\n\
-             overlap = 0.5\n[stabilise]\nmode = \"snap\"\nmargin = 0.1\ngrowth = 2\nwaste = 2.5\nhorizon = 9\n\
-             [override]\nmap_1 = true\n"
-        ))
-    }
-
-    #[test]
-    fn files_of_before_techniques_had_kinds_are_translated() {
-        let read = |file: toml::Table| {
-            let mut settings = Settings::default();
-            assert!(settings_from_toml(&file, &mut settings).expect("a file of an earlier version"));
-            assert_eq!(settings.inputs, Inputs { boxes: BoxSource::Objects, seen: false });
-            assert_eq!(settings.technique.fit.max_distance, 80.0);
-            settings.technique.maps
-        };
-        assert_eq!(read(former("windows", 5)), Windows { count: 5, blend: 4.0, max_depth_waste: 2.5 }.into());
-        let shape = Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 };
-        let stabilise = Stabilise::Snap { max_waste: 2.5 };
-        assert_eq!(read(former("oriented", 1)), OneMap { shape, stabilise }.into());
-        let splits = SplitScheme::Practical(0.25);
-        let slices = Slices { count: 3, shape, splits, selection: MapSelection::ViewDepth { overlap: 0.5 }, stabilise };
-        assert_eq!(read(former("oriented", 3)), slices.into());
-
-        let mut settings = Settings::default();
-        assert!(settings_from_toml(&table("[view]\nmode = \"need\""), &mut settings).expect("a former name"));
-        assert_eq!(settings.view.mode, ViewMode::Demand);
-        let written = table(&settings_to_toml(&settings, ""));
-        assert!(!settings_from_toml(&written, &mut settings).expect("a file of this version"));
-        let of_another_kind = table("[fit]\nkind = \"windows\"\n[splits]\nscheme = \"uniform\"");
-        let error = settings_from_toml(&of_another_kind, &mut settings).expect_err("windows have no splits");
-        assert!(error.to_string().contains("splits.scheme"), "{error}");
     }
 }

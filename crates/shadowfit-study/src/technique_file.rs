@@ -14,7 +14,7 @@ use shadowfit_params::tool::Settings;
 use shadowfit_params::{Inputs, NAMED_INPUTS, NamedInputs};
 use toml::Value;
 
-use crate::settings_file::{TRANSLATED, is_of_technique_file, read_settings, technique_to_toml};
+use crate::settings_file::{is_of_technique_file, read_settings, technique_to_toml};
 
 /// A technique with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,8 +118,7 @@ impl NamedTechnique {
         };
         let (name, summary) = (word("name")?, word("summary")?);
         let mut settings = Settings::default();
-        let is_former = read_settings(&file, is_of_technique_file, &mut settings)?;
-        let summary = if is_former { format!("{summary} ({TRANSLATED})").trim_start().to_owned() } else { summary };
+        read_settings(&file, is_of_technique_file, &mut settings)?;
         let Settings { technique, inputs, .. } = settings;
         Ok(Self { name, summary, technique, inputs })
     }
@@ -168,16 +167,6 @@ mod tests {
         technique.fit.border = Some(0.0);
         let named = NamedTechnique { name: "\"quoted\"".to_owned(), summary: "a\nb".to_owned(), ..technique.into() };
         assert_eq!(NamedTechnique::from_toml(&named.to_toml().expect("text")).expect("read back"), named);
-    }
-
-    #[test]
-    fn a_summary_says_that_a_file_of_before_techniques_had_kinds_was_translated() {
-        let read = |text: &str| NamedTechnique::from_toml(text).expect("a technique");
-        let former = read("summary = \"calm\"\n[fit]\nkind = \"oriented\"\nreceivers = \"objects\"");
-        assert_eq!(former.summary, format!("calm ({TRANSLATED})"));
-        let again = read(&former.to_toml().expect("text"));
-        assert_eq!(again, former, "translated once");
-        assert_eq!(read("[fit]\nneed = \"boxes\"").summary, format!("({TRANSLATED})"));
     }
 
     #[test]

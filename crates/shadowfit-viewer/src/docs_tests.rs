@@ -3,7 +3,7 @@
 use shadowfit_egui::{KEYS, KeyGroup, KeyHelp, KeyLayout, key_table};
 use shadowfit_testing::package_folder;
 
-use crate::script::ACTIONS;
+use crate::play::script::ACTIONS;
 
 /// Text in a cell of a table in Markdown.
 fn cell(text: &str) -> String {

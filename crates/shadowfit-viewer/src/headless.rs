@@ -1,6 +1,8 @@
 //! Frames without a window: the picture set, and scripts.
 
+pub(crate) mod device_check;
 mod sample;
+mod timings;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -11,17 +13,18 @@ use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit_egui::Artefact;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::{Gpu, own_time};
+use shadowfit_scene::Scene;
 use shadowfit_study::make_folder;
 
-use crate::cli::Arguments;
-use crate::files::write_png;
+use crate::arguments::{Arguments, check_animation};
 use crate::interface::{Canvas, Interface, InterfaceInput};
-use crate::output;
-use crate::saved::Saved;
-use crate::source::SceneSource;
-use crate::stage::Stage;
-use crate::timings::Timings;
-use crate::viewer::{Renewals, Start, Viewer, compared_with};
+use crate::keep::picture_file::write_png;
+use crate::keep::saved::Saved;
+use crate::platform::output;
+use crate::scene_source::SceneSource;
+use crate::stage::{Stage, compared_with};
+use crate::viewer::{Renewals, Start, Viewer};
+use timings::Timings;
 
 /// Number of pictures of a scene.
 pub const PICTURES: usize = 24;
@@ -48,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     if let Some(SceneSource::Sample { sample, variant }) = arguments.source()? {
         return sample::run(arguments, (sample, variant), folder);
     }
-    let scene = arguments.load_scene()?;
+    let scene = load_scene(arguments)?;
     if let Some(file) = &arguments.scene {
         scene.warnings(file).for_each(output::tell);
     }
@@ -66,6 +69,17 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     gpu.unless_lost(|| render_pictures(&mut stage, folder, size, &mut |path| progress.wrote(path)))
         .context("the graphics device was lost; start again, with smaller pictures if it was too slow")??;
     progress.end()
+}
+
+/// Loads the scene that the arguments name.
+///
+/// # Errors
+///
+/// If the file cannot be loaded, or has no scene or animation of the requested index.
+fn load_scene(arguments: &Arguments) -> Result<Scene> {
+    let scene = pollster::block_on(arguments.source()?.unwrap_or_default().load(&|_, _| ()))?;
+    check_animation(arguments.animation, scene.animations.len(), &scene.name)?;
+    Ok(scene)
 }
 
 /// Tells of pictures while they are rendered: each one's name on the standard output as soon as it is written, and how

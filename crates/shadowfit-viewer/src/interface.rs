@@ -15,7 +15,7 @@ use shadowfit_egui::{
 use shadowfit_params::device_check::CheckReport;
 use shadowfit_params::figures::Figures;
 
-use crate::saved::Saved;
+use crate::keep::saved::Saved;
 use crate::stage::Stage;
 
 use paint::Painter;

@@ -1,14 +1,17 @@
 //! The stage: all that the viewer shows, without a window: scene, camera, settings, animation, artefact, and one
 //! technique or two.
 
+pub(crate) mod artefact;
 mod boards;
 mod compare;
 mod demand_view;
 mod figures;
+mod fitted;
 mod home;
 mod inset;
 mod judge;
 mod live;
+mod outside;
 mod sample;
 mod shot;
 mod shown;
@@ -36,6 +39,7 @@ use shadowfit_study::{PrepareError, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapError;
 
 use compare::Other;
+pub(crate) use compare::compared_with;
 pub(crate) use live::judged_figures;
 pub(crate) use sample::SampleShow;
 use shot::Shot;

@@ -2,8 +2,11 @@
 //! call it once per frame.
 
 mod commands;
+#[cfg(target_family = "wasm")]
+mod facts;
 mod faults;
 mod following;
+mod input;
 mod opening;
 mod sample;
 mod saving;
@@ -17,32 +20,27 @@ use std::sync::mpsc::Receiver;
 
 use anyhow::Result;
 use egui::{Event, RawInput};
-#[cfg(target_family = "wasm")]
-use shadowfit_egui::Tune;
 use shadowfit_egui::{Changes, Chord, Command, UserPreset};
 use shadowfit_params::tool::Settings;
-#[cfg(not(target_family = "wasm"))]
-use tempfile::TempDir;
 
-use crate::artefact::Found;
-use crate::device_check::DeviceCheck;
-use crate::effect::{Activity, Effect};
-use crate::input::Input;
+use crate::background::device_check::DeviceCheck;
+use crate::background::loading::Loading;
+use crate::background::measuring::Measuring;
+use crate::background::tuning::Tuning;
 use crate::interface::{Interface, InterfaceInput, InterfaceOutput, Layout};
-use crate::link::Link;
-use crate::loading::Loading;
-use crate::output;
-use crate::playback::Player;
-use crate::sample_figures::Measuring;
-use crate::saved::{Saved, Store};
-use crate::script::Refusal;
-use crate::source::SceneSource;
+use crate::keep::link::Link;
+use crate::keep::saved::Saved;
+use crate::keep::store::Store;
+use crate::keep::undo::{History, State};
+use crate::platform::{TemporaryFolder, output};
+use crate::play::effect::{Activity, Effect};
+use crate::play::playback::Player;
+use crate::play::script::Refusal;
+use crate::scene_source::SceneSource;
 use crate::stage::Stage;
-use crate::tuning::Tuning;
-use crate::undo::{History, State};
+use crate::stage::artefact::Found;
+use input::Input;
 
-#[cfg(not(target_family = "wasm"))]
-pub(crate) use commands::compared_with;
 #[cfg(not(target_family = "wasm"))]
 pub(crate) use faults::Renewals;
 use saving::Saving;
@@ -94,8 +92,7 @@ pub(crate) struct Viewer {
     /// Pictures whose pixels are on their way.
     saving: Vec<Saving>,
     /// Where random actions save, so that they do not fill the user's folder; removed at the end.
-    #[cfg(not(target_family = "wasm"))]
-    litter: Option<TempDir>,
+    litter: Option<TemporaryFolder>,
     pub(crate) window_requests: WindowRequests,
     /// Whether the mouse drags the picture: pages lock the pointer then.
     pub(crate) is_looking: bool,
@@ -170,7 +167,6 @@ impl Viewer {
             line: None,
             shots: Vec::new(),
             saving: Vec::new(),
-            #[cfg(not(target_family = "wasm"))]
             litter: None,
             window_requests: WindowRequests::default(),
             is_looking: false,
@@ -382,19 +378,6 @@ impl Viewer {
     /// Shows a message for a while.
     pub(crate) fn say(&mut self, text: impl Into<String>) {
         self.message = Some(Message { text: text.into(), since: self.clock });
-    }
-
-    /// The message on show.
-    #[cfg(target_family = "wasm")]
-    pub(crate) fn message(&self) -> Option<&str> {
-        self.message.as_ref().map(|message| message.text.as_str())
-    }
-
-    /// How many techniques the search has tried; `None` while none is searched.
-    #[cfg(target_family = "wasm")]
-    pub(crate) fn tried(&self) -> Option<u32> {
-        let Tune::Running { tried, .. } = self.tuning.shown() else { return None };
-        Some(tried)
     }
 
     /// Title of the window.

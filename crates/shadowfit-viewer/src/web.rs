@@ -8,11 +8,7 @@
 //!
 //! The worker keeps the page free: however long the viewer computes, the page scrolls, types and shows progress.
 
-mod facts;
-pub(crate) mod files;
 mod input;
-pub(crate) mod page;
-pub(crate) mod store;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,12 +25,14 @@ use web_sys::OffscreenCanvas;
 use web_time::Instant;
 use wgpu::CurrentSurfaceTexture as Current;
 
-use crate::cli::Arguments;
-use crate::link::Link;
+use crate::arguments::Arguments;
+use crate::keep::link::Link;
+use crate::keep::store::Store;
+use crate::platform::StateFile;
+use crate::platform::page::{self, files};
 use crate::stage::Stage;
 use crate::viewer::{Start, Viewer};
 use input::Events;
-use store::Store;
 
 /// Samples per pixel: software rasterisers pay for each.
 const GPU_SAMPLES: u32 = 4;
@@ -121,7 +119,7 @@ impl Page {
             // A link that makes no sense opens the viewer as if there were none, and is told.
             Err(error) => (Start::new(&Arguments::default())?, Some(error)),
         };
-        let mut viewer = Viewer::new(stage, configuration.format, start, Some(Store::new(kept)));
+        let mut viewer = Viewer::new(stage, configuration.format, start, Some(Store::new(StateFile::of_text(kept))));
         viewer.page = Some(page);
         if let Some(problem) = problem {
             viewer.say(format!("This link cannot be followed: {problem:#}"));
@@ -277,7 +275,7 @@ impl Page {
 
     /// Facts for tests of the page, as a line of JSON.
     pub fn facts(&self) -> String {
-        facts::of(&self.viewer, [self.configuration.width, self.configuration.height])
+        self.viewer.facts([self.configuration.width, self.configuration.height])
     }
 }
 

@@ -1,5 +1,9 @@
 //! The window: surface, events, frames.
 
+mod frame_log;
+#[cfg(feature = "gamepad")]
+mod gamepad;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -12,12 +16,13 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
-use crate::cli::Arguments;
-use crate::frame_log::FrameLog;
-use crate::saved::Store;
-use crate::script::Refusal;
+use crate::arguments::Arguments;
+use crate::keep::store::Store;
+use crate::platform::StateFile;
+use crate::play::script::Refusal;
 use crate::stage::Stage;
 use crate::viewer::{Renewals, Start, Viewer};
+use frame_log::FrameLog;
 
 /// Samples per pixel: software rasterisers pay for each.
 const GPU_SAMPLES: u32 = 4;
@@ -51,7 +56,7 @@ struct Running {
     viewer: Viewer,
     egui: egui_winit::State,
     #[cfg(feature = "gamepad")]
-    gamepads: crate::gamepad::Gamepads,
+    gamepads: gamepad::Gamepads,
     adapter: AdapterChoice,
     renewals: Renewals,
     last_frame: Instant,
@@ -153,8 +158,8 @@ impl Running {
         let log = arguments.log_frames.then(|| FrameLog::new(begin));
         let store = match (&arguments.state, arguments.no_state) {
             (_, true) => None,
-            (Some(path), _) => Some(Store::at(path.clone())),
-            (None, false) => Some(Store::of_person()),
+            (Some(path), _) => Some(Store::new(StateFile::at(path.clone()))),
+            (None, false) => Some(Store::new(StateFile::of_person())),
         };
         let viewer = Viewer::new(stage, surface.configuration.format, start, store);
         let egui = egui_state(&window, &viewer);
@@ -164,7 +169,7 @@ impl Running {
             viewer,
             egui,
             #[cfg(feature = "gamepad")]
-            gamepads: crate::gamepad::Gamepads::new(),
+            gamepads: gamepad::Gamepads::new(),
             adapter,
             renewals: Renewals::default(),
             last_frame: Instant::now(),

@@ -9,6 +9,66 @@ use crate::field::{Field, Plain as _, choice, field};
 use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, HEIGHTS, InsetMaps, Settings, ViewMode};
 use crate::{ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Unset, Value};
 
+/// Names and help texts of the views, in the order of [`ViewMode::ALL`].
+const VIEWS: &[ChoiceOption] = &[
+    ChoiceOption { id: "final", label: "Final", help: "The scene with the shadows of the maps." },
+    ChoiceOption {
+        id: "truth",
+        label: "Truth",
+        help: "The scene with the shadows that rays find: what the final picture should look like.",
+    },
+    ChoiceOption {
+        id: "error",
+        label: "Errors",
+        help: "The final picture in grey, and each pixel that rays prove wrong in the colour of its class.",
+    },
+    ChoiceOption {
+        id: "pixels_per_texel",
+        label: "Pixels per texel",
+        help: "How many screen pixels a shadow texel covers: red where texels can be seen, blue where they are \
+                       finer than the picture needs.",
+    },
+    ChoiceOption {
+        id: "maps",
+        label: "Maps",
+        help: "Which map each point reads, in the colours of the table of the maps.",
+    },
+    ChoiceOption {
+        id: "texel_grid",
+        label: "Texel grid",
+        help: "The texels of the maps on the surfaces that read them.",
+    },
+    ChoiceOption {
+        id: "demand",
+        label: "Demand",
+        help: "The scene as the light sees it: where the picture asks for how fine a texel, and the maps laid \
+                       over it.",
+    },
+    ChoiceOption {
+        id: "updates",
+        label: "Map updates",
+        help: "All maps side by side: what was kept in them, what was drawn anew, and what moves.",
+    },
+    ChoiceOption {
+        id: "outside",
+        label: "Outside",
+        help: "The camera from outside, with its frustum and the boxes of the maps drawn. A caster outside a \
+                       map's box throws no shadow there.",
+    },
+    ChoiceOption {
+        id: "traced",
+        label: "Traced",
+        help: "The scene in grey, and in colours the pixels whose edges rays made, and those that were left to the \
+                       filter.",
+    },
+];
+
+/// Returns the name and the help of a view.
+pub fn view_option(mode: ViewMode) -> &'static ChoiceOption {
+    let index = ViewMode::ALL.iter().position(|each| *each == mode).unwrap_or(0);
+    &VIEWS[index]
+}
+
 /// In the order that they are shown.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
@@ -228,58 +288,7 @@ pub(super) const ROWS: &[Parameter] = &[
         label: "View",
         unit: "",
         help: "What the picture shows of the scene.",
-        kind: Kind::Choice(&[
-            ChoiceOption { id: "final", label: "Final", help: "The scene with the shadows of the maps." },
-            ChoiceOption {
-                id: "truth",
-                label: "Truth",
-                help: "The scene with the shadows that rays find: what the final picture should look like.",
-            },
-            ChoiceOption {
-                id: "error",
-                label: "Errors",
-                help: "The final picture in grey, and each pixel that rays prove wrong in the colour of its class.",
-            },
-            ChoiceOption {
-                id: "pixels_per_texel",
-                label: "Pixels per texel",
-                help: "How many screen pixels a shadow texel covers: red where texels can be seen, blue where they are \
-                       finer than the picture needs.",
-            },
-            ChoiceOption {
-                id: "maps",
-                label: "Maps",
-                help: "Which map each point reads, in the colours of the table of the maps.",
-            },
-            ChoiceOption {
-                id: "texel_grid",
-                label: "Texel grid",
-                help: "The texels of the maps on the surfaces that read them.",
-            },
-            ChoiceOption {
-                id: "demand",
-                label: "Demand",
-                help: "The scene as the light sees it: where the picture asks for how fine a texel, and the maps laid \
-                       over it.",
-            },
-            ChoiceOption {
-                id: "updates",
-                label: "Map updates",
-                help: "All maps side by side: what was kept in them, what was drawn anew, and what moves.",
-            },
-            ChoiceOption {
-                id: "outside",
-                label: "Outside",
-                help: "The camera from outside, with its frustum and the boxes of the maps drawn. A caster outside a \
-                       map's box throws no shadow there.",
-            },
-            ChoiceOption {
-                id: "traced",
-                label: "Traced",
-                help: "The scene in grey, and in colours the pixels whose edges rays made, and those that were left to the \
-                       filter.",
-            },
-        ]),
+        kind: Kind::Choice(VIEWS),
         field: choice!(view.mode in ViewMode::ALL),
         inert: always_active,
     },

@@ -7,9 +7,9 @@ use shadowfit_classics::{OptionKind, Sample, SampleFigures, SampleValues, Sample
 use shadowfit_render::Gpu;
 
 use super::{Progress, SAMPLES};
-use crate::cli::Arguments;
-use crate::files::write_png;
-use crate::output;
+use crate::arguments::Arguments;
+use crate::keep::picture_file::write_png;
+use crate::platform::output;
 use crate::stage::Stage;
 
 /// Renders the pictures of a sample: the technique as its source has it, without shadows, and beside its comparison,

@@ -8,7 +8,7 @@ use shadowfit_scene::SceneSun;
 use shadowfit_scene::builtin::BuiltinScene;
 
 use super::{InterfaceInput, InterfaceOutput};
-use crate::source::SceneSource;
+use crate::scene_source::SceneSource;
 use crate::stage::Stage;
 
 pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {

@@ -305,7 +305,7 @@ fn label(ui: &Ui, at: Pos2, anchor: Align2, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::saved::Saved;
+    use crate::keep::saved::Saved;
 
     #[test]
     fn a_place_too_small_for_the_progress_of_loading_is_no_error() {

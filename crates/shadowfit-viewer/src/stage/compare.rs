@@ -11,6 +11,8 @@ use super::Stage;
 use super::shot::Shot;
 use super::side::Side;
 
+/// Presets for the second technique: the first of them that differs from the present one.
+const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
 /// Least share of the picture that either side keeps.
 const LEAST: f32 = 0.02;
 
@@ -155,6 +157,14 @@ pub(super) fn left_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
 pub(super) fn right_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
     let from = column(split, width).saturating_sub(1);
     [from, 0, width - from, height]
+}
+
+/// The first technique to compare `now` with: a preset with the lengths and the resolution of `now`.
+pub(crate) fn compared_with(now: &Technique) -> Technique {
+    let [width, height] = now.fit.resolution.to_array();
+    let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));
+    let mut suited = presets.map(|preset| preset.with_lengths_of(now).with_resolution(width, height));
+    suited.find(|technique| technique != now).unwrap_or(*now)
 }
 
 #[cfg(test)]

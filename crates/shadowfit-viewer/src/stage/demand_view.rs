@@ -6,7 +6,7 @@ use shadowfit::{Aabb, DepthConvention, LightProjection, PerspectiveCamera};
 use shadowfit_params::figures::{linear_color, linear_map_tints, pixels_per_texel_color};
 use shadowfit_render::{Line, Quad, box_lines};
 
-use crate::fitted::Fitted;
+use super::fitted::Fitted;
 
 /// Field of view of the camera in the light's place, in radians: so narrow that its lines of sight are nearly parallel,
 /// like the light.

@@ -7,7 +7,7 @@ use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 use shadowfit_wgpu::resolve::EdgeResult;
 
 use super::Stage;
-use crate::fitted::Fitted;
+use super::fitted::Fitted;
 
 impl Stage {
     /// The live figures of the last frame, for a picture of the given size; `frame_ms` is how long a whole frame took.

@@ -11,6 +11,7 @@ use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;
 
 use super::shot::Shot;
+use crate::platform::IS_PAGE;
 
 /// Width of a picture that a thread judges, in pixels: enough for every artefact, and judged in a fraction of a second.
 const BACKGROUND_WIDTH: u32 = 480;
@@ -20,8 +21,6 @@ const STILL: f32 = 0.3;
 const MOVING: f32 = 2.0;
 /// Most triangles that are moved to a new pose within a frame, so that frames do not stall.
 const MOST_POSED: usize = 150_000;
-/// Browsers have none.
-const HAS_THREADS: bool = !cfg!(target_family = "wasm");
 /// Frames whose time is remembered until their sums come back.
 const FRAMES: usize = 8;
 
@@ -111,11 +110,11 @@ pub(super) struct Live {
 
 impl Live {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let by = match (gpu.is_software(), HAS_THREADS, LiveTruth::runs_on(gpu)) {
-            (true, true, _) | (_, true, false) => JudgedBy::Threads,
+        let by = match (gpu.is_software(), IS_PAGE, LiveTruth::runs_on(gpu)) {
+            (true, false, _) | (_, false, false) => JudgedBy::Threads,
             (false, _, true) => JudgedBy::Gpu,
-            (true, false, true) => JudgedBy::SlowGpu,
-            (_, false, false) => JudgedBy::Nobody,
+            (true, true, true) => JudgedBy::SlowGpu,
+            (_, true, false) => JudgedBy::Nobody,
         };
         Self { by, ..Self::default() }
     }
@@ -259,7 +258,7 @@ impl Live {
             }
             None => match shot.gpu.try_making(|| LiveTruth::new(shot.gpu, shot.scene)) {
                 Ok(live) => live?,
-                Err(fault @ DeviceFault::OutOfMemory(_)) if HAS_THREADS => {
+                Err(fault @ DeviceFault::OutOfMemory(_)) if !IS_PAGE => {
                     (self.by, self.no_gpu) = (JudgedBy::Threads, Some(fault.to_string()));
                     return Ok(false);
                 }

@@ -10,7 +10,7 @@ use shadowfit_scene::builtin::default_scene;
 use shadowfit_testing::{adapter_choice, open_renderer_gpu};
 
 use super::*;
-use crate::monkey::memory;
+use crate::platform::memory;
 
 /// Frames until a view has all its maps and pipelines, and frames after them.
 const FRAMES: [u32; 2] = [6, 20];

@@ -7,7 +7,7 @@ use shadowfit_params::{Kind, Number, PARAMETERS, Parameter, Value};
 use shadowfit_render::FlyCamera;
 
 use super::Stage;
-use crate::artefact::{self, Found, Search};
+use super::artefact::{self, Found, Search};
 
 /// Message when no view of a scene shows an artefact.
 const NOT_FOUND: &str =

@@ -9,11 +9,11 @@ use shadowfit_study::{Evaluator, Judging, RayUse, View, atmosphere};
 use shadowfit_wgpu::resolve::EdgeResult;
 use shadowfit_wgpu::{RESOLUTIONS, ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
 
+use super::fitted::Fitted;
 use super::live::Live;
+use super::outside;
 use super::shot::Shot;
 use super::{boards, demand_view, inset};
-use crate::fitted::Fitted;
-use crate::outside;
 
 /// A technique's maps, with their renderer and judge.
 #[derive(Debug)]

@@ -1,8 +1,5 @@
 //! Runs each command.
 
-use std::path::{Path, PathBuf};
-#[cfg(not(target_family = "wasm"))]
-use std::sync::mpsc::Receiver;
 use std::sync::mpsc::channel;
 
 use anyhow::{Context, Result, anyhow};
@@ -11,19 +8,17 @@ use shadowfit_egui::{Artefact, Command, Toggle, UserPreset, keys_of};
 use shadowfit_params as params;
 use shadowfit_params::tool::{ErrorMarks, HEIGHTS, InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
-use shadowfit_study::{NamedTechnique, in_background, settings_to_toml};
+use shadowfit_study::{NamedTechnique, in_background};
 
 use super::Viewer;
-use crate::cli::find_technique;
-use crate::export::command_line;
-use crate::files::{free_name, write_whole};
-use crate::saved::Bookmark;
-use crate::source::{OPTION_PREFIX, SceneSource};
-use crate::tuning::Task;
-use crate::undo::State;
+use crate::arguments::find_technique;
+use crate::background::tuning::Task;
+use crate::keep::command_line::command_line;
+use crate::keep::saved::Bookmark;
+use crate::keep::undo::State;
+use crate::scene_source::{OPTION_PREFIX, SceneSource};
+use crate::stage::compared_with;
 
-/// Presets for the second technique: the first of them that differs from the present one.
-const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
 /// How far the camera flies toward a point, as a share of the distance. The height of an orthographic picture shrinks by the
 /// same share.
 const FOCUS: f64 = 0.6;
@@ -158,9 +153,6 @@ impl Viewer {
         let outcome = match command {
             Command::Open(name) => return self.open(SceneSource::from_text(&name)),
             Command::OpenFile(path) => return self.open_file(&path),
-            #[cfg(target_family = "wasm")]
-            Command::ChooseFile => return crate::web::page::choose_file(),
-            #[cfg(not(target_family = "wasm"))]
             Command::ChooseFile => return self.choose_file(),
             Command::SaveWindow(path) => return self.shots.push((self.start.place(path), self.line.clone())),
             Command::GoToBookmark(key) => self.go_to_bookmark(key),
@@ -371,45 +363,6 @@ impl Viewer {
         }
     }
 
-    /// Saves the picture without bars and panel.
-    fn save_picture(&mut self, path: Option<PathBuf>) -> Result<()> {
-        let path = self.place(path, "png")?;
-        let (pixels, size) = (self.interface.pictures.read_back(&self.stage), self.interface.pictures.size());
-        self.save_later((path, self.line.clone()), pixels, size, false);
-        Ok(())
-    }
-
-    /// The path of a file to save, with a new name if none is given.
-    #[cfg_attr(
-        target_family = "wasm",
-        expect(clippy::unnecessary_wraps, reason = "temporary folders may fail elsewhere")
-    )]
-    fn place(&mut self, path: Option<PathBuf>, extension: &str) -> Result<PathBuf> {
-        if let Some(path) = path {
-            return Ok(self.start.place(path));
-        }
-        #[cfg(not(target_family = "wasm"))]
-        if self.player.is_random() && self.start.folder().is_none() {
-            let litter = self.litter.take().map_or_else(tempfile::tempdir, Ok)?;
-            return Ok(free_name(self.litter.insert(litter).path(), extension));
-        }
-        Ok(free_name(self.start.folder().unwrap_or(Path::new("")), extension))
-    }
-
-    fn save_text(&mut self, path: Option<PathBuf>, text: &str) -> Result<String> {
-        let path = self.place(path, "csv")?;
-        write_whole(&path, text.as_bytes())?;
-        Ok(format!("Saved {}", path.display()))
-    }
-
-    /// The text that a saved picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
-    pub(super) fn text_of_settings(&self) -> String {
-        let scene = toml::Value::from(self.source.text());
-        let line = toml::Value::from(self.command_line());
-        let settings = settings_to_toml(&self.stage.settings, "settings.");
-        format!("scene = {scene}\ncommand = {line}\n\n{settings}")
-    }
-
     /// The command line that starts with this scene and these settings.
     pub(super) fn command_line(&self) -> String {
         command_line(
@@ -435,22 +388,6 @@ impl Viewer {
         self.saved.presets.push(named);
         Ok(format!("Saved the technique as {name}"))
     }
-
-    /// Lets the user choose a file, with the system's dialog on a thread.
-    #[cfg(not(target_family = "wasm"))]
-    fn choose_file(&mut self) {
-        if self.chooser.is_none() {
-            self.chooser = dialog();
-        }
-    }
-}
-
-/// The first technique to compare `now` with: a preset with the lengths and the resolution of `now`.
-pub(crate) fn compared_with(now: &Technique) -> Technique {
-    let [width, height] = now.fit.resolution.to_array();
-    let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));
-    let mut suited = presets.map(|preset| preset.with_lengths_of(now).with_resolution(width, height));
-    suited.find(|technique| technique != now).unwrap_or(*now)
 }
 
 /// The keys of a command that has one for each digit, which is listed for 1.
@@ -461,16 +398,4 @@ fn digit_keys(command: &Command, digit: u8) -> String {
 /// A saved technique as the panel lists it.
 pub(super) fn preset(named: &NamedTechnique) -> UserPreset {
     UserPreset { name: named.name.clone(), technique: named.technique }
-}
-
-#[cfg(not(target_family = "wasm"))]
-fn dialog() -> Option<Receiver<Option<PathBuf>>> {
-    let (sender, receiver) = channel();
-    let work = move || {
-        let dialog = rfd::FileDialog::new().set_title("Open").add_filter("Scenes", &["glb", "gltf"]);
-        let dialog = dialog.add_filter("Techniques and screenshots", &["toml", "png"]);
-        // The receiver is gone once the viewer has ended.
-        let _ = sender.send(dialog.pick_file());
-    };
-    std::thread::Builder::new().name("file dialog".to_owned()).spawn(work).ok().map(|_| receiver)
 }

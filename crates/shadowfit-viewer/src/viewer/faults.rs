@@ -9,9 +9,9 @@ use shadowfit_wgpu::RESOLUTIONS;
 use web_time::Instant;
 
 use super::Viewer;
-use crate::loading::Loading;
-use crate::output;
-use crate::source::SceneSource;
+use crate::background::loading::Loading;
+use crate::platform::output;
+use crate::scene_source::SceneSource;
 
 /// A device that is lost sooner than this after it was made anew would be lost again and again, in seconds.
 const CALM: f32 = 60.0;

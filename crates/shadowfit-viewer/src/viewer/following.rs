@@ -4,9 +4,9 @@ use shadowfit_classics::SampleValues;
 use shadowfit_params::tool::Settings;
 
 use super::Viewer;
-use crate::export::{changed, differences};
-use crate::link::{Link, LinkedArtefact, LinkedScene, apply};
-use crate::undo::History;
+use crate::keep::command_line::{changed, differences};
+use crate::keep::link::{Link, LinkedArtefact, LinkedScene, apply};
+use crate::keep::undo::History;
 
 impl Viewer {
     /// The link that brings back what is on show: scene, settings, camera, comparison and artefact.
@@ -129,7 +129,7 @@ impl Viewer {
 }
 
 /// Settings with some parameters changed.
-fn with(pairs: &crate::link::Pairs, settings: &Settings) -> Settings {
+fn with(pairs: &crate::keep::link::Pairs, settings: &Settings) -> Settings {
     let mut changed = *settings;
     apply(pairs, &mut changed);
     changed

@@ -9,16 +9,17 @@ use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 
 use super::Viewer;
 use super::start::of_scene;
-use crate::cli::check_animation;
-use crate::files::{self, settings_of_png};
-use crate::link::LinkedScene;
-use crate::loading::Loading;
-use crate::output;
-use crate::playback::Player;
-use crate::sample_figures::Measuring;
-use crate::script;
-use crate::source::SceneSource;
-use crate::undo::History;
+use crate::arguments::check_animation;
+use crate::background::loading::Loading;
+use crate::background::measuring::Measuring;
+use crate::keep::link::LinkedScene;
+use crate::keep::picture_file::settings_of_png;
+use crate::keep::undo::History;
+use crate::platform;
+use crate::platform::output;
+use crate::play::playback::Player;
+use crate::play::script;
+use crate::scene_source::SceneSource;
 
 impl Viewer {
     /// Starts loading a scene; the old one is shown until then.
@@ -53,6 +54,13 @@ impl Viewer {
             }
         };
         self.tell(opened.with_context(|| format!("{} cannot be opened", path.display())));
+    }
+
+    /// Lets the user choose a file to open.
+    pub(super) fn choose_file(&mut self) {
+        if self.chooser.is_none() {
+            self.chooser = platform::choose_file();
+        }
     }
 
     /// Plays a script.
@@ -164,5 +172,5 @@ impl Viewer {
 
 /// The technique of a file; one without a name gets the file's.
 fn technique(path: &Path) -> Result<NamedTechnique> {
-    Ok(NamedTechnique::from_toml(std::str::from_utf8(&files::read(path)?)?)?.or_named_after(path))
+    Ok(NamedTechnique::from_toml(std::str::from_utf8(&platform::read(path)?)?)?.or_named_after(path))
 }

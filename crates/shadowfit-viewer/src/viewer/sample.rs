@@ -1,8 +1,8 @@
 //! Samples in the viewer: their variants, and how they compare with modern maps.
 
 use super::Viewer;
-use crate::sample_figures::Measuring;
-use crate::source::SceneSource;
+use crate::background::measuring::Measuring;
+use crate::scene_source::SceneSource;
 
 impl Viewer {
     /// Shows a variant of the sample on show, or the sample as its source has it.

@@ -1,13 +1,16 @@
 //! Pictures are saved once their pixels have come back from the GPU: at once, or in browsers, where nothing can wait, some
 //! frames later.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use anyhow::Result;
 use shadowfit_render::ReadBack;
+use shadowfit_study::settings_to_toml;
 
 use super::Viewer;
-use crate::files::write_png;
 use crate::interface::{Canvas, Layout, red_first};
+use crate::keep::picture_file::write_png;
+use crate::platform::{IS_PAGE, save_file, temporary_folder};
 
 /// A picture whose pixels are on their way.
 pub(super) struct Saving {
@@ -22,6 +25,42 @@ pub(super) struct Saving {
 }
 
 impl Viewer {
+    /// Saves the picture without bars and panel.
+    pub(super) fn save_picture(&mut self, path: Option<PathBuf>) -> Result<()> {
+        let path = self.place(path, "png")?;
+        let (pixels, size) = (self.interface.pictures.read_back(&self.stage), self.interface.pictures.size());
+        self.save_later((path, self.line.clone()), pixels, size, false);
+        Ok(())
+    }
+
+    /// Returns the path of a file to save, with a new name if none is given. Random actions save into a folder that is
+    /// removed at the end.
+    fn place(&mut self, path: Option<PathBuf>, extension: &str) -> Result<PathBuf> {
+        if let Some(path) = path {
+            return Ok(self.start.place(path));
+        }
+        if self.player.is_random() && self.start.folder().is_none() {
+            let litter = self.litter.take().map_or_else(temporary_folder, Ok)?;
+            return Ok(free_name(self.litter.insert(litter).path(), extension));
+        }
+        Ok(free_name(self.start.folder().unwrap_or(Path::new("")), extension))
+    }
+
+    /// Saves a text as a file of figures.
+    pub(super) fn save_text(&mut self, path: Option<PathBuf>, text: &str) -> Result<String> {
+        let path = self.place(path, "csv")?;
+        save_file(&path, text.as_bytes())?;
+        Ok(format!("Saved {}", path.display()))
+    }
+
+    /// The text that a saved picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
+    pub(super) fn text_of_settings(&self) -> String {
+        let scene = toml::Value::from(self.source.text());
+        let line = toml::Value::from(self.command_line());
+        let settings = settings_to_toml(&self.stage.settings, "settings.");
+        format!("scene = {scene}\ncommand = {line}\n\n{settings}")
+    }
+
     /// Saves a frame of the whole window as a picture.
     pub(super) fn save_window(&mut self, layout: &Layout, place: (PathBuf, Option<String>), size: [u32; 2]) {
         let whole = Canvas::new(&self.stage.gpu().device, size, self.interface.format());
@@ -47,8 +86,7 @@ impl Viewer {
     pub(super) fn take_saved(&mut self) {
         for saving in std::mem::take(&mut self.saving) {
             let gpu = self.stage.gpu();
-            let pixels =
-                if cfg!(target_family = "wasm") { saving.pixels.take(gpu) } else { Some(saving.pixels.wait(gpu)) };
+            let pixels = if IS_PAGE { saving.pixels.take(gpu) } else { Some(saving.pixels.wait(gpu)) };
             let Some(pixels) = pixels else {
                 self.saving.push(saving);
                 continue;
@@ -69,4 +107,10 @@ impl Viewer {
             self.line = before;
         }
     }
+}
+
+/// Returns the first name that no file in a folder has: `shadowfit-001.png`. The empty path is the working folder.
+fn free_name(folder: &Path, extension: &str) -> PathBuf {
+    let name = |number: u32| folder.join(format!("shadowfit-{number:03}.{extension}"));
+    (1..=u32::from(u16::MAX)).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
 }

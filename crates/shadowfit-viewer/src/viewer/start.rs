@@ -11,12 +11,13 @@ use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
 
 use super::Viewer;
-use crate::cli::Arguments;
-use crate::link::Link;
-use crate::output;
-use crate::saved::{Saved, Store};
-use crate::script::Line;
-use crate::source::SceneSource;
+use crate::arguments::Arguments;
+use crate::keep::link::Link;
+use crate::keep::saved::Saved;
+use crate::keep::store::Store;
+use crate::platform::output;
+use crate::play::script::Line;
+use crate::scene_source::SceneSource;
 
 /// The start that the arguments ask for.
 #[derive(Clone, Debug)]

@@ -14,9 +14,11 @@ use shadowfit_render::{FlyInput, Gpu};
 use shadowfit_testing::{adapter_name, renderer_gpu};
 
 use super::{Start, Viewer};
-use crate::cli::Arguments;
-use crate::saved::{Saved, Store, Theme};
-use crate::source::SceneSource;
+use crate::arguments::Arguments;
+use crate::keep::saved::{Saved, Theme};
+use crate::keep::store::Store;
+use crate::platform::StateFile;
+use crate::scene_source::SceneSource;
 use crate::stage::Stage;
 
 mod bars;
@@ -47,7 +49,7 @@ fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {
     let start = Start::new(&arguments).expect("arguments that make sense");
     let mut stage = Stage::empty(gpu, 1).expect("a stage");
     stage.read_depths();
-    let store = store.map(|path| Store::at(path.to_owned()));
+    let store = store.map(|path| Store::new(StateFile::at(path.to_owned())));
     let viewer = Viewer::new(stage, wgpu::TextureFormat::Rgba8Unorm, start, store);
     // With four points per pixel each way, the software driver draws a sixteenth of the pixels.
     viewer.interface.context.set_pixels_per_point(0.25);
@@ -152,7 +154,7 @@ fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
     assert_eq!(third.source, SceneSource::from_text("plain"));
     drop(third);
 
-    let (kept, _) = Store::at(path).load();
+    let (kept, _) = Store::new(StateFile::at(path)).load();
     assert_eq!(kept.map(|kept: Saved| kept.bookmarks.len()), Some(1));
 }
 

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::*;
-use crate::link::Link;
+use crate::keep::link::Link;
+use crate::keep::undo::State;
 use crate::stage::ArtefactShow;
-use crate::undo::State;
 
 /// A second viewer that has followed the link of the first one.
 fn follower(first: &Viewer, arguments: &[&str]) -> Viewer {

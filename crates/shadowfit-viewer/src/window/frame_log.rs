@@ -1,0 +1,140 @@
+//! The figures of `--log-frames`: when the first scene was there, how long frames take, and how much memory is held.
+
+use std::time::{Duration, Instant};
+
+use shadowfit_render::Spent;
+
+use crate::platform::memory;
+use crate::platform::output;
+
+/// Frames between two lines, and the time that they are not farther apart than.
+const LOG_EVERY: (u64, Duration) = (60, Duration::from_secs(4));
+/// Least time of a frame that is told from others, in milliseconds.
+const LEAST_MS: f64 = 0.01;
+/// Factor from one class of times to the next.
+const STEP: f64 = 1.02;
+/// Number of classes: up to some minutes.
+const CLASSES: usize = 900;
+
+/// What was seen of the frames since the start. It takes no more memory however many there are.
+pub(crate) struct FrameLog {
+    start: Instant,
+    last_line: Instant,
+    frames: u64,
+    is_ready: bool,
+    /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
+    longest: Duration,
+    /// Longest time that a core worked for one since then.
+    most_cpu: Duration,
+    /// Longest time of `longest` since the start.
+    longest_of_all: Duration,
+    /// Frames by the time that a core worked for them, without those in which a scene was loaded or something made.
+    classes: Vec<u64>,
+    /// Number of those, and the longest time that a core worked for one.
+    loads: (u64, Duration),
+}
+
+impl FrameLog {
+    pub(crate) fn new(start: Instant) -> Self {
+        let [longest, most_cpu, longest_of_all] = [Duration::ZERO; 3];
+        Self {
+            start,
+            last_line: start,
+            frames: 0,
+            is_ready: false,
+            longest,
+            most_cpu,
+            longest_of_all,
+            classes: vec![0; CLASSES],
+            loads: (0, Duration::ZERO),
+        }
+    }
+
+    /// Notes a frame, whose own time is without waits for the GPU. `ready` is the window's title once there is a scene.
+    pub(crate) fn frame(&mut self, own: Spent, frame_ms: f32, is_loading: bool, ready: Option<String>) {
+        self.frames += 1;
+        self.longest = self.longest.max(own.wall);
+        self.most_cpu = self.most_cpu.max(own.cpu);
+        self.longest_of_all = self.longest_of_all.max(own.wall);
+        if is_loading || own.is_making {
+            self.loads = (self.loads.0 + 1, self.loads.1.max(own.cpu));
+        } else {
+            self.classes[class(ms(own.cpu))] += 1;
+        }
+        if let Some(title) = ready.filter(|_| !self.is_ready) {
+            self.is_ready = true;
+            output::tell(format_args!("ready: {title} after {:.2} s", self.start.elapsed().as_secs_f32()));
+        }
+        if self.frames.is_multiple_of(LOG_EVERY.0) || self.last_line.elapsed() >= LOG_EVERY.1 {
+            let seconds = self.start.elapsed().as_secs();
+            let memory = memory().map_or_else(String::new, |bytes| format!(", {:.0} MB", bytes as f64 / 1e6));
+            let [longest, most_cpu] = [self.longest, self.most_cpu].map(ms);
+            output::tell(format_args!(
+                "frame {} at {seconds} s: {frame_ms:.1} ms, longest block {longest:.1} ms, own CPU time up to {most_cpu:.1} \
+                 ms{memory}",
+                self.frames
+            ));
+            (self.longest, self.most_cpu, self.last_line) = (Duration::ZERO, Duration::ZERO, Instant::now());
+        }
+    }
+
+    /// Prints the last lines.
+    pub(crate) fn end(&self) {
+        output::tell(format_args!("{} frames, longest block {:.1} ms", self.frames, ms(self.longest_of_all)));
+        let [median, late] = [0.5, 0.999].map(|share| self.quantile(share));
+        let (loads, longest) = (self.loads.0, ms(self.loads.1));
+        output::tell(format_args!(
+            "own CPU time of frames without loads: median {median:.2} ms, 99.9% below {late:.2} ms"
+        ));
+        output::tell(format_args!(
+            "{loads} frames loaded a scene or made pipelines: own CPU time up to {longest:.2} ms"
+        ));
+    }
+
+    /// The time that a share of the frames stays below, in milliseconds.
+    fn quantile(&self, share: f64) -> f64 {
+        let all: u64 = self.classes.iter().sum();
+        let mut below = 0;
+        let reached = self.classes.iter().position(|frames| {
+            below += frames;
+            below as f64 >= share * all as f64
+        });
+        LEAST_MS * STEP.powf(reached.unwrap_or(0) as f64 + 1.0)
+    }
+}
+
+/// The class of a time in milliseconds.
+fn class(ms: f64) -> usize {
+    let class = (ms / LEAST_MS).max(1.0).log(STEP);
+    (class as usize).min(CLASSES - 1)
+}
+
+fn ms(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_frames_without_loads() {
+        let mut log = FrameLog::new(Instant::now());
+        for frame in 1..=2000_u64 {
+            let time = if frame > 1997 { Duration::from_millis(50) } else { Duration::from_micros(frame) };
+            let own = Spent { wall: time, cpu: time, is_making: false };
+            log.frame(own, 1.0, false, None);
+            let long = Spent { wall: Duration::from_secs(1), cpu: Duration::from_secs(1), is_making: false };
+            log.frame(long, 1.0, true, None);
+            log.frame(Spent { is_making: true, ..long }, 1.0, false, None);
+        }
+        let near = |share, expected: f64| {
+            let found = log.quantile(share);
+            assert!((found / expected - 1.0).abs() < STEP - 0.99, "{share}: {found} ms for {expected}");
+        };
+        near(0.5, 1.0);
+        near(0.9, 1.8);
+        near(0.999, 50.0);
+        assert_eq!((log.longest_of_all, log.loads), (Duration::from_secs(1), (4000, Duration::from_secs(1))));
+    }
+}
