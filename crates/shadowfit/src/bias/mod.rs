@@ -37,7 +37,7 @@ pub use self::reach::Reach;
 pub(crate) use self::reach::{HARDWARE_SNAP, rounding};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 use crate::technique::settings::{BiasSettings, FilterKind, Softness};
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction

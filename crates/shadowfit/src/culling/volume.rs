@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
 use crate::base::{Aabb, Boxes};
-use crate::fits::LightProjection;
 use crate::keep::texels::TexelRect;
+use crate::projection::LightProjection;
 use crate::technique::settings::CasterPolicy;
 
 /// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for

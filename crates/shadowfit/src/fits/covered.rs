@@ -8,8 +8,8 @@ use crate::base::enclosing::{HullBuilder, SYMMETRY};
 use crate::base::{FitError, box_corners, checks};
 use crate::content::Content;
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{Constraint, Covers, FitRule, Volume, rectangle};
-use crate::light::LightAxes;
+use crate::fits::{Covers, FitRule, rectangle};
+use crate::light::{Constraint, LightAxes, Volume};
 use crate::technique::settings::RectangleKind;
 use crate::view::Range;
 

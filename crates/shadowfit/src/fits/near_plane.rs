@@ -16,8 +16,8 @@ use glam::{DVec2, DVec3, Vec2Swizzles};
 use crate::base::checks::ROUNDING;
 use crate::content::Content;
 use crate::fits::covered::Shadowed;
-use crate::fits::{Constraint, Depth, FitRule, Volume};
-use crate::light::{LightAxes, Outline, OutlineScratch};
+use crate::fits::{Alignment, Depth, FitRule};
+use crate::light::{Constraint, LightAxes, Outline, OutlineScratch, Volume};
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -54,7 +54,7 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
         volume.min.z = far;
     }
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
-    if !rule.form.is_on_grid {
+    if rule.form.alignment != Alignment::OnGrid {
         // The rounding of the depth range, which casters may make far longer than the covered
         // region. On the grid it is in the steps.
         let depth = (volume.max.z - volume.min.z) * ROUNDING;

@@ -30,10 +30,10 @@ use core::ops::Range;
 use glam::{DVec3, IVec2, UVec2};
 
 use crate::base::{FitError, checks};
-use crate::fits::{Constraint, LightProjection, Volume};
-use crate::light::LightAxes;
 use crate::light::grid::MAX_LINE;
+use crate::light::{Constraint, LightAxes, Volume};
 use crate::map::FittedMap;
+use crate::projection::LightProjection;
 
 pub use crate::keep::texels::StoredRect;
 pub use crate::keep::texels::TexelRect;

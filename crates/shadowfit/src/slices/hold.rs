@@ -23,9 +23,10 @@ use crate::content::{Content, MAX_SPHERE_VIEWS};
 use crate::fits;
 use crate::fits::covered::{Detail, LightHull};
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{Constraint, FitInput, FitRule, Frame, Snapping, Volume, near_plane};
+use crate::fits::{Alignment, FitRule, Frame, Snapping, near_plane};
+use crate::input::FitInput;
 use crate::light::grid::Grid;
-use crate::light::{LightAxes, grid};
+use crate::light::{Constraint, LightAxes, Volume, grid};
 use crate::technique::settings::Hysteresis;
 use crate::view::{Range, ViewFrustum};
 
@@ -205,7 +206,7 @@ impl Holder<'_, '_> {
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
         let origin = self.frame.input.views[0].origin;
-        let grid = volume.snap(origin, rule);
+        let grid = rule.snap(&mut volume, origin);
         let mut map = HeldMap::new(&volume, grid, rule, fresh);
         let needed = self.needed(&map, Detail::Bounds, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
@@ -227,7 +228,7 @@ fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
 
 /// A rule for maps whose depths are found later: the rectangle alone is enough, the contents are not visited.
 fn trial(rule: &FitRule) -> FitRule {
-    FitRule { serves_all: rule.serves_all && rule.form.is_on_grid, ..*rule }
+    FitRule { serves_all: rule.serves_all && rule.form.alignment == Alignment::OnGrid, ..*rule }
 }
 
 /// What a map must cover in this frame, along its axes and relative to the origin.

@@ -12,7 +12,7 @@ use crate::base::checks;
 use crate::content::Content;
 use crate::content::normal_cone::NormalCone;
 use crate::demand::grid::{DemandSpace, PIXELS, Plane, needed_texel};
-use crate::fits::FitInput;
+use crate::input::FitInput;
 use crate::view::{Picture as Positions, RayCount, Slice, View, covered, crossing};
 
 /// Rays across and down the picture.

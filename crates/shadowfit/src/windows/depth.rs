@@ -7,8 +7,8 @@ use crate::base::checks::{ROUNDING, THINNEST};
 use crate::base::{Boxes, FitError, moved};
 use crate::content::Content;
 use crate::demand::grid::Plane;
-use crate::fits::{Constraint, Depth, FitRule};
-use crate::light::{Column, LightAxes};
+use crate::fits::{Depth, FitRule};
+use crate::light::{Column, Constraint, LightAxes};
 use crate::view::Range;
 
 /// Boxes as the light sees them, those of the lists three elements each: least and greatest x and y, and z.

@@ -65,8 +65,9 @@ use glam::{DVec2, DVec3};
 
 use crate::base::{FitError, checks};
 use crate::demand::grid::Plane;
-use crate::fits::{Constraint, FitRule, Frame, PlacedMap, PlacedMaps, Volume};
+use crate::fits::{FitRule, Frame, PlacedMap, PlacedMaps};
 use crate::light::grid::{self, Grid};
+use crate::light::{Constraint, Volume};
 use crate::technique::Windows;
 use crate::technique::settings::MAX_MAPS;
 use cells::{Cells, Rect};

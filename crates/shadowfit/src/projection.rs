@@ -1,19 +1,16 @@
-//! What every fit returns: the light's matrices and the box they store.
+//! The result of every fit: the light's matrices and the box that the map stores.
 //!
-//! All maps take positions relative to an origin in f64, so that they stay exact far from the
-//! world's origin; [`LightProjection::relative_to`] moves that origin.
+//! All maps take positions relative to an origin in f64, so that they stay exact far from the world's origin.
+//! [`LightProjection::relative_to`] moves that origin.
 //!
-//! A fit is also made from the matrix of other code, so that it can be drawn, culled and evaluated like those of this
-//! crate.
-
-use crate::fits::volume::Constraint;
+//! [`LightProjection::from_clip_from_world`] makes a projection from the matrix of other code, so that it can be drawn,
+//! culled and evaluated like the projections of this crate.
 
 use glam::{DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
-use crate::fits::Volume;
-use crate::light::LightAxes;
+use crate::light::{Constraint, LightAxes, Volume};
 
 /// An orthographic view-projection of a directional light.
 ///
