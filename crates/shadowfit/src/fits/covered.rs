@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use crate::base::checks::{MIN_LENGTH, ROUNDING, THINNEST};
 use crate::base::enclosing::{HullBuilder, SYMMETRY};
 use crate::base::{FitError, box_corners, checks};
-use crate::content::Content;
+use crate::content::{Bounds, Content, VisitCorners};
 use crate::fits::rectangle::Rectangle;
 use crate::fits::{Covers, FitRule, rectangle};
 use crate::light::{Constraint, LightAxes, Volume};
@@ -202,18 +202,14 @@ struct Collector<'a> {
     hull: HullBuilder<'a>,
     z: (f64, f64),
     farthest_squared: f64,
+    /// The first corner without room is an error. Later ones are left out.
+    pushed: Result<(), FitError>,
 }
 
 impl<'a> Collector<'a> {
     fn new(axes: LightAxes, detail: Detail, points: &'a mut [DVec2]) -> Self {
-        Self { axes, detail, hull: HullBuilder::new(points), z: (f64::MAX, f64::MIN), farthest_squared: 0.0 }
-    }
-
-    fn push(&mut self, p: DVec3) -> Result<(), FitError> {
-        let q = self.axes.project(p);
-        self.z = (self.z.0.min(q.z), self.z.1.max(q.z));
-        self.farthest_squared = self.farthest_squared.max(p.dot(p));
-        self.hull.push(q.truncate())
+        let hull = HullBuilder::new(points);
+        Self { axes, detail, hull, z: (f64::MAX, f64::MIN), farthest_squared: 0.0, pushed: Ok(()) }
     }
 
     /// Whether a box lies inside what has been collected so far, so that no part of it can change
@@ -237,9 +233,25 @@ impl<'a> Collector<'a> {
             || box_corners(min, max).into_iter().all(|corner| self.hull.holds(self.axes.project(corner).truncate()))
     }
 
-    fn finish(self, is_empty: bool) -> LightHull<'a> {
+    fn finish(self, is_empty: bool) -> Result<LightHull<'a>, FitError> {
+        self.pushed?;
         let farthest = libm::sqrt(self.farthest_squared);
-        LightHull { axes: self.axes, outline: self.hull.finish(), z: self.z, farthest, is_empty }
+        Ok(LightHull { axes: self.axes, outline: self.hull.finish(), z: self.z, farthest, is_empty })
+    }
+}
+
+impl VisitCorners for Collector<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.pushed.is_ok() && !self.holds(bounds.min, bounds.max)
+    }
+
+    fn take(&mut self, corner: DVec3) {
+        if self.pushed.is_ok() {
+            let q = self.axes.project(corner);
+            self.z = (self.z.0.min(q.z), self.z.1.max(q.z));
+            self.farthest_squared = self.farthest_squared.max(corner.dot(corner));
+            self.pushed = self.hull.push(q.truncate());
+        }
     }
 }
 
@@ -261,8 +273,8 @@ impl<'a> LightHull<'a> {
     /// The hull of the views' slices.
     fn of_views(content: &Content, axes: LightAxes, range: Range, points: &'a mut [DVec2]) -> Result<Self, FitError> {
         let mut collector = Collector::new(axes, Detail::Outline, points);
-        content.corners(range).try_for_each(|corner| collector.push(corner))?;
-        collector.finish(false).checked()
+        content.corners(range).for_each(|corner| collector.take(corner));
+        collector.finish(false)?.checked()
     }
 
     /// The hull of the receivers' boxes clipped to the views' slices; that of the slices themselves
@@ -278,16 +290,14 @@ impl<'a> LightHull<'a> {
             return Self::of_views(content, axes, range, points);
         }
         let mut collector = Collector::new(axes, detail, points);
-        let is_new = |collector: &Collector, min, max| !collector.holds(min, max);
-        content.receivers_in(range, &mut collector, is_new, |collector, _, slice, (min, max)| {
-            if collector.holds(min, max) { Ok(()) } else { slice.clip(min, max, &mut |p| collector.push(p)) }
-        })?;
+        content.visit_corners(range, &mut collector);
         if collector.hull.is_empty() {
-            let Collector { hull, .. } = collector;
+            let Collector { hull, pushed, .. } = collector;
+            pushed?;
             let of_views = Self::of_views(content, axes, range, hull.into_storage())?;
             return Ok(Self { is_empty: true, ..of_views });
         }
-        Ok(collector.finish(false))
+        collector.finish(false)
     }
 
     /// Refuses a hull of views without extent.

@@ -14,7 +14,7 @@
 use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::base::checks::ROUNDING;
-use crate::content::Content;
+use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::fits::covered::Shadowed;
 use crate::fits::{Alignment, Depth, FitRule};
 use crate::light::{Constraint, LightAxes, Outline, OutlineScratch, Volume};
@@ -88,7 +88,7 @@ pub(crate) fn find(
         }
         Depth::AtCasters => {
             let mut highest = Highest::new(axes, outline, reach, covered);
-            content.each_caster(&mut highest, Highest::may_rise, Highest::add);
+            content.visit(Query::Casters, &mut highest);
             (highest.z, Constraint::Casters)
         }
     };
@@ -116,7 +116,7 @@ pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), c
     let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
     let corners = corners((across.0.yx(), across.1.yx()));
     let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
-    content.each_seen_receiver(&mut lowest, Highest::may_rise, Highest::add);
+    content.whole_views().for_each(|part| content.visit(Query::Lit(&part), &mut lowest));
     (-lowest.z).max(covered - longer * FARTHER)
 }
 
@@ -141,11 +141,6 @@ impl<'a> Highest<'a> {
         Self { over: Outline::new(axes, outline, reach), scratch: OutlineScratch::new(), z: covered }
     }
 
-    /// Whether a part of a box may lie higher than all so far.
-    fn may_rise(&self, min: DVec3, max: DVec3) -> bool {
-        self.over.may_hold(min, max, self.floor(min, max))
-    }
-
     /// The height that a box must exceed to count.
     fn floor(&self, min: DVec3, max: DVec3) -> f64 {
         self.z - min.abs().max(max.abs()).element_sum() * ROUNDING
@@ -156,6 +151,17 @@ impl<'a> Highest<'a> {
         self.over.parts_over(min, max, floor, &mut self.scratch, |corner| {
             *z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
         });
+    }
+}
+
+impl Visit for Highest<'_> {
+    /// Returns whether a part of a box may lie higher than all so far.
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.over.may_hold(bounds.min, bounds.max, self.floor(bounds.min, bounds.max))
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        self.add(bounds.min, bounds.max);
     }
 }
 

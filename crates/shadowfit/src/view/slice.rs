@@ -198,22 +198,17 @@ pub(crate) const EDGES: [(usize, usize); 12] =
 impl Slice {
     /// Passes on all vertices of box ∩ slice, some of them more than once, and possibly points of
     /// its edges. Nothing when they do not meet.
-    pub(crate) fn clip<E>(
-        &self,
-        min: DVec3,
-        max: DVec3,
-        emit: &mut impl FnMut(DVec3) -> Result<(), E>,
-    ) -> Result<(), E> {
+    pub(crate) fn clip(&self, min: DVec3, max: DVec3, emit: &mut impl FnMut(DVec3)) {
         let mut crossed = [false; 6];
         for (plane, crossed) in self.planes.iter().zip(&mut crossed) {
             if plane.farthest(min, max) < 0.0 {
-                return Ok(());
+                return;
             }
             *crossed = plane.nearest(min, max) < 0.0;
         }
         let corners = box_corners(min, max);
         if crossed == [false; 6] {
-            return corners.into_iter().try_for_each(emit);
+            return corners.into_iter().for_each(emit);
         }
         // Distances of the corners within the planes that the box crosses.
         let mut inside = [[0.0; 8]; 6];
@@ -225,16 +220,16 @@ impl Slice {
         let inside = &inside[..count];
         for (i, corner) in corners.into_iter().enumerate() {
             if inside.iter().all(|plane| plane[i] >= 0.0) {
-                emit(corner)?;
+                emit(corner);
             }
         }
         for (i, j) in EDGES {
             let Some((enter, leave)) = inner_part(inside, i, j) else { continue };
             if enter > 0.0 {
-                emit(at(corners[i], corners[j], enter))?;
+                emit(at(corners[i], corners[j], enter));
             }
             if leave < 1.0 {
-                emit(at(corners[i], corners[j], leave))?;
+                emit(at(corners[i], corners[j], leave));
             }
         }
         // An edge of the slice meets no box that does not cross both of its planes.
@@ -243,11 +238,10 @@ impl Slice {
                 && crossed[other]
                 && let Some((a, b)) = clip_to_box(self.corners[i], self.corners[j], min, max)
             {
-                emit(a)?;
-                emit(b)?;
+                emit(a);
+                emit(b);
             }
         }
-        Ok(())
     }
 }
 

@@ -9,8 +9,8 @@ use glam::DVec3;
 
 use super::cells::{Cells, Counted};
 use crate::base::checks;
-use crate::content::Content;
 use crate::content::normal_cone::NormalCone;
+use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::demand::grid::{DemandSpace, PIXELS, Plane, needed_texel};
 use crate::input::FitInput;
 use crate::view::{Picture as Positions, RayCount, Slice, View, covered, crossing};
@@ -40,16 +40,15 @@ struct Ray {
 
 /// Adds what the views see of the boxes, up to a view depth. `up` is the world's.
 pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane: &Plane, (up, distance): (DVec3, f32)) {
-    for (view, frustum) in content.views().zip(content.views) {
+    for part in content.whole_views() {
+        let frustum = &content.views[part.index];
         let Ok(space) = DemandSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
-        let picture = Picture::new(&view, plane);
-        #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
-        let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
-        let may_meet = |rays: &_, nearest, corners| picture.may_meet(&view, nearest, corners, rays);
-        content.each_in_view(&view, &mut rays, may_meet, |rays, i, corners| picture.meet(&view, i, corners, rays));
+        let mut rays = Rays::new(&part.view, plane);
+        content.visit(Query::Visible(&part), &mut rays);
+        let Rays { picture, all, .. } = &rays;
         let mut counted = Counted::new();
         let offset = frustum.origin - content.origin;
-        for (i, ray) in rays.iter().enumerate() {
+        for (i, ray) in all.iter().enumerate() {
             let line = picture.ray(i % RAYS.columns, i / RAYS.columns);
             // Counts what a ray meets in a box; returns the share of it that goes no farther.
             let mut count = |layer: &Layer, weight: f32| {
@@ -79,7 +78,6 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
 struct Picture<'a> {
     plane: &'a Plane,
     whole: Slice,
-    positions: Positions,
     right: DVec3,
     down: DVec3,
     /// Width of a pixel at the near and the far rectangle, in metres.
@@ -94,7 +92,7 @@ impl<'a> Picture<'a> {
         let heights = [checks::length(c[3] - c[0]), checks::length(down)];
         let (right, down) = (right / checks::length(right), down / heights[1]);
         let pixels = heights.map(|height| height / f64::from(PIXELS));
-        Self { plane, whole, positions: view.picture(), right, down, pixels }
+        Self { plane, whole, right, down, pixels }
     }
 
     /// Start and end of a ray.
@@ -103,44 +101,6 @@ impl<'a> Picture<'a> {
         let c = &self.whole.corners;
         let at = |i: usize| (c[i] * (1.0 - x) + c[i + 1] * x) * (1.0 - y) + (c[i + 3] * (1.0 - x) + c[i + 2] * x) * y;
         (at(0), at(4))
-    }
-
-    /// Whether a box that begins at a view depth, or a box in it, may be among the nearest ones along a ray.
-    fn may_meet(
-        &self,
-        view: &View,
-        nearest: f64,
-        (min, max): (DVec3, DVec3),
-        rays: &[Ray; RAYS.columns * RAYS.rows],
-    ) -> bool {
-        let Some((columns, rows)) = covered(view, &self.positions, RAYS, min, max) else { return false };
-        let nearest = (nearest - view.near) / (view.far - view.near) * (1.0 - ROUNDING) - ROUNDING;
-        let mut rays = rows.flat_map(|row| &rays[row * RAYS.columns..][columns.clone()]);
-        nearest <= 0.0 || rays.any(|ray| nearest < f64::from(ray.layers[LAYERS - 1].enter))
-    }
-
-    /// Intersects all rays with a box.
-    fn meet(&self, view: &View, index: usize, (min, max): (DVec3, DVec3), rays: &mut [Ray; RAYS.columns * RAYS.rows]) {
-        let Some((columns, rows)) = covered(view, &self.positions, RAYS, min, max) else { return };
-        for row in rows {
-            for column in columns.clone() {
-                let (start, end) = self.ray(column, row);
-                let Some((enter, leave)) = crossing(start, end - start, min, max) else { continue };
-                let mut layer = Layer { enter: enter as f32, leave: leave as f32, index: index as u32 };
-                let ray = &mut rays[row * RAYS.columns + column];
-                if enter <= 0.0 {
-                    if ray.around.index == u32::MAX || ray.around.leave < layer.leave {
-                        ray.around = layer;
-                    }
-                    continue;
-                }
-                for kept in &mut ray.layers {
-                    if layer.enter < kept.enter {
-                        core::mem::swap(&mut layer, kept);
-                    }
-                }
-            }
-        }
     }
 
     /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share; returns
@@ -176,6 +136,59 @@ impl<'a> Picture<'a> {
             emit(start + along * t, texel * pixel(t), met);
         }
         met
+    }
+}
+
+/// The nearest boxes along all rays of a view.
+struct Rays<'a> {
+    view: &'a View,
+    picture: Picture<'a>,
+    positions: Positions,
+    /// Row by row.
+    all: [Ray; RAYS.columns * RAYS.rows],
+}
+
+impl<'a> Rays<'a> {
+    #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
+    fn new(view: &'a View, plane: &'a Plane) -> Self {
+        let all = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
+        Self { view, picture: Picture::new(view, plane), positions: view.picture(), all }
+    }
+}
+
+impl Visit for Rays<'_> {
+    /// Returns whether a box may be among the nearest ones along a ray.
+    fn wants(&self, bounds: &Bounds) -> bool {
+        let view = self.view;
+        let covered = covered(view, &self.positions, RAYS, bounds.min, bounds.max);
+        let Some((columns, rows)) = covered else { return false };
+        let nearest = (bounds.near - view.near) / (view.far - view.near) * (1.0 - ROUNDING) - ROUNDING;
+        let mut rays = rows.flat_map(|row| &self.all[row * RAYS.columns..][columns.clone()]);
+        nearest <= 0.0 || rays.any(|ray| nearest < f64::from(ray.layers[LAYERS - 1].enter))
+    }
+
+    /// Intersects all rays with a box.
+    fn take(&mut self, Found { bounds: Bounds { min, max, .. }, index }: &Found) {
+        let Some((columns, rows)) = covered(self.view, &self.positions, RAYS, *min, *max) else { return };
+        for row in rows {
+            for column in columns.clone() {
+                let (start, end) = self.picture.ray(column, row);
+                let Some((enter, leave)) = crossing(start, end - start, *min, *max) else { continue };
+                let mut layer = Layer { enter: enter as f32, leave: leave as f32, index: *index as u32 };
+                let ray = &mut self.all[row * RAYS.columns + column];
+                if enter <= 0.0 {
+                    if ray.around.index == u32::MAX || ray.around.leave < layer.leave {
+                        ray.around = layer;
+                    }
+                    continue;
+                }
+                for kept in &mut ray.layers {
+                    if layer.enter < kept.enter {
+                        core::mem::swap(&mut layer, kept);
+                    }
+                }
+            }
+        }
     }
 }
 
