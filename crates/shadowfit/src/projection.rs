@@ -365,7 +365,7 @@ impl Rows {
         );
         let (min, max) = (middle - half, middle + half);
         let axes = LightAxes { x: axes[0].as_vec3(), y: axes[1].as_vec3(), z: (axes[2] * -travel).as_vec3() };
-        let volume = Volume::covering(axes, (min, max), [Constraint::default(); 6], false);
+        let volume = Volume::covering(axes, min, max, [Constraint::default(); 6], false);
         Volume { light_z: max.z, depth_range: half.z * 2.0, ..volume }
     }
 }

@@ -47,7 +47,7 @@ impl<'a> Covered<'a> {
             Covers::Corners => Self::corners(rule, content, axes, range),
             Covers::Sphere => Self::sphere(rule, content, axes, range),
             Covers::Views | Covers::Receivers => {
-                let hull = LightHull::of((rule.form.covers, Detail::Outline), content, axes, range, points)?;
+                let hull = LightHull::of(rule.form.covers, Detail::Outline, content, axes, range, points)?;
                 Ok(Self::hull(rule, content, &hull, range))
             }
         }
@@ -68,7 +68,7 @@ impl<'a> Covered<'a> {
             return Err(FitError::EmptyFrustum { size: size.as_vec3() });
         }
         let margin = DVec3::splat(rule.margin);
-        let volume = Volume::covering(axes, (min - margin, max + margin), [Constraint::View; 6], false);
+        let volume = Volume::covering(axes, min - margin, max + margin, [Constraint::View; 6], false);
         Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
     }
 
@@ -81,10 +81,13 @@ impl<'a> Covered<'a> {
         let rounding = ROUNDING * (1.5 * longest + checks::length(sphere.centre));
         let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
         let extent = DVec3::splat(2.0 * (sphere.radius + pad));
-        let corners = (centre - extent * 0.5, centre + extent * 0.5);
-        let corners = if rule.serves_all { within_receivers(corners, content, &axes, pad) } else { corners };
-        let corners = no_smaller(corners, rule.least_size);
-        let volume = Volume::covering(axes, corners, [Constraint::Sphere; 6], false);
+        let (mut min, mut max) = (centre - extent * 0.5, centre + extent * 0.5);
+        if rule.serves_all {
+            (min, max) = within_receivers(min, max, content, &axes, pad);
+        }
+        let (low, high) = widened(min.truncate(), max.truncate(), rule.least_size);
+        let (min, max) = (low.extend(min.z), high.extend(max.z));
+        let volume = Volume::covering(axes, min, max, [Constraint::Sphere; 6], false);
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
 
@@ -111,10 +114,10 @@ impl<'a> Covered<'a> {
         let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
         let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
         let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
-        let corners = (min.extend(z_min.x), max.extend(z_max.x));
+        let (min, max) = (min.extend(z_min.x), max.extend(z_max.x));
         let set_by = constraints(&rectangle, hull, content, range);
         Self {
-            volume: Volume::covering(hull.axes.turned(rectangle.axis), corners, set_by, hull.is_empty),
+            volume: Volume::covering(hull.axes.turned(rectangle.axis), min, max, set_by, hull.is_empty),
             rounding: rounding.max_element(),
             shadowed: Shadowed::Outline(hull.axes, hull.outline),
         }
@@ -123,19 +126,13 @@ impl<'a> Covered<'a> {
 
 /// A box of constant size, no wider than all receivers together and moved to where they are: nothing beyond them is
 /// looked up. Its size is constant as long as that of the receivers is.
-fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
+fn within_receivers(min: DVec3, max: DVec3, content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
     let Some((low, high)) = content.receivers_across(axes) else { return (min, max) };
     let (low, high) = (low - pad, high + pad);
     let size = (max - min).truncate().min(high - low);
     let centre = ((min + max) * 0.5).truncate();
     let first = (centre - size * 0.5).min(high - size).max(low);
     (first.extend(min.z), (first + size).extend(max.z))
-}
-
-/// A box widened across the light about its middle.
-fn no_smaller((min, max): (DVec3, DVec3), least: DVec2) -> (DVec3, DVec3) {
-    let (low, high) = widened(min.truncate(), max.truncate(), least);
-    (low.extend(min.z), high.extend(max.z))
 }
 
 /// The square with the rectangle's longer side, about the same middle.
@@ -258,7 +255,8 @@ impl VisitCorners for Collector<'_> {
 impl<'a> LightHull<'a> {
     /// The hull of what a rule covers.
     pub(crate) fn of(
-        (covers, detail): (Covers, Detail),
+        covers: Covers,
+        detail: Detail,
         content: &Content,
         axes: LightAxes,
         range: Range,

@@ -38,18 +38,15 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     }
     let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
     let reach = filter_reach(texel, rule, rounding);
+    let (min, max) = (volume.min.truncate(), volume.max.truncate());
     let near = match shadowed {
         Shadowed::Outline(axes, outline) if !rule.serves_all => {
             find(volume.max.z, &axes, outline, content, rule.depth, reach)
         }
-        _ => {
-            let across = (volume.min.truncate(), volume.max.truncate());
-            find_over(volume.max.z, &volume.axes, across, content, rule.depth, reach)
-        }
+        _ => find_over(volume.max.z, &volume.axes, min, max, content, rule.depth, reach),
     };
     if rule.serves_all {
-        let across = (volume.min.truncate(), volume.max.truncate());
-        let far = find_far(volume.min.z, &volume.axes, across, content);
+        let far = find_far(volume.min.z, &volume.axes, min, max, content);
         volume.set_by[4] = if far < volume.min.z { Constraint::Receivers } else { volume.set_by[4] };
         volume.min.z = far;
     }
@@ -95,26 +92,27 @@ pub(crate) fn find(
     NearPlane { z, set_by: (z > covered).then_some(set_by) }
 }
 
-/// [`find`] for all of a map, given as a rectangle across the light.
+/// Finds the near plane as [`find`] does, for all of a map, given by its corners across the light.
 pub(crate) fn find_over(
     covered: f64,
     axes: &LightAxes,
-    across: (DVec2, DVec2),
+    min: DVec2,
+    max: DVec2,
     content: &Content,
     depth: Depth,
     reach: f64,
 ) -> NearPlane {
-    find(covered, axes, &corners(across), content, depth, reach)
+    find(covered, axes, &corners(min, max), content, depth, reach)
 }
 
-/// Finds the far plane for a map, given as a rectangle across the light, whose covered region begins at `covered`
+/// Finds the far plane for a map, given by its corners across the light, whose covered region begins at `covered`
 /// along the light's z: far enough for the receivers in view over all of the map, since points of all
 /// view depths read it, but no farther than [`FARTHER`] allows.
-pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), content: &Content) -> f64 {
-    let longer = (across.1 - across.0).max_element();
+pub(crate) fn find_far(covered: f64, axes: &LightAxes, min: DVec2, max: DVec2, content: &Content) -> f64 {
+    let longer = (max - min).max_element();
     // Seen from below: the lowest point is the highest there, and x and y change places.
     let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
-    let corners = corners((across.0.yx(), across.1.yx()));
+    let corners = corners(min.yx(), max.yx());
     let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
     content.whole_views().for_each(|part| content.visit(Query::Lit(&part), &mut lowest));
     (-lowest.z).max(covered - longer * FARTHER)
@@ -125,7 +123,7 @@ pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), c
 const FARTHER: f64 = 2.0;
 
 /// Corners of a rectangle along the axes, anticlockwise.
-fn corners((min, max): (DVec2, DVec2)) -> [DVec2; 4] {
+fn corners(min: DVec2, max: DVec2) -> [DVec2; 4] {
     [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y))
 }
 

@@ -253,8 +253,8 @@ const MAX_TILE: u32 = 65_536;
 fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightProjection, FitError> {
     let half = anchor.texel * (f64::from(size) * 0.5);
     let depth_range = anchor.depth[1] - anchor.depth[0];
-    let corners = ((-half).extend(-depth_range), half.extend(0.0));
-    let mut volume = Volume::covering(*axes, corners, [Constraint::Held; 6], false);
+    let (min, max) = ((-half).extend(-depth_range), half.extend(0.0));
+    let mut volume = Volume::covering(*axes, min, max, [Constraint::Held; 6], false);
     volume.light_at_near_plane();
     LightProjection::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.projection.depth)
 }

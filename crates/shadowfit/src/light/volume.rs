@@ -54,18 +54,13 @@ pub(crate) struct Volume {
 impl Volume {
     /// A box whose near plane has yet to be found, and with it the light.
     #[inline(always)]
-    pub(crate) fn covering(
-        axes: LightAxes,
-        (min, max): (DVec3, DVec3),
-        set_by: [Constraint; 6],
-        is_empty: bool,
-    ) -> Self {
+    pub(crate) fn covering(axes: LightAxes, min: DVec3, max: DVec3, set_by: [Constraint; 6], is_empty: bool) -> Self {
         Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, set_by, is_empty, grid: None }
     }
 
     /// A box around the origin, for a map that nothing reads.
     pub(crate) fn nowhere(axes: LightAxes) -> Self {
-        let mut volume = Self::covering(axes, (DVec3::NEG_ONE, DVec3::ONE), [Constraint::View; 6], true);
+        let mut volume = Self::covering(axes, DVec3::NEG_ONE, DVec3::ONE, [Constraint::View; 6], true);
         volume.light_at_near_plane();
         volume
     }
@@ -76,12 +71,13 @@ impl Volume {
         grid: Grid,
         resolution: DVec2,
         origin: DVec3,
-        (set_by, is_empty): ([Constraint; 6], bool),
+        set_by: [Constraint; 6],
+        is_empty: bool,
     ) -> Self {
         let anchor = anchor(&axes, origin);
         let (min, max) = grid.across(anchor, resolution);
-        let corners = (min.extend(grid.z.0 - anchor.z), max.extend(grid.z.1 - anchor.z));
-        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, corners, set_by, is_empty) };
+        let (min, max) = (min.extend(grid.z.0 - anchor.z), max.extend(grid.z.1 - anchor.z));
+        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, min, max, set_by, is_empty) };
         volume.light_at_near_plane();
         volume
     }
@@ -93,7 +89,7 @@ impl Volume {
     pub(crate) fn stabilise_depth(&mut self, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
         let anchor = anchor(&self.axes, origin).z;
         if let Some(grid) = &mut self.grid {
-            grid.z = stabilised_depth(held, (self.min.z + anchor, self.max.z + anchor), waste);
+            grid.z = stabilised_depth(held, self.min.z + anchor, self.max.z + anchor, waste);
             (self.min.z, self.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
             self.light_at_near_plane();
         }

@@ -217,7 +217,7 @@ pub fn prove(
         let over = if query.is_shared {
             Outline::new(&axes, &map.corners, raster_reach(fit, map.farthest))
         } else {
-            let hull = LightHull::of((Covers::Receivers, Detail::Outline), &content, axes, range, points)?;
+            let hull = LightHull::of(Covers::Receivers, Detail::Outline, &content, axes, range, points)?;
             Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest))
         };
         let NearestCaster { margin, point, .. } = NearestCaster::find(&content, over, &half_spaces, offset);

@@ -11,6 +11,7 @@
 mod bins;
 mod extents;
 mod hold;
+mod motion;
 mod optimise;
 mod splits;
 
@@ -25,7 +26,8 @@ use crate::technique::settings::{Hysteresis, MAX_MAPS, MapSelection, Stabilise};
 use crate::view::{Range, ViewFrustum};
 
 use bins::Splits;
-use hold::{HeldMap, Holder, Motion};
+use hold::{HeldMap, Holder};
+use motion::Motion;
 use splits::{Chooser, HeldSplits};
 
 /// What slices begin with in the next frame.

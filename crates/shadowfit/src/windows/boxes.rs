@@ -7,12 +7,13 @@
 
 use glam::DVec3;
 
-use super::cells::{Cells, Counted};
+use super::cells::Cells;
+use super::counted::Counted;
 use crate::base::checks;
 use crate::content::normal_cone::NormalCone;
-use crate::content::{Bounds, Content, Found, Query, Visit};
+use crate::content::{Bounds, Found, Query, Visit};
 use crate::demand::grid::{DemandSpace, PIXELS, Plane, needed_texel};
-use crate::input::FitInput;
+use crate::fits::Frame;
 use crate::view::{Picture as Positions, RayCount, Slice, View, covered, crossing};
 
 /// Rays across and down the picture.
@@ -38,11 +39,14 @@ struct Ray {
     around: Layer,
 }
 
-/// Adds what the views see of the boxes, up to a view depth. `up` is the world's.
-pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane: &Plane, (up, distance): (DVec3, f32)) {
+/// Adds what the views of a frame see of the boxes.
+pub(super) fn add(cells: &mut Cells, frame: &Frame, plane: &Plane) {
+    let Frame { input, content, .. } = frame;
     for part in content.whole_views() {
         let frustum = &content.views[part.index];
-        let Ok(space) = DemandSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
+        let Ok(space) = DemandSpace::new(frustum, -plane.axes.z, frame.light.up().as_vec3(), frame.range.far) else {
+            continue;
+        };
         let mut rays = Rays::new(&part.view, plane);
         content.visit(Query::Visible(&part), &mut rays);
         let Rays { picture, all, .. } = &rays;
@@ -70,7 +74,7 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
                 count(&ray.around, AROUND);
             }
         }
-        cells.add(&counted, FINEST, (&space, plane), content.origin);
+        cells.add(&counted, OVERRATED, &space, plane, content.origin);
     }
 }
 
@@ -195,9 +199,9 @@ impl Visit for Rays<'_> {
 /// Rounding of shares of a ray to f32, and of view depths to such shares.
 const ROUNDING: f64 = 1e-6;
 
-/// Share of the points with the finest demands, which count as no finer than those of the rest: estimates from
-/// boxes find too many near the eye.
-const FINEST: f32 = 0.1;
+/// Share of the points with the finest demands. They count as no finer than the others, since estimates from boxes find
+/// too many near the eye.
+const OVERRATED: f32 = 0.1;
 
 /// Cosine of the half angle of a cone above which its surfaces count as flat.
 const FLAT: f32 = 0.97;

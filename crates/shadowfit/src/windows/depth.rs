@@ -87,7 +87,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
     }
 
     /// The depths of the parts of all boxes that lie over a rectangle.
-    pub(super) fn depth(&self, (min, max): (DVec2, DVec2), rule: &FitRule) -> WindowDepth {
+    pub(super) fn depth(&self, min: DVec2, max: DVec2, rule: &FitRule) -> WindowDepth {
         let [receivers, casters] = self.content.lists();
         let mut over = Over::new(&self.axes, min, max);
         if !self.is_empty {
@@ -179,7 +179,7 @@ impl<'a> Over<'a> {
         for (aabb, b) in list.boxes.iter().zip(projected.as_chunks().0) {
             if is_over(b, self.column.min, self.column.max) && self.is_new(b[2], b) {
                 let (min, max) = moved(aabb, list.origin - origin);
-                self.add((min, max), b);
+                self.add(min, max, b);
             }
         }
     }
@@ -190,8 +190,8 @@ impl<'a> Over<'a> {
         z.x <= z.y && (z.x < self.low || z.y > self.high || farthest_squared(b) > self.farthest_squared)
     }
 
-    fn add(&mut self, corners: (DVec3, DVec3), b: &[DVec2; PER_BOX]) {
-        let z = self.part(corners, b);
+    fn add(&mut self, min: DVec3, max: DVec3, b: &[DVec2; PER_BOX]) {
+        let z = self.part(min, max, b);
         if z.x <= z.y {
             (self.low, self.high) = (self.low.min(z.x), self.high.max(z.y));
             self.farthest_squared = self.farthest_squared.max(farthest_squared(b));
@@ -200,7 +200,7 @@ impl<'a> Over<'a> {
 
     /// Least and greatest depth of the part of a box over the rectangle; the least is above the greatest where there is
     /// none. A large ground under a low sun is many times as deep as any of its parts.
-    fn part(&self, (min, max): (DVec3, DVec3), b: &[DVec2; PER_BOX]) -> DVec2 {
+    fn part(&self, min: DVec3, max: DVec3, b: &[DVec2; PER_BOX]) -> DVec2 {
         let (low, high) = self.column.depths(min, max);
         let rounding = min.abs().max(max.abs()).element_sum() * ROUNDING;
         DVec2::new(b[2].x.max(low - rounding), b[2].y.min(high + rounding))
@@ -211,11 +211,11 @@ impl Visit for Over<'_> {
     fn wants(&self, bounds: &Bounds) -> bool {
         let b = projected(bounds.min, bounds.max, self.axes);
         let is_over = is_over(&b, self.column.min, self.column.max);
-        is_over && self.is_new(b[2], &b) && self.is_new(self.part((bounds.min, bounds.max), &b), &b)
+        is_over && self.is_new(b[2], &b) && self.is_new(self.part(bounds.min, bounds.max, &b), &b)
     }
 
     fn take(&mut self, Found { bounds, .. }: &Found) {
-        self.add((bounds.min, bounds.max), &projected(bounds.min, bounds.max, self.axes));
+        self.add(bounds.min, bounds.max, &projected(bounds.min, bounds.max, self.axes));
     }
 }
 
