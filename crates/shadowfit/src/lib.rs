@@ -177,7 +177,7 @@ mod view {
     pub use frustum::ViewFrustum;
     pub use lens::{Camera, Lens};
     pub(crate) use slice::{
-        EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
+        Depths, EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
         slice_corners,
     };
 }

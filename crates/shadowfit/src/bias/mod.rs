@@ -82,7 +82,7 @@ pub const MIN_COSINE: f32 = 0.005;
 const SPARE_TEXELS: f32 = 1.0 / 32.0;
 
 /// Error of the square of a sine that a shader computes from an f32 cosine: four roundings of 2⁻²⁴.
-pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 / 16_777_216.0;
+pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 * checks::UNIT;
 
 /// Greatest error of the sine itself, reached where that error is as large as the square: its root,
 /// 2⁻¹¹, rounded up.

@@ -6,7 +6,7 @@ use super::Scene;
 use super::groups::Groups;
 use super::normal_cone::NormalCone;
 use crate::base::{Boxes, FitError, checks, moved};
-use crate::view::{View, ViewFrustum};
+use crate::view::{Depths, View, ViewFrustum};
 
 /// A box, or the bounds of several, in metres relative to the fit's origin.
 #[derive(Clone, Copy)]
@@ -14,28 +14,35 @@ pub(crate) struct Bounds {
     pub(crate) min: DVec3,
     pub(crate) max: DVec3,
     /// Least and greatest view depth. They are infinite for runs of a list, and for queries without a view.
-    pub(crate) near: f64,
-    pub(crate) far: f64,
+    pub(crate) depths: Depths,
 }
 
 impl Bounds {
     /// Bounds without known view depths.
     #[inline]
-    pub(super) fn anywhere((min, max): (DVec3, DVec3)) -> Self {
-        Self { min, max, near: f64::NEG_INFINITY, far: f64::INFINITY }
+    pub(super) fn anywhere(min: DVec3, max: DVec3) -> Self {
+        Self { min, max, depths: Depths { near: f64::NEG_INFINITY, far: f64::INFINITY } }
     }
 }
 
 /// Depths of a box that is out of view.
 const OUT_OF_VIEW: DVec2 = DVec2::new(f64::MAX, f64::MIN);
 
-/// Computes the least and greatest depth of each receiver in one view.
-pub(super) fn view_depths(input: &Scene, receivers: &Boxes, groups: &Groups, view: &ViewFrustum, depths: &mut [DVec2]) {
+/// Computes the least and greatest depth of each listed receiver, view by view.
+pub(super) fn compute_depths(input: &Scene, groups: &Groups, depths: &mut [DVec2]) {
+    let Some(receivers) = &input.receivers else { return };
+    depths.fill(OUT_OF_VIEW);
+    for (view, depths) in input.views.iter().zip(depths.chunks_mut(receivers.boxes.len().max(1))) {
+        compute_depths_in(view, input, receivers, groups, depths);
+    }
+}
+
+/// Computes the depths in one view. Boxes that are out of view, or face away from the light, keep theirs.
+fn compute_depths_in(view: &ViewFrustum, input: &Scene, receivers: &Boxes, groups: &Groups, depths: &mut [DVec2]) {
     let origin = input.views[0].origin;
     let (eye, offset) = (view.origin - receivers.origin, receivers.origin - origin);
     let view = View::new(view, origin);
     let to_light = -input.direction.as_dvec3();
-    depths.fill(OUT_OF_VIEW);
     for (run, min, max) in groups.runs() {
         if view.depths(min, max).is_none() {
             continue;
@@ -46,7 +53,7 @@ pub(super) fn view_depths(input: &Scene, receivers: &Boxes, groups: &Groups, vie
                 continue;
             }
             let (min, max) = moved(aabb, offset);
-            let Some((near, far)) = view.depths(min, max) else { continue };
+            let Some(Depths { near, far }) = view.depths(min, max) else { continue };
             let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
             if !input.receiver_cones.get(i).is_some_and(faces_away) {
                 depths[i] = DVec2::new(near, far);

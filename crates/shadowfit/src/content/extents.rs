@@ -7,18 +7,18 @@ use super::boxes::Bounds;
 use super::views::ViewPart;
 use super::visit::{Found, Query, Visit};
 use crate::light::LightAxes;
-use crate::view::{Range, Slice};
+use crate::view::{Depths, Range, Slice};
 
 impl Content<'_> {
     /// Returns the least and greatest view depth of the lit receivers in view, if there are any.
-    pub(crate) fn depth_range(&self) -> Option<(f64, f64)> {
+    pub(crate) fn depth_range(&self) -> Option<Depths> {
         let (mut near, mut far) = (None, None);
         for part in self.whole_views() {
             let mut seen = SeenDepths { part: &part, whole: part.slice(), near, far };
             self.visit(Query::Lit(&part), &mut seen);
             (near, far) = (seen.near, seen.far);
         }
-        near.zip(far).filter(|(near, far)| near < far)
+        near.zip(far).map(|(near, far)| Depths { near, far }).filter(|depths| depths.near < depths.far)
     }
 
     /// Returns the greatest distance of any receiver from an eye, in view or not: no turn of the camera makes a view
@@ -79,16 +79,16 @@ struct SeenDepths<'p> {
 
 impl Visit for SeenDepths<'_> {
     fn wants(&self, bounds: &Bounds) -> bool {
-        self.near.is_none_or(|near| bounds.near < near)
-            || self.far.is_none_or(|far| bounds.far.min(self.part.far) > far)
+        self.near.is_none_or(|near| bounds.depths.near < near)
+            || self.far.is_none_or(|far| bounds.depths.far.min(self.part.far) > far)
     }
 
     fn take(&mut self, Found { bounds, .. }: &Found) {
         let (view, nearest) = (&self.part.view, &mut self.near);
-        let far = bounds.far.min(view.far);
+        let far = bounds.depths.far.min(view.far);
         self.far = Some(self.far.map_or(far, |known| known.max(far)));
         // The part of a box that is in view may begin much farther out than the box.
-        if nearest.is_none_or(|near| bounds.near < near) {
+        if nearest.is_none_or(|near| bounds.depths.near < near) {
             self.whole.clip(bounds.min, bounds.max, &mut |p| {
                 let near = view.depth.distance(p).max(view.near);
                 *nearest = Some(nearest.map_or(near, |known| known.min(near)));
@@ -132,8 +132,8 @@ struct FarthestSeen {
 
 impl Visit for FarthestSeen {
     fn wants(&self, bounds: &Bounds) -> bool {
-        bounds.near <= self.far
-            && bounds.far >= self.near
+        bounds.depths.near <= self.far
+            && bounds.depths.far >= self.near
             && farthest_corner_squared(bounds.min, bounds.max) > self.squared
     }
 

@@ -24,7 +24,7 @@ use crate::base::enclosing::{HullBuilder, SymmetricFrustum};
 use crate::base::{Boxes, FitError, moved};
 use crate::view::ViewFrustum;
 pub(crate) use boxes::Bounds;
-use boxes::{check, is_same, view_depths};
+use boxes::{check, compute_depths, is_same};
 use groups::Groups;
 use normal_cone::NormalCone;
 pub(crate) use standing::BoxTree;
@@ -76,10 +76,8 @@ impl<'a> Content<'a> {
         let [count, casters] = [input.receivers, input.casters].map(|boxes| boxes.map_or(0, |boxes| boxes.boxes.len()));
         let needed = count.saturating_mul(input.views.len());
         let grouped = [Groups::required(count), Groups::required(casters)];
-        let required = needed
-            .saturating_add(2 * 8 * input.views.len())
-            .saturating_add(HullBuilder::SLACK)
-            .saturating_add(grouped[0] + grouped[1]);
+        let points = (2 * 8 * input.views.len()).saturating_add(HullBuilder::SLACK);
+        let required = needed.saturating_add(points).saturating_add(grouped[0] + grouped[1]);
         if storage.len() < required {
             return Err(FitError::ScratchTooSmall { given: storage.len(), required });
         }
@@ -95,11 +93,7 @@ impl<'a> Content<'a> {
         };
         let receiver_groups = groups(input.receivers, of_receivers);
         let caster_groups = if is_same { receiver_groups } else { groups(input.casters, of_casters) };
-        if let Some(receivers) = &input.receivers {
-            for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
-                view_depths(&input, receivers, &receiver_groups, view, depths);
-            }
-        }
+        compute_depths(&input, &receiver_groups, depths);
         let content = Content {
             receivers: input.receivers,
             casters: input.casters,

@@ -6,7 +6,7 @@ use super::Content;
 use super::boxes::Bounds;
 use crate::base::FitError;
 use crate::base::enclosing::{EnclosingSphere, SymmetricFrustum, minimal};
-use crate::view::{Range, Slice, View, slice_corners};
+use crate::view::{Depths, Range, Slice, View, slice_corners};
 
 /// Most views that share a stable map.
 pub(crate) const MAX_SPHERE_VIEWS: usize = 8;
@@ -29,14 +29,14 @@ impl ViewPart {
 
     /// Returns the bounds of a box that may reach into the part.
     #[inline]
-    pub(super) fn bounds(&self, (min, max): (DVec3, DVec3)) -> Option<Bounds> {
-        self.view.depths(min, max).and_then(|depths| self.bounds_at((min, max), depths))
+    pub(super) fn bounds(&self, min: DVec3, max: DVec3) -> Option<Bounds> {
+        self.view.depths(min, max).and_then(|depths| self.bounds_at(min, max, depths))
     }
 
     /// Returns the bounds of a box with known view depths, if it may reach into the part.
     #[inline]
-    pub(super) fn bounds_at(&self, (min, max): (DVec3, DVec3), (near, far): (f64, f64)) -> Option<Bounds> {
-        (near <= self.far && far >= self.near).then_some(Bounds { min, max, near, far })
+    pub(super) fn bounds_at(&self, min: DVec3, max: DVec3, depths: Depths) -> Option<Bounds> {
+        (depths.near <= self.far && depths.far >= self.near).then_some(Bounds { min, max, depths })
     }
 }
 

@@ -4,14 +4,14 @@
 //! [runs](super::groups) of neighbours, the tree has nodes. A visitor first sees the bounds of a run or node and skips
 //! all boxes in it if none of them can change its result.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Content;
 use super::boxes::{Bounds, scattered};
 use super::groups::Groups;
 use super::views::ViewPart;
 use crate::base::{Aabb, Boxes, moved};
-use crate::view::{Range, Slice};
+use crate::view::{Depths, Range, Slice};
 
 /// The boxes that are asked for.
 #[derive(Clone, Copy)]
@@ -88,7 +88,7 @@ impl<'a> Content<'a> {
     /// Passes the boxes of a query to a visitor: first those of the list, then those of the tree.
     #[inline]
     pub(crate) fn visit(&self, query: Query, visitor: &mut impl Visit) {
-        let anywhere = |_: usize, corners| Some(Bounds::anywhere(corners));
+        let anywhere = |_: usize, min, max| Some(Bounds::anywhere(min, max));
         match query {
             Query::Casters => {
                 self.visit_list(self.casters, &self.caster_groups, anywhere, visitor);
@@ -100,22 +100,21 @@ impl<'a> Content<'a> {
             }
             Query::Standing => self.visit_tree(None, visitor),
             Query::Visible(part) => {
-                let in_part = |_: usize, corners| part.bounds(corners);
+                let in_part = |_: usize, min, max| part.bounds(min, max);
                 self.visit_list(self.receivers, &self.receiver_groups, in_part, visitor);
                 self.visit_tree_in(part, visitor);
             }
             Query::Lit(part) => {
                 let depths = self.depths_in(part.index);
-                let in_part = |i: usize, corners| part.bounds_at(corners, (depths[i].x, depths[i].y));
+                let in_part = |i: usize, min, max| part.bounds_at(min, max, depths_of(depths[i]));
                 self.visit_list(self.receivers, &self.receiver_groups, in_part, visitor);
                 self.visit_tree_in(part, visitor);
             }
             Query::Scattered(part) => {
                 let depths = self.depths_in(part.index);
                 for index in scattered(depths.len()) {
-                    let corners = self.receiver(index);
-                    let bounds = corners.and_then(|c| part.bounds_at(c, (depths[index].x, depths[index].y)));
-                    if let Some(bounds) = bounds {
+                    let bounds = |(min, max)| part.bounds_at(min, max, depths_of(depths[index]));
+                    if let Some(bounds) = self.receiver(index).and_then(bounds) {
                         visitor.take(&Found { bounds, index });
                     }
                 }
@@ -133,23 +132,24 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// Passes the boxes of a list to a visitor: those for which `bounds` gives some, by index and corners.
+    /// Passes the boxes of a list to a visitor: those for which `bounds` gives some, by their indices and corners.
     #[inline]
     fn visit_list(
         &self,
         list: Option<Boxes<'a>>,
         groups: &Groups<'a>,
-        bounds: impl Fn(usize, (DVec3, DVec3)) -> Option<Bounds>,
+        bounds: impl Fn(usize, DVec3, DVec3) -> Option<Bounds>,
         visitor: &mut impl Visit,
     ) {
         let Some(list) = list else { return };
         let offset = list.origin - self.origin;
         for (run, min, max) in groups.runs() {
-            if !visitor.wants(&Bounds::anywhere((min, max))) {
+            if !visitor.wants(&Bounds::anywhere(min, max)) {
                 continue;
             }
             for index in run.filter(|index| !list.boxes[*index].is_empty()) {
-                if let Some(bounds) = bounds(index, moved(&list.boxes[index], offset)) {
+                let (min, max) = moved(&list.boxes[index], offset);
+                if let Some(bounds) = bounds(index, min, max) {
                     visitor.take(&Found { bounds, index });
                 }
             }
@@ -161,7 +161,10 @@ impl<'a> Content<'a> {
     fn visit_tree<V: Visit>(&self, list: Option<Boxes<'a>>, visitor: &mut V) {
         let Some(tree) = self.standing else { return };
         let (offset, listed) = (tree.origin() - self.origin, list.map_or(0, |list| list.boxes.len()));
-        let bounds = |aabb: &Aabb| Bounds::anywhere(moved(aabb, offset));
+        let bounds = |aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            Bounds::anywhere(min, max)
+        };
         let enter = |visitor: &mut V, (), aabb: &Aabb| visitor.wants(&bounds(aabb)).then_some(());
         tree.visit((), visitor, enter, |visitor, (), number, aabb| {
             visitor.take(&Found { bounds: bounds(aabb), index: listed + number as usize });
@@ -173,12 +176,23 @@ impl<'a> Content<'a> {
     fn visit_tree_in<V: Visit>(&self, part: &ViewPart, visitor: &mut V) {
         let Some(tree) = self.standing else { return };
         let (offset, listed) = (tree.origin() - self.origin, self.listed());
-        let depths = |aabb: &Aabb| part.bounds(moved(aabb, offset)).map(|bounds| (bounds.near, bounds.far));
-        let bounds =
-            |(near, far): (f64, f64), aabb: &Aabb| Bounds { near, far, ..Bounds::anywhere(moved(aabb, offset)) };
-        let enter = |visitor: &V, depths, aabb: &Aabb| visitor.wants(&bounds(depths, aabb));
-        tree.visit_nearest(visitor, depths, enter, |visitor, depths, number, aabb| {
-            visitor.take(&Found { bounds: bounds(depths, aabb), index: listed + number as usize });
+        let distances = |aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            part.bounds(min, max).map(|bounds| (bounds.depths.near, bounds.depths.far))
+        };
+        let bounds = |(near, far): (f64, f64), aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            Bounds { min, max, depths: Depths { near, far } }
+        };
+        let enter = |visitor: &V, distances, aabb: &Aabb| visitor.wants(&bounds(distances, aabb));
+        tree.visit_nearest(visitor, distances, enter, |visitor, distances, number, aabb| {
+            visitor.take(&Found { bounds: bounds(distances, aabb), index: listed + number as usize });
         });
     }
+}
+
+/// View depths of a listed receiver as they are stored.
+#[inline]
+fn depths_of(stored: DVec2) -> Depths {
+    Depths { near: stored.x, far: stored.y }
 }

@@ -193,25 +193,17 @@ pub fn prove(
     scratch: &mut Scratch,
 ) -> Result<CoverageProof, FitError> {
     let range = query.checked()?;
-    if input.views.is_empty() {
-        return Err(FitError::NoView);
-    }
-    for view in input.views {
-        view.checked()?;
-    }
-    checks::unit("the light's direction", input.direction)?;
-    checks::point("the fit's origin", fit.origin)?;
+    check(input, fit)?;
     let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
     let (content, points) = Content::new(input.scene(), scratch.storage)?;
     let offset = content.origin - fit.origin;
-    let mut receivers = Worst::new(&half_spaces, offset);
-    receivers.add_all(&content, range);
+    let receivers = Worst::of(&content, range, &half_spaces, offset);
     if let Some(proof) = receivers.failure(fit) {
         return Ok(proof);
     }
-    let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     let is_read = if query.is_shared { !fit.is_empty } else { receivers.any.is_some() };
+    let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     if is_read && content.has_casters() && query.casters != CasterPolicy::DepthClamp {
         let map = whole_map(fit, &axes, offset);
         let over = if query.is_shared {
@@ -233,6 +225,19 @@ pub fn prove(
         }
     }
     Ok(CoverageProof::Proven(margins))
+}
+
+/// Refuses an input or a fit that no proof can use.
+fn check(input: &FitInput, fit: &LightProjection) -> Result<(), FitError> {
+    if input.views.is_empty() {
+        return Err(FitError::NoView);
+    }
+    for view in input.views {
+        view.checked()?;
+    }
+    checks::unit("the light's direction", input.direction)?;
+    checks::point("the fit's origin", fit.origin)?;
+    Ok(())
 }
 
 /// All of a map.
@@ -330,17 +335,15 @@ struct Worst<'a> {
 }
 
 impl<'a> Worst<'a> {
-    fn new(half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
-        Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None }
-    }
-
-    /// Adds everything that the views see between two depths.
-    fn add_all(&mut self, content: &Content, range: Range) {
-        if !content.knows_receivers() {
-            content.corners(range).for_each(|corner| self.take(corner));
-            return;
+    /// Finds them among everything that the views see between two depths.
+    fn of(content: &Content, range: Range, half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
+        let mut worst = Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None };
+        if content.knows_receivers() {
+            content.visit_corners(range, &mut worst);
+        } else {
+            content.corners(range).for_each(|corner| worst.take(corner));
         }
-        content.visit_corners(range, self);
+        worst
     }
 
     /// Whether a point has less margin at some plane than all before it.

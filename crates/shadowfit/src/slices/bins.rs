@@ -172,7 +172,7 @@ pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, rays: RayCount) -
 }
 
 /// Room for the rounding of shares of a ray.
-const ROUNDING: f64 = 1e-9;
+const RAY_ROUNDING: f64 = 1e-9;
 
 /// Marks the absence of a bin.
 const NOWHERE: u8 = u8::MAX;
@@ -198,7 +198,7 @@ impl Ray {
     }
 
     /// Adds a box that it enters and leaves at these shares.
-    fn add(&mut self, (mut enter, leave): (f64, f64), bin: impl Fn(f64) -> u8) {
+    fn add(&mut self, mut enter: f64, leave: f64, bin: impl Fn(f64) -> u8) {
         if enter <= 0.0 {
             // The farther of two ends; there is none yet at first.
             let leave = bin(leave);
@@ -298,24 +298,24 @@ impl Visit for Grid<'_> {
     fn wants(&self, bounds: &Bounds) -> bool {
         let covered = covered(self.view, &self.picture, self.count, bounds.min, bounds.max);
         let Some((columns, rows)) = covered else { return false };
-        let nearest = (bounds.near - self.near) / self.depth - ROUNDING;
+        let nearest = (bounds.depths.near - self.near) / self.depth - RAY_ROUNDING;
         let mut rays = rows.flat_map(|row| &self.rays[row * self.count.columns..][columns.clone()]);
         rays.any(|ray| nearest < ray.enters[LAYERS - 1])
     }
 
     /// Intersects all rays with a box.
-    fn take(&mut self, Found { bounds: Bounds { min, max, near, .. }, .. }: &Found) {
+    fn take(&mut self, Found { bounds: Bounds { min, max, depths }, .. }: &Found) {
         let covered = covered(self.view, &self.picture, self.count, *min, *max);
         let Some((columns, rows)) = covered else { return };
         let bin = |t: f64| self.bins.of(self.near + self.depth * t) as u8;
         // Shares of a ray are those of the view depth.
-        let nearest = (near - self.near) / self.depth - ROUNDING;
+        let nearest = (depths.near - self.near) / self.depth - RAY_ROUNDING;
         for row in rows {
             for ray in &mut self.rays[row * self.count.columns..][columns.clone()] {
                 if nearest < ray.enters[LAYERS - 1]
-                    && let Some(crossing) = crossing(ray.start, ray.along, *min, *max)
+                    && let Some((enter, leave)) = crossing(ray.start, ray.along, *min, *max)
                 {
-                    ray.add(crossing, bin);
+                    ray.add(enter, leave, bin);
                 }
             }
         }

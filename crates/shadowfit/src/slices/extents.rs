@@ -25,7 +25,7 @@ use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::fits::{Covers, FitRule};
 use crate::light::{LightAxes, grid};
 use crate::technique::settings::RectangleKind;
-use crate::view::{EDGES, Plane, Range, View, at, clip_to_box, inner_part};
+use crate::view::{Depths, EDGES, Plane, Range, View, at, clip_to_box, inner_part};
 
 /// Directions over half a turn; a rectangle's other side is along the direction a quarter turn
 /// further on.
@@ -143,12 +143,12 @@ struct Collector<'a> {
 impl Visit for Collector<'_> {
     fn wants(&self, bounds: &Bounds) -> bool {
         let (low, high) = self.directions.extent(bounds.min, bounds.max, HIERARCHY);
-        self.slabs.reached((bounds.near, bounds.far)).any(|bin| !self.extents[bin].holds(&low, &high))
+        self.slabs.reached(bounds.depths).any(|bin| !self.extents[bin].holds(&low, &high))
     }
 
     fn take(&mut self, Found { bounds, .. }: &Found) {
         let Self { extents, slabs, directions } = self;
-        let reached = slabs.reached((bounds.near, bounds.far));
+        let reached = slabs.reached(bounds.depths);
         let (low, high) = directions.extent(bounds.min, bounds.max, 0.0);
         // Bins whose extent the box cannot widen, the first at 1.
         let mut is_held = [true; BINS + 2];
@@ -320,7 +320,7 @@ impl Slabs {
     }
 
     /// The bins that a range of view depths may reach into.
-    pub(super) fn reached(&self, (near, far): (f64, f64)) -> ops::Range<usize> {
+    pub(super) fn reached(&self, Depths { near, far }: Depths) -> ops::Range<usize> {
         let first = self.depths[1..].partition_point(|plane| *plane < near);
         let end = self.depths[..BINS].partition_point(|plane| *plane <= far);
         first.max(self.filled.start)..end.min(self.filled.end)

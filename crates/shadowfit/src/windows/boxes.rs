@@ -32,6 +32,20 @@ struct Layer {
 
 const NOTHING: Layer = Layer { enter: f32::MAX, leave: f32::MAX, index: u32::MAX };
 
+/// A ray from its start to its end, in metres relative to the fit's origin.
+#[derive(Clone, Copy)]
+struct Line {
+    start: DVec3,
+    along: DVec3,
+}
+
+/// The surfaces in a box.
+struct Surface {
+    cone: NormalCone,
+    /// Middle of the box.
+    middle: DVec3,
+}
+
 /// A ray's boxes: the nearest, and the one that it begins in and leaves last.
 #[derive(Clone, Copy)]
 struct Ray {
@@ -58,8 +72,9 @@ pub(super) fn add(cells: &mut Cells, frame: &Frame, plane: &Plane) {
             let mut count = |layer: &Layer, weight: f32| {
                 let index = layer.index as usize;
                 let cone = input.receiver_cones.get(index).copied().unwrap_or(NormalCone::ALL);
-                let Some(bounds) = content.receiver(index) else { return 0.0 };
-                picture.look(line, layer, (&cone, bounds), |point, texel, share| {
+                let Some((min, max)) = content.receiver(index) else { return 0.0 };
+                let surface = Surface { cone, middle: (min + max) * 0.5 };
+                picture.look(&line, layer, &surface, |point, texel, share| {
                     let place = plane.of(plane.axes.project(point - offset)).as_vec2();
                     if let Some(cell) = space.cell_of(place, texel as f32) {
                         counted.add(cell, weight * share);
@@ -99,24 +114,19 @@ impl<'a> Picture<'a> {
         Self { plane, whole, right, down, pixels }
     }
 
-    /// Start and end of a ray.
-    fn ray(&self, column: usize, row: usize) -> (DVec3, DVec3) {
+    /// A ray from the near to the far rectangle.
+    fn ray(&self, column: usize, row: usize) -> Line {
         let (x, y) = ((column as f64 + 0.5) / RAYS.columns as f64, (row as f64 + 0.5) / RAYS.rows as f64);
         let c = &self.whole.corners;
         let at = |i: usize| (c[i] * (1.0 - x) + c[i + 1] * x) * (1.0 - y) + (c[i + 3] * (1.0 - x) + c[i + 2] * x) * y;
-        (at(0), at(4))
+        let start = at(0);
+        Line { start, along: at(4) - start }
     }
 
     /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share; returns
     /// the share of the ray that ends there.
-    fn look(
-        &self,
-        (start, end): (DVec3, DVec3),
-        layer: &Layer,
-        (cone, (min, max)): (&NormalCone, (DVec3, DVec3)),
-        mut emit: impl FnMut(DVec3, f64, f32),
-    ) -> f32 {
-        let along = end - start;
+    fn look(&self, line: &Line, layer: &Layer, surface: &Surface, mut emit: impl FnMut(DVec3, f64, f32)) -> f32 {
+        let (Line { start, along }, Surface { cone, middle }) = (*line, surface);
         let (enter, leave) = (f64::from(layer.enter), f64::from(layer.leave));
         let pixel = |t: f64| self.pixels[0] + (self.pixels[1] - self.pixels[0]) * t;
         if cone.cos_half_angle <= FLAT {
@@ -128,7 +138,7 @@ impl<'a> Picture<'a> {
         }
         let normal = cone.axis.as_dvec3();
         let across = normal.dot(along);
-        let t = normal.dot((min + max) * 0.5 - start) / across;
+        let t = normal.dot(*middle - start) / across;
         // A ray along the surface meets it nowhere.
         let met = if t >= enter && t <= leave { MET } else { BESIDE };
         let is_lit = normal.dot(self.plane.axes.z.as_dvec3()) * -across > 0.0;
@@ -166,7 +176,8 @@ impl Visit for Rays<'_> {
         let view = self.view;
         let covered = covered(view, &self.positions, RAYS, bounds.min, bounds.max);
         let Some((columns, rows)) = covered else { return false };
-        let nearest = (bounds.near - view.near) / (view.far - view.near) * (1.0 - ROUNDING) - ROUNDING;
+        let nearest =
+            (bounds.depths.near - view.near) / (view.far - view.near) * (1.0 - SHARE_ROUNDING) - SHARE_ROUNDING;
         let mut rays = rows.flat_map(|row| &self.all[row * RAYS.columns..][columns.clone()]);
         nearest <= 0.0 || rays.any(|ray| nearest < f64::from(ray.layers[LAYERS - 1].enter))
     }
@@ -176,8 +187,8 @@ impl Visit for Rays<'_> {
         let Some((columns, rows)) = covered(self.view, &self.positions, RAYS, *min, *max) else { return };
         for row in rows {
             for column in columns.clone() {
-                let (start, end) = self.picture.ray(column, row);
-                let Some((enter, leave)) = crossing(start, end - start, *min, *max) else { continue };
+                let Line { start, along } = self.picture.ray(column, row);
+                let Some((enter, leave)) = crossing(start, along, *min, *max) else { continue };
                 let mut layer = Layer { enter: enter as f32, leave: leave as f32, index: *index as u32 };
                 let ray = &mut self.all[row * RAYS.columns + column];
                 if enter <= 0.0 {
@@ -197,7 +208,7 @@ impl Visit for Rays<'_> {
 }
 
 /// Rounding of shares of a ray to f32, and of view depths to such shares.
-const ROUNDING: f64 = 1e-6;
+const SHARE_ROUNDING: f64 = 1e-6;
 
 /// Share of the points with the finest demands. They count as no finer than the others, since estimates from boxes find
 /// too many near the eye.
