@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 
 /// Screen pixels that one shadow texel covers on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,15 +7,15 @@ use crate::base::{FitError, checks};
 use crate::bias::Bias;
 use crate::content::Content;
 use crate::demand::histogram::DepthBounds;
-use crate::fits::{
-    self, FitInput, FitRule, Frame, LightProjection, Place, PlacedMap, PlacedMaps, Scratch, check_least_texel,
-};
+use crate::fits::{self, FitRule, Frame, MapUse, PlacedMap, PlacedMaps, check_least_texel};
+use crate::input::{FitInput, Scratch};
 use crate::light::Light;
 use crate::light::grid::GridAnchor;
 use crate::map::{FittedMap, FittedMaps, PlacedBy};
+use crate::projection::LightProjection;
 use crate::slices::{self, HeldSlices};
 use crate::technique::settings::{BiasSettings, CasterPolicy, FitSettings};
-use crate::technique::{Maps, Slices, Technique, Windows};
+use crate::technique::{Maps, Technique, Windows};
 use crate::view::{Range, ViewFrustum};
 use crate::windows::{self, HeldWindows};
 
@@ -131,18 +131,18 @@ impl FitState {
 
 /// Places the maps of a frame as windows or as slices of the view.
 fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError> {
-    const WINDOWS: Place<Windows, HeldWindows> = windows::place;
-    const SLICES: Place<Slices, HeldSlices> = slices::place;
     let windows = before.and_then(|held| if let Held::Windows(held) = held { Some(held) } else { None });
     let slices = before.and_then(|held| if let Held::Slices(held) = held { Some(held) } else { None });
     match &frame.technique.maps {
         Maps::Windows(settings) => {
-            WINDOWS(frame, settings, windows, points).map(|(maps, held)| (maps, Held::Windows(held)))
+            windows::place(frame, settings, windows, points).map(|(maps, held)| (maps, Held::Windows(held)))
         }
         Maps::Slices(settings) => {
-            SLICES(frame, settings, slices, points).map(|(maps, held)| (maps, Held::Slices(held)))
+            slices::place(frame, settings, slices, points).map(|(maps, held)| (maps, Held::Slices(held)))
         }
-        Maps::One(one) => SLICES(frame, &one.slice(), slices, points).map(|(maps, held)| (maps, Held::Slices(held))),
+        Maps::One(one) => {
+            slices::place(frame, &one.slice(), slices, points).map(|(maps, held)| (maps, Held::Slices(held)))
+        }
     }
 }
 
@@ -242,9 +242,8 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), Fi
     }
     let shape = technique.maps.shape().unwrap_or(Windows::WHOLE);
     let settings = FitSettings { shape, map: technique.fit.with_least_texel(technique.least_texel()) };
-    let (mut rule, light) = fits::prepare(input, &settings, technique.border())?;
-    rule.serves_all = technique.shares_maps() && rule.can_be_held();
-    Ok((rule, light))
+    let map = MapUse { border: technique.border(), is_shared: technique.shares_maps() };
+    fits::prepare(input, &settings, map)
 }
 
 /// Checks the numbers of a technique that are not those of its fit, and what does not go together.

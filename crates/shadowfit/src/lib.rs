@@ -177,21 +177,24 @@ mod view {
     pub use frustum::ViewFrustum;
     pub use lens::{Camera, Lens};
     pub(crate) use slice::{
-        EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
+        Depths, EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
         slice_corners,
     };
 }
 
-/// The light: its axes, the texel lines across it, and what lies over an outline toward it.
+/// The light: its axes, boxes along them, the texel lines across it, and parts of boxes over an outline toward it.
 mod light {
     mod axes;
     mod column;
     pub(crate) mod grid;
     mod outline;
+    mod volume;
 
     pub(crate) use axes::{Light, LightAxes, Roll, is_same_direction, is_vertical};
     pub(crate) use column::Column;
     pub(crate) use outline::{Outline, OutlineScratch};
+    pub use volume::Constraint;
+    pub(crate) use volume::Volume;
 }
 
 mod content;
@@ -212,6 +215,10 @@ pub mod demand {
     #[cfg(feature = "alloc")]
     pub use seen::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
 }
+
+mod input;
+
+mod projection;
 
 mod fits;
 
@@ -253,12 +260,14 @@ pub use content::tree::{BoxChange, BoxRevision, BoxTree};
 pub use culling::CasterVolume;
 #[cfg(feature = "alloc")]
 pub use demand::Seen;
-pub use fits::light_fit::WorldMatrices;
-pub use fits::{Constraint, FitInput, LightProjection, Scratch, fit, fit_scene};
+pub use fits::{fit, fit_scene};
 pub use fitter::{FitState, fewest_maps};
 pub use glam;
+pub use input::{FitInput, Scratch};
 pub use keep::{light_steps, scroll};
+pub use light::Constraint;
 pub use map::{FittedMap, FittedMaps, PlacedBy};
+pub use projection::{LightProjection, WorldMatrices};
 #[cfg(feature = "alloc")]
 pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};

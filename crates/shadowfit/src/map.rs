@@ -5,8 +5,8 @@ use core::ops::Deref;
 use glam::{DVec3, UVec2};
 
 use crate::bias::{Bias, rounding};
-use crate::fits::LightProjection;
 use crate::light::grid::GridAnchor;
+use crate::projection::LightProjection;
 use crate::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use crate::technique::Technique;
 use crate::technique::settings::{MAX_MAPS, MapSelection};

@@ -33,7 +33,7 @@ use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 
 use crate::base::{Aabb, DepthConvention, FitError};
 use crate::culling::{OrientedBox, Sphere};
-use crate::fits::light_fit::WorldMatrices;
+use crate::projection::WorldMatrices;
 use crate::view::ViewFrustum;
 
 /// A direction or position as this crate takes it, in its own unit.

@@ -17,7 +17,7 @@
 //!   └──────────────────────────┘
 //! ```
 
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 use crate::technique::Technique;
 use crate::technique::settings::{FilterKind, MAX_MAPS, MapSelection, Softness};
 

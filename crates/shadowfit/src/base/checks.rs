@@ -98,7 +98,7 @@ pub(crate) const ROUNDING: f64 = 28.0 * UNIT;
 
 /// Rounding of a view depth in a shader, as a share of it: nine times [`UNIT`] of a point's distance, which in the
 /// corner of a wide view is up to seven times its depth.
-pub(crate) const VIEW_DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
+pub(crate) const VIEW_DEPTH_ROUNDING: f32 = 64.0 * UNIT as f32;
 
 /// Extents below this share of a map's longer side, or of its distance from the origin, are widened
 /// to it: a flat wall seen edge-on from the light has no width, but a matrix needs one.

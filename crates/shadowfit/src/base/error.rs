@@ -150,20 +150,9 @@ impl fmt::Display for FitError {
             Self::UnusablePlane { plane, why } => write!(f, "the camera's matrix has no usable {plane}: {why}"),
             Self::Endless => f.write_str(ENDLESS),
             Self::OtherDepth { named, is_reversed } => write_depth(f, named, is_reversed),
-            Self::EmptyFrustum { size } => write!(
-                f,
-                "the frustum is empty: its box is {} m; check the field of view, the aspect \
-                 ratio and the corners",
-                Numbers(size)
-            ),
-            Self::NearNotBelowFar { near, far } => write!(
-                f,
-                "near {} m is not below far {} m; raise the far plane or the maximum \
-                 shadow distance, or lower the near plane",
-                Number(f64::from(near)),
-                Number(f64::from(far))
-            ),
-            Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
+            Self::EmptyFrustum { size } => write_empty(f, size),
+            Self::NearNotBelowFar { near, far } => write_near(f, near, far),
+            Self::NoView => f.write_str("there is no view to fit to; give at least one frustum"),
             Self::ScratchTooSmall { given, required } => {
                 write!(f, "the scratch memory has {given} elements and needs {required}; see Scratch::required")
             }
@@ -173,16 +162,10 @@ impl fmt::Display for FitError {
             Self::NotOrthographic { why } => {
                 write!(f, "the matrix is not an orthographic view-projection of this light: {why}")
             }
-            Self::NotOnGrid => f.write_str(
-                "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere",
-            ),
+            Self::NotOnGrid => f.write_str(NOT_ON_GRID),
             Self::ClampedCasters => f.write_str(CLAMPED),
-            Self::ZeroResolution { resolution } => {
-                write!(
-                    f,
-                    "the map's resolution is {} × {}; give at least one texel each way",
-                    resolution.x, resolution.y
-                )
+            Self::ZeroResolution { resolution: UVec2 { x, y } } => {
+                write!(f, "the map's resolution is {x} × {y}; give at least one texel each way")
             }
         }
     }
@@ -190,6 +173,26 @@ impl fmt::Display for FitError {
 
 const CLAMPED: &str = "the filter Pcss, and any soft one whose edges are traced, needs the distance of each caster, which \
                        depth clamp loses; choose another caster policy, such as PerObject, or another filter";
+
+const NOT_ON_GRID: &str =
+    "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere";
+
+fn write_empty(f: &mut fmt::Formatter<'_>, size: Vec3) -> fmt::Result {
+    write!(
+        f,
+        "the frustum is empty: its box is {} m; check the field of view, the aspect ratio and the corners",
+        Numbers(size)
+    )
+}
+
+fn write_near(f: &mut fmt::Formatter<'_>, near: f32, far: f32) -> fmt::Result {
+    let [near, far] = [near, far].map(|depth| Number(f64::from(depth)));
+    write!(
+        f,
+        "near {near} m is not below far {far} m; raise the far plane or the maximum shadow distance, or lower the near \
+         plane"
+    )
+}
 
 fn write_singular(f: &mut fmt::Formatter<'_>, corner: usize, w: f64) -> fmt::Result {
     let plane = if corner < 4 { "near" } else { "far" };

@@ -37,7 +37,7 @@ pub use self::reach::Reach;
 pub(crate) use self::reach::{HARDWARE_SNAP, rounding};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 use crate::technique::settings::{BiasSettings, FilterKind, Softness};
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
@@ -82,7 +82,7 @@ pub const MIN_COSINE: f32 = 0.005;
 const SPARE_TEXELS: f32 = 1.0 / 32.0;
 
 /// Error of the square of a sine that a shader computes from an f32 cosine: four roundings of 2⁻²⁴.
-pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 / 16_777_216.0;
+pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 * checks::UNIT;
 
 /// Greatest error of the sine itself, reached where that error is as large as the square: its root,
 /// 2⁻¹¹, rounded up.

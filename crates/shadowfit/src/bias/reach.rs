@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use crate::base::checks::UNIT;
 use crate::base::{FitError, checks};
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 use crate::technique::Technique;
 use crate::technique::settings::{FilterKind, Softness};
 

@@ -67,7 +67,7 @@ impl NormalCone {
         // a difference of numbers up to |v| + `reach`, and of the products.
         let is_before = |v: DVec3, reach: f64| {
             let along = axis.dot(v);
-            cos * along - sin * length(v - axis * along) > ROUNDING * (length(v) + reach)
+            cos * along - sin * length(v - axis * along) > CONE_ROUNDING * (length(v) + reach)
         };
         let reach = length(eye);
         let corner = |i: usize| {
@@ -82,7 +82,7 @@ impl NormalCone {
 }
 
 /// Products below this share of their factors' lengths count as zero: a few steps of f64.
-const ROUNDING: f64 = 1e-14;
+const CONE_ROUNDING: f64 = 1e-14;
 
 #[cfg(test)]
 mod tests {

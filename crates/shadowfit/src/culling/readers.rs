@@ -8,11 +8,11 @@ use glam::{DVec2, DVec3, DVec4, Vec3};
 
 use super::sweep::Sweep;
 use super::volume::CasterVolume;
-use crate::base::checks::VIEW_DEPTH_ROUNDING;
+use crate::base::checks::{UNIT, VIEW_DEPTH_ROUNDING};
 use crate::base::{FitError, checks};
 use crate::bias::{MIN_COSINE, Reach};
-use crate::fits::LightProjection;
 use crate::map::{FittedMap, FittedMaps};
+use crate::projection::LightProjection;
 use crate::selection::{MapOrder, MapReading};
 use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapSelection};
@@ -38,7 +38,7 @@ impl Reader {
 
 /// Greatest rounding error of texture coordinates in a shader, as a share of the terms that they are summed from:
 /// eight roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
-const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
+const UV_ROUNDING: f64 = 8.0 * UNIT;
 
 impl FittedMaps {
     /// The casters of each map: those that can cast a shadow, through this map, on what `views` see, relative to the
@@ -122,7 +122,7 @@ pub fn caster_volumes(
         MapSelection::Coverage { .. } => {
             let from = read_by_coverage(maps, reader, views, reading);
             for ((map, near), volume) in maps.iter().zip(from).zip(volumes) {
-                let read = near.map(|near| Slice { near, far: f32::MAX });
+                let read = near.map(|near| DepthSpan { near, ..DepthSpan::ALL });
                 *volume = swept(map, read, views, reading)?;
             }
         }
@@ -141,13 +141,13 @@ pub fn caster_volumes(
 /// The casters of a map that the views read at these depths, if at any.
 fn swept(
     map: &FittedMap,
-    read: Option<Slice>,
+    read: Option<DepthSpan>,
     views: &[ViewFrustum],
     reading: &MapReading,
 ) -> Result<CasterVolume, FitError> {
     let reach = reading.softness.reach_in(reading.filter, &map.projection);
     let normal_offset = map.bias.normal_offset.abs();
-    let Slice { near, far } = read.unwrap_or(Slice { near: f32::MIN, far: f32::MAX });
+    let DepthSpan { near, far } = read.unwrap_or(DepthSpan::ALL);
     let volume = CasterVolume::swept(&map.projection, &Sweep { views, near, far, reach, normal_offset })?;
     Ok(if read.is_some() {
         lowered(volume, &map.projection, depth_below(map, reach))
@@ -156,11 +156,15 @@ fn swept(
     })
 }
 
-/// A range of view depths, in metres.
+/// The view depths at which points read a map, in metres.
 #[derive(Clone, Copy, Debug)]
-struct Slice {
+struct DepthSpan {
     near: f32,
     far: f32,
+}
+
+impl DepthSpan {
+    const ALL: Self = Self { near: f32::MIN, far: f32::MAX };
 }
 
 /// Finds which part of the views reads a map by view depth.
@@ -174,7 +178,7 @@ struct Readers<'a> {
 
 impl Readers<'_> {
     /// The view depths at which a point may read a map; `None` where none can.
-    fn read(&self, index: usize) -> Option<Slice> {
+    fn read(&self, index: usize) -> Option<DepthSpan> {
         let is_read_from = |from: &usize| {
             let slice = self.slice(*from);
             slice.near < slice.far && !(*from..index).any(|map| self.covers(map, slice))
@@ -182,13 +186,13 @@ impl Readers<'_> {
         let first = (0..=index).find(is_read_from)?;
         // Nearer points may be blended into it.
         let near = self.slice(first).near.min(self.maps[index].covered_near);
-        Some(Slice { near, far: self.end(index) })
+        Some(DepthSpan { near, far: self.end(index) })
     }
 
     /// The view depths whose points look into a map first.
-    fn slice(&self, index: usize) -> Slice {
+    fn slice(&self, index: usize) -> DepthSpan {
         let near = if index == 0 { f32::MIN } else { self.end(index - 1) };
-        Slice { near, far: self.end(index) }
+        DepthSpan { near, far: self.end(index) }
     }
 
     /// View depth at which a map ends.
@@ -197,45 +201,42 @@ impl Readers<'_> {
     }
 
     /// A slice, widened by the depths that rounding or another eye may move into it.
-    fn widened(&self, slice: Slice) -> Slice {
+    fn widened(&self, slice: DepthSpan) -> DepthSpan {
         let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * f64::from(VIEW_DEPTH_ROUNDING);
         let bounded = |depth: f64| depth.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
-        Slice {
+        DepthSpan {
             near: bounded(f64::from(slice.near) - beside(slice.near)),
             far: bounded(f64::from(slice.far) + beside(slice.far)),
         }
     }
 
     /// Whether a map provably holds everything that the views have in a slice, by a shader's test.
-    fn covers(&self, index: usize, slice: Slice) -> bool {
-        let Slice { near, far } = self.widened(slice);
+    fn covers(&self, index: usize, slice: DepthSpan) -> bool {
         let fit = self.maps[index].projection.relative_to(self.reader.origin);
-        holds_slice(&fit, self.reader, self.views, [near, far], 0.0)
+        holds_slice(&fit, self.reader, self.views, self.widened(slice), 0.0)
     }
 }
 
-/// Whether a map, relative to the reader's origin, provably holds everything that the views have between two view depths,
-/// with so many texels around it.
-fn holds_slice(
-    fit: &LightProjection,
-    reader: &Reader,
-    views: &[ViewFrustum],
-    [near, far]: [f32; 2],
-    free: f64,
-) -> bool {
-    let holds_part = |frustum: &ViewFrustum| {
+/// Returns whether a map, relative to the reader's origin, provably holds everything that the views have in a span of view
+/// depths, with `free` texels around it.
+///
+/// **Lemma.** A map holds a slice of a view if it holds the slice's eight corners with room for the greatest rounding at
+/// the corners. For a slice is the convex hull of its corners, and a map is a box, so that each side has the whole slice
+/// on its inner side if it has the corners there. The rounding of a point is bounded by a sum of absolute values of terms
+/// that are linear in the point. That is a convex function, so that no point of the slice has a greater bound than all
+/// corners. [Proofs](crate::proof) of coverage use the lemma for boxes that are clipped to slices.
+fn holds_slice(fit: &LightProjection, reader: &Reader, views: &[ViewFrustum], span: DepthSpan, free: f64) -> bool {
+    views.iter().all(|frustum| {
         let offset = frustum.origin - reader.origin;
+        let holds = |corner: &Vec3| holds_point(fit, corner.as_dvec3() + offset, free);
         // A view without a part between these depths has no point to be held.
-        frustum
-            .slice(near, far)
-            .map_or(true, |part| part.corners.iter().all(|corner| covers(fit, corner.as_dvec3() + offset, free)))
-    };
-    views.iter().all(holds_part)
+        frustum.slice(span.near, span.far).map_or(true, |part| part.corners.iter().all(holds))
+    })
 }
 
-/// Whether a map holds a point, relative to its origin, with so many texels around it, for any rounding in a shader.
-/// The map is convex, so that with the corners of a slice it holds the slice.
-fn covers(fit: &LightProjection, point: DVec3, free: f64) -> bool {
+/// Returns whether a map holds a point, relative to its origin, with `free` texels around it, for any rounding in a
+/// shader.
+fn holds_point(fit: &LightProjection, point: DVec3, free: f64) -> bool {
     let m = fit.uv_from_world.as_dmat4();
     let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);
     let uv: DVec3 = terms.iter().sum();
@@ -299,24 +300,32 @@ fn read_by_coverage(
 ) -> [Option<f32>; MAX_MAPS] {
     let free = f64::from(reading.softness.reach(reading.filter) + reading.selection.blend());
     let mut from = [None; MAX_MAPS];
-    // Up to where the finer maps hold all.
-    let mut held = f32::MIN;
+    let mut held = Held::To(f32::MIN);
     for index in MapOrder::new(reading.selection, maps.iter().map(|map| &map.projection)).iter() {
-        from[index] = (held < f32::MAX).then_some((held - held.abs() * VIEW_DEPTH_ROUNDING).max(f32::MIN));
-        held = held_to(&maps[index], reader, views, free, held);
+        let Held::To(depth) = held else { break };
+        from[index] = Some((depth - depth.abs() * VIEW_DEPTH_ROUNDING).max(f32::MIN));
+        held = held_to(&maps[index], reader, views, free, depth);
     }
     from
 }
 
-/// View depth up to which a map holds all that the views have from a depth on, in metres, with so many texels around
-/// it; that depth where it does not.
-fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> f32 {
+/// How much of the views finer maps hold.
+enum Held {
+    /// All up to a view depth, in metres.
+    To(f32),
+    /// All.
+    Whole,
+}
+
+/// Finds how much a map holds of all that the views have from a view depth on, with `free` texels around it: nothing
+/// beyond `from`, all up to a greater depth, or all.
+fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> Held {
     let fit = map.projection.relative_to(reader.origin);
-    let holds = |far: f32| holds_slice(&fit, reader, views, [from, far], free);
+    let holds = |far: f32| holds_slice(&fit, reader, views, DepthSpan { near: from, far }, free);
     let near = views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
     let far = views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
     if holds(far) {
-        return f32::MAX;
+        return Held::Whole;
     }
     let near = near.max(from);
     let (mut held, mut beyond) = (near, far);
@@ -324,8 +333,8 @@ fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, f
         let middle = held + (beyond - held) * 0.5;
         *(if holds(middle) { &mut held } else { &mut beyond }) = middle;
     }
-    // Where it holds nothing, no depth has been found.
-    if held > near { held } else { from }
+    // If it holds nothing, no depth has been found.
+    Held::To(if held > near { held } else { from })
 }
 
 #[cfg(all(test, feature = "alloc"))]

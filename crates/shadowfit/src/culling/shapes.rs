@@ -7,11 +7,12 @@
 use glam::{Mat4, Vec3};
 
 use crate::base::Aabb;
+use crate::base::checks::UNIT;
 
 /// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴.
 /// A test has at most ten operations in f32; the planes' normals are rounded once, and are off by
 /// two more roundings along the light.
-pub(super) const ROUNDING: f32 = 16.0 / 16_777_216.0;
+pub(super) const TEST_ROUNDING: f32 = 16.0 * UNIT as f32;
 
 /// Shapes that are tested together. Loops this long are not unrolled, which keeps them simple
 /// enough for every compiler to vectorise, and all lanes stay in the innermost cache.
@@ -150,7 +151,7 @@ pub struct AabbLanes {
 #[inline]
 fn box_slack(min: Vec3, max: Vec3) -> f32 {
     let is_empty = min.x > max.x || min.y > max.y || min.z > max.z;
-    if is_empty { f32::NEG_INFINITY } else { (sum(min) + sum(max)) * ROUNDING }
+    if is_empty { f32::NEG_INFINITY } else { (sum(min) + sum(max)) * TEST_ROUNDING }
 }
 
 impl Shape for Aabb {
@@ -210,7 +211,7 @@ impl Default for SphereLanes {
 
 #[inline]
 fn sphere_slack(centre: Vec3, radius: f32) -> f32 {
-    if radius < 0.0 { f32::NEG_INFINITY } else { (sum(centre) + radius) * ROUNDING }
+    if radius < 0.0 { f32::NEG_INFINITY } else { (sum(centre) + radius) * TEST_ROUNDING }
 }
 
 impl Shape for Sphere {
@@ -265,7 +266,7 @@ fn oriented_support(n: Vec3, centre: Vec3, a: Vec3, b: Vec3, c: Vec3) -> f32 {
 
 #[inline]
 fn oriented_slack(centre: Vec3, a: Vec3, b: Vec3, c: Vec3) -> f32 {
-    (sum(centre) + (sum(a) + sum(b) + sum(c))) * ROUNDING
+    (sum(centre) + (sum(a) + sum(b) + sum(c))) * TEST_ROUNDING
 }
 
 impl Shape for OrientedBox {

@@ -25,7 +25,7 @@ use crate::base::checks::{MAX_LENGTH, ROUNDING};
 use crate::base::enclosing::HullBuilder;
 use crate::base::{FitError, checks};
 use crate::bias::Reach;
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 use crate::view::{Slice, View, ViewFrustum};
 
 /// Which receivers read a map, and how far around them.

@@ -2,10 +2,11 @@
 
 use glam::{DVec3, Vec3, Vec4};
 
-use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
+use super::shapes::{Bounds, OrientedBox, Sphere, TEST_ROUNDING};
+use crate::base::checks::UNIT;
 use crate::base::{Aabb, Boxes};
-use crate::fits::LightProjection;
 use crate::keep::texels::TexelRect;
+use crate::projection::LightProjection;
 use crate::technique::settings::CasterPolicy;
 
 /// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for
@@ -186,11 +187,11 @@ impl LightProjection {
 }
 
 /// Rounding of a unit normal's direction, in f64.
-const NORMAL_ROUNDING: f64 = 2.0 / 16_777_216.0;
+const NORMAL_ROUNDING: f64 = 2.0 * UNIT;
 
 /// A plane's d, enlarged by the rounding that it adds to the test.
 pub(super) fn widened(d: f32) -> f32 {
-    d + d.abs() * ROUNDING
+    d + d.abs() * TEST_ROUNDING
 }
 
 /// The planes -x, +x, -y, +y of a map, and far and near, relative to the fit's origin.

@@ -129,7 +129,8 @@ impl DemandSpace {
         // The cells of the last level reach all that is seen.
         let farthest =
             near_corners.into_iter().chain(end).map(|corner| plane.of(plane.axes.project(corner)).abs().max_element());
-        let least = farthest.fold(0.0, f64::max) / f64::from((SIDE as u32 / 2) << (LEVELS - 1)) * (1.0 + ROUNDING);
+        let least =
+            farthest.fold(0.0, f64::max) / f64::from((SIDE as u32 / 2) << (LEVELS - 1)) * (1.0 + REACH_ROUNDING);
         let cell = (f64::from(texel * distance) / cells).max(least) as f32;
         let least = f32::MIN_POSITIVE;
         checks::within("the texel of a demand grid", f64::from(texel), f64::from(least), f64::from(f32::MAX))?;
@@ -198,7 +199,7 @@ impl DemandGrid<'_> {
 }
 
 /// Share of the farthest cells that is left for the rounding of positions.
-const ROUNDING: f64 = 1e-5;
+const REACH_ROUNDING: f64 = 1e-5;
 
 /// Number of cells in the distance for which a level is made, from the sine of the sun's elevation and the height of the
 /// picture for each metre of distance.

@@ -6,10 +6,10 @@ use glam::{DVec2, DVec3};
 use crate::base::checks::{MIN_LENGTH, ROUNDING, THINNEST};
 use crate::base::enclosing::{HullBuilder, SYMMETRY};
 use crate::base::{FitError, box_corners, checks};
-use crate::content::Content;
+use crate::content::{Bounds, Content, VisitCorners};
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{Constraint, Covers, FitRule, Volume, rectangle};
-use crate::light::LightAxes;
+use crate::fits::{Covers, FitRule, rectangle};
+use crate::light::{Constraint, LightAxes, Volume};
 use crate::technique::settings::RectangleKind;
 use crate::view::Range;
 
@@ -47,7 +47,7 @@ impl<'a> Covered<'a> {
             Covers::Corners => Self::corners(rule, content, axes, range),
             Covers::Sphere => Self::sphere(rule, content, axes, range),
             Covers::Views | Covers::Receivers => {
-                let hull = LightHull::of((rule.form.covers, Detail::Outline), content, axes, range, points)?;
+                let hull = LightHull::of(rule.form.covers, Detail::Outline, content, axes, range, points)?;
                 Ok(Self::hull(rule, content, &hull, range))
             }
         }
@@ -68,7 +68,7 @@ impl<'a> Covered<'a> {
             return Err(FitError::EmptyFrustum { size: size.as_vec3() });
         }
         let margin = DVec3::splat(rule.margin);
-        let volume = Volume::covering(axes, (min - margin, max + margin), [Constraint::View; 6], false);
+        let volume = Volume::covering(axes, min - margin, max + margin, [Constraint::View; 6], false);
         Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
     }
 
@@ -81,10 +81,13 @@ impl<'a> Covered<'a> {
         let rounding = ROUNDING * (1.5 * longest + checks::length(sphere.centre));
         let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
         let extent = DVec3::splat(2.0 * (sphere.radius + pad));
-        let corners = (centre - extent * 0.5, centre + extent * 0.5);
-        let corners = if rule.serves_all { within_receivers(corners, content, &axes, pad) } else { corners };
-        let corners = no_smaller(corners, rule.least_size);
-        let volume = Volume::covering(axes, corners, [Constraint::Sphere; 6], false);
+        let (mut min, mut max) = (centre - extent * 0.5, centre + extent * 0.5);
+        if rule.serves_all {
+            (min, max) = within_receivers(min, max, content, &axes, pad);
+        }
+        let (low, high) = widened(min.truncate(), max.truncate(), rule.least_size);
+        let (min, max) = (low.extend(min.z), high.extend(max.z));
+        let volume = Volume::covering(axes, min, max, [Constraint::Sphere; 6], false);
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
 
@@ -111,10 +114,10 @@ impl<'a> Covered<'a> {
         let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
         let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
         let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
-        let corners = (min.extend(z_min.x), max.extend(z_max.x));
+        let (min, max) = (min.extend(z_min.x), max.extend(z_max.x));
         let set_by = constraints(&rectangle, hull, content, range);
         Self {
-            volume: Volume::covering(hull.axes.turned(rectangle.axis), corners, set_by, hull.is_empty),
+            volume: Volume::covering(hull.axes.turned(rectangle.axis), min, max, set_by, hull.is_empty),
             rounding: rounding.max_element(),
             shadowed: Shadowed::Outline(hull.axes, hull.outline),
         }
@@ -123,19 +126,13 @@ impl<'a> Covered<'a> {
 
 /// A box of constant size, no wider than all receivers together and moved to where they are: nothing beyond them is
 /// looked up. Its size is constant as long as that of the receivers is.
-fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
+fn within_receivers(min: DVec3, max: DVec3, content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
     let Some((low, high)) = content.receivers_across(axes) else { return (min, max) };
     let (low, high) = (low - pad, high + pad);
     let size = (max - min).truncate().min(high - low);
     let centre = ((min + max) * 0.5).truncate();
     let first = (centre - size * 0.5).min(high - size).max(low);
     (first.extend(min.z), (first + size).extend(max.z))
-}
-
-/// A box widened across the light about its middle.
-fn no_smaller((min, max): (DVec3, DVec3), least: DVec2) -> (DVec3, DVec3) {
-    let (low, high) = widened(min.truncate(), max.truncate(), least);
-    (low.extend(min.z), high.extend(max.z))
 }
 
 /// The square with the rectangle's longer side, about the same middle.
@@ -202,18 +199,14 @@ struct Collector<'a> {
     hull: HullBuilder<'a>,
     z: (f64, f64),
     farthest_squared: f64,
+    /// The first corner without room is an error. Later ones are left out.
+    pushed: Result<(), FitError>,
 }
 
 impl<'a> Collector<'a> {
     fn new(axes: LightAxes, detail: Detail, points: &'a mut [DVec2]) -> Self {
-        Self { axes, detail, hull: HullBuilder::new(points), z: (f64::MAX, f64::MIN), farthest_squared: 0.0 }
-    }
-
-    fn push(&mut self, p: DVec3) -> Result<(), FitError> {
-        let q = self.axes.project(p);
-        self.z = (self.z.0.min(q.z), self.z.1.max(q.z));
-        self.farthest_squared = self.farthest_squared.max(p.dot(p));
-        self.hull.push(q.truncate())
+        let hull = HullBuilder::new(points);
+        Self { axes, detail, hull, z: (f64::MAX, f64::MIN), farthest_squared: 0.0, pushed: Ok(()) }
     }
 
     /// Whether a box lies inside what has been collected so far, so that no part of it can change
@@ -237,16 +230,33 @@ impl<'a> Collector<'a> {
             || box_corners(min, max).into_iter().all(|corner| self.hull.holds(self.axes.project(corner).truncate()))
     }
 
-    fn finish(self, is_empty: bool) -> LightHull<'a> {
+    fn finish(self, is_empty: bool) -> Result<LightHull<'a>, FitError> {
+        self.pushed?;
         let farthest = libm::sqrt(self.farthest_squared);
-        LightHull { axes: self.axes, outline: self.hull.finish(), z: self.z, farthest, is_empty }
+        Ok(LightHull { axes: self.axes, outline: self.hull.finish(), z: self.z, farthest, is_empty })
+    }
+}
+
+impl VisitCorners for Collector<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.pushed.is_ok() && !self.holds(bounds.min, bounds.max)
+    }
+
+    fn take(&mut self, corner: DVec3) {
+        if self.pushed.is_ok() {
+            let q = self.axes.project(corner);
+            self.z = (self.z.0.min(q.z), self.z.1.max(q.z));
+            self.farthest_squared = self.farthest_squared.max(corner.dot(corner));
+            self.pushed = self.hull.push(q.truncate());
+        }
     }
 }
 
 impl<'a> LightHull<'a> {
     /// The hull of what a rule covers.
     pub(crate) fn of(
-        (covers, detail): (Covers, Detail),
+        covers: Covers,
+        detail: Detail,
         content: &Content,
         axes: LightAxes,
         range: Range,
@@ -261,8 +271,8 @@ impl<'a> LightHull<'a> {
     /// The hull of the views' slices.
     fn of_views(content: &Content, axes: LightAxes, range: Range, points: &'a mut [DVec2]) -> Result<Self, FitError> {
         let mut collector = Collector::new(axes, Detail::Outline, points);
-        content.corners(range).try_for_each(|corner| collector.push(corner))?;
-        collector.finish(false).checked()
+        content.corners(range).for_each(|corner| collector.take(corner));
+        collector.finish(false)?.checked()
     }
 
     /// The hull of the receivers' boxes clipped to the views' slices; that of the slices themselves
@@ -278,16 +288,14 @@ impl<'a> LightHull<'a> {
             return Self::of_views(content, axes, range, points);
         }
         let mut collector = Collector::new(axes, detail, points);
-        let is_new = |collector: &Collector, min, max| !collector.holds(min, max);
-        content.receivers_in(range, &mut collector, is_new, |collector, _, slice, (min, max)| {
-            if collector.holds(min, max) { Ok(()) } else { slice.clip(min, max, &mut |p| collector.push(p)) }
-        })?;
+        content.visit_corners(range, &mut collector);
         if collector.hull.is_empty() {
-            let Collector { hull, .. } = collector;
+            let Collector { hull, pushed, .. } = collector;
+            pushed?;
             let of_views = Self::of_views(content, axes, range, hull.into_storage())?;
             return Ok(Self { is_empty: true, ..of_views });
         }
-        Ok(collector.finish(false))
+        collector.finish(false)
     }
 
     /// Refuses a hull of views without extent.

@@ -15,22 +15,27 @@ pub(crate) enum Covers {
     Sphere,
 }
 
+/// How a map may lie relative to the world's texel grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Alignment {
+    /// Exactly as in the fit's source: with the source's depth, and without caster policy, border, least texel or grid.
+    /// Such a map is never held.
+    Exact,
+    /// As the technique asks: tight or on the grid.
+    Free,
+    /// Always on the grid.
+    OnGrid,
+}
+
 /// What tells one fit from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a property that a fit has or not")]
 pub(crate) struct Form {
     pub(crate) covers: Covers,
     /// Where the map's roll about the light comes from.
     pub(crate) roll: Roll,
     /// Whether the rectangle is that of the settings; else it lies along the light's axes.
     pub(crate) may_turn: bool,
-    /// Whether the settings limit the ratio of the texels' sides.
-    pub(crate) limits_ratio: bool,
-    /// Whether it always lies on the world's grid.
-    pub(crate) is_on_grid: bool,
-    /// Whether it is kept as its source has it: with the depth of the source, no caster policy, no border, no least
-    /// texel, and never held.
-    pub(crate) is_exact: bool,
+    pub(crate) alignment: Alignment,
     /// Whether the map always reaches to the shadow distance, wherever the receivers end.
     pub(crate) whole_distance: bool,
 }
@@ -41,9 +46,7 @@ impl Form {
         covers: Covers::Views,
         roll: Roll::ShortestArc,
         may_turn: false,
-        limits_ratio: true,
-        is_on_grid: false,
-        is_exact: false,
+        alignment: Alignment::Free,
         whole_distance: false,
     };
 }

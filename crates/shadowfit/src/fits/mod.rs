@@ -5,9 +5,6 @@
 //! plane. [`fit`] and [`fit_scene`] take the rule from the settings. A further fit is a file beside this one with a
 //! [`Form`], and a line in [`Form::of`].
 
-pub(crate) mod light_fit;
-mod sphere;
-
 mod aabb;
 pub(crate) mod covered;
 mod focused;
@@ -17,23 +14,21 @@ pub(crate) mod near_plane;
 mod oriented;
 pub(crate) mod rectangle;
 mod rule;
-pub(crate) mod volume;
+mod sphere;
 mod xna;
 
-pub(crate) use form::{Covers, Form};
-pub use frame::{FitInput, Scratch};
-pub(crate) use frame::{Frame, Place, PlacedMap, PlacedMaps};
-pub use light_fit::LightProjection;
-pub(crate) use rule::{Depth, FitRule, check_least_texel, default_border};
-pub use volume::Constraint;
-pub(crate) use volume::Volume;
+pub(crate) use form::{Alignment, Covers, Form};
+pub(crate) use frame::{Frame, PlacedMap, PlacedMaps};
+pub(crate) use rule::{Depth, FitRule, MapUse, check_least_texel};
 
 use glam::{DVec2, Vec3};
 
 use crate::base::{FitError, checks};
 use crate::content::Content;
 use crate::fits::covered::Covered;
-use crate::light::Light;
+use crate::input::{FitInput, Scratch};
+use crate::light::{Light, Volume};
+use crate::projection::LightProjection;
 use crate::technique::settings::{FitKind, FitSettings};
 use crate::view::{Range, ViewFrustum};
 
@@ -66,8 +61,8 @@ impl Form {
 /// [`FitError::EmptyFrustum`].
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightProjection, FitError> {
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
-    let (rule, light) = prepare(&input, settings, default_border(settings))?;
-    if rule.form.is_exact {
+    let (rule, light) = prepare(&input, settings, MapUse::alone(settings))?;
+    if rule.form.alignment == Alignment::Exact {
         // It uses nothing but the corners, and is as cheap as the sample's own code only without
         // storage.
         return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.map.max_distance, &mut []);
@@ -89,7 +84,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 /// As [`fit`]; [`FitError::NoView`] without a view; [`FitError::ScratchTooSmall`], see
 /// [`Scratch::required`].
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, scratch: &mut Scratch) -> Result<LightProjection, FitError> {
-    let (rule, light) = prepare(input, settings, default_border(settings))?;
+    let (rule, light) = prepare(input, settings, MapUse::alone(settings))?;
     let (content, points) = Content::new(input.scene(), scratch.storage)?;
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
@@ -124,17 +119,16 @@ pub(crate) fn is_shadowed(views: &[ViewFrustum], distance: f32) -> bool {
     views.iter().any(|view| view.begins_before(distance))
 }
 
-/// Checks the inputs that all fits share; returns the rule of the settings, with the free texels at
-/// the border, and the light.
+/// Checks the inputs that all fits share. Returns the rule of the settings for a use of the map, and the light.
 #[inline(always)]
-pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> Result<(FitRule, Light), FitError> {
+pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, map: MapUse) -> Result<(FitRule, Light), FitError> {
     if input.views.is_empty() {
         return Err(FitError::NoView);
     }
     for view in input.views {
         view.check()?;
     }
-    let rule = FitRule::new(settings, border, input.knows_casters())?;
+    let rule = FitRule::new(settings, map, input.knows_casters())?;
     let direction = checks::unit("the light's direction", input.direction)?;
     let up = checks::unit("the up direction", settings.map.up)?;
     let (near, distance) = (nearest(input.views), settings.map.max_distance);
@@ -148,7 +142,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Snapping {
     Tight,
-    /// With extents and position across the light [on the grid](Volume::snap); the depth range is left
+    /// With extents and position across the light [on the grid](FitRule::snap); the depth range is left
     /// for [`Volume::stabilise_depth`].
     OnGrid,
 }
@@ -170,10 +164,10 @@ pub(crate) fn fit_map(
     //    of both, padded for rounding and by the margin.
     let Covered { mut volume, rounding, shadowed } = Covered::new(rule, content, axes, range, points)?;
     // 3. The map around it, with the border that the filter reads: on the grid or as tight as can be.
-    if rule.form.is_on_grid || snapping == Snapping::OnGrid && !rule.form.is_exact {
-        volume.snap(content.origin, rule);
-    } else if !rule.form.is_exact {
-        volume.add_border(rule);
+    match (rule.form.alignment, snapping) {
+        (Alignment::Exact, _) => {}
+        (Alignment::Free, Snapping::Tight) => rule.add_border(&mut volume),
+        (Alignment::Free, Snapping::OnGrid) | (Alignment::OnGrid, _) => drop(rule.snap(&mut volume, content.origin)),
     }
     // 4. The near plane, moved toward the light so that casters are kept, and the light in it.
     near_plane::place(&mut volume, rule, shadowed, rounding, content);

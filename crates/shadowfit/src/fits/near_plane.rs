@@ -14,10 +14,10 @@
 use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::base::checks::ROUNDING;
-use crate::content::Content;
+use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::fits::covered::Shadowed;
-use crate::fits::{Constraint, Depth, FitRule, Volume};
-use crate::light::{LightAxes, Outline, OutlineScratch};
+use crate::fits::{Alignment, Depth, FitRule};
+use crate::light::{Constraint, LightAxes, Outline, OutlineScratch, Volume};
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -38,23 +38,20 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     }
     let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
     let reach = filter_reach(texel, rule, rounding);
+    let (min, max) = (volume.min.truncate(), volume.max.truncate());
     let near = match shadowed {
         Shadowed::Outline(axes, outline) if !rule.serves_all => {
             find(volume.max.z, &axes, outline, content, rule.depth, reach)
         }
-        _ => {
-            let across = (volume.min.truncate(), volume.max.truncate());
-            find_over(volume.max.z, &volume.axes, across, content, rule.depth, reach)
-        }
+        _ => find_over(volume.max.z, &volume.axes, min, max, content, rule.depth, reach),
     };
     if rule.serves_all {
-        let across = (volume.min.truncate(), volume.max.truncate());
-        let far = find_far(volume.min.z, &volume.axes, across, content);
+        let far = find_far(volume.min.z, &volume.axes, min, max, content);
         volume.set_by[4] = if far < volume.min.z { Constraint::Receivers } else { volume.set_by[4] };
         volume.min.z = far;
     }
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
-    if !rule.form.is_on_grid {
+    if rule.form.alignment != Alignment::OnGrid {
         // The rounding of the depth range, which casters may make far longer than the covered
         // region. On the grid it is in the steps.
         let depth = (volume.max.z - volume.min.z) * ROUNDING;
@@ -88,35 +85,36 @@ pub(crate) fn find(
         }
         Depth::AtCasters => {
             let mut highest = Highest::new(axes, outline, reach, covered);
-            content.each_caster(&mut highest, Highest::may_rise, Highest::add);
+            content.visit(Query::Casters, &mut highest);
             (highest.z, Constraint::Casters)
         }
     };
     NearPlane { z, set_by: (z > covered).then_some(set_by) }
 }
 
-/// [`find`] for all of a map, given as a rectangle across the light.
+/// Finds the near plane as [`find`] does, for all of a map, given by its corners across the light.
 pub(crate) fn find_over(
     covered: f64,
     axes: &LightAxes,
-    across: (DVec2, DVec2),
+    min: DVec2,
+    max: DVec2,
     content: &Content,
     depth: Depth,
     reach: f64,
 ) -> NearPlane {
-    find(covered, axes, &corners(across), content, depth, reach)
+    find(covered, axes, &corners(min, max), content, depth, reach)
 }
 
-/// Finds the far plane for a map, given as a rectangle across the light, whose covered region begins at `covered`
+/// Finds the far plane for a map, given by its corners across the light, whose covered region begins at `covered`
 /// along the light's z: far enough for the receivers in view over all of the map, since points of all
 /// view depths read it, but no farther than [`FARTHER`] allows.
-pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), content: &Content) -> f64 {
-    let longer = (across.1 - across.0).max_element();
+pub(crate) fn find_far(covered: f64, axes: &LightAxes, min: DVec2, max: DVec2, content: &Content) -> f64 {
+    let longer = (max - min).max_element();
     // Seen from below: the lowest point is the highest there, and x and y change places.
     let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
-    let corners = corners((across.0.yx(), across.1.yx()));
+    let corners = corners(min.yx(), max.yx());
     let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
-    content.each_seen_receiver(&mut lowest, Highest::may_rise, Highest::add);
+    content.whole_views().for_each(|part| content.visit(Query::Lit(&part), &mut lowest));
     (-lowest.z).max(covered - longer * FARTHER)
 }
 
@@ -125,7 +123,7 @@ pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), c
 const FARTHER: f64 = 2.0;
 
 /// Corners of a rectangle along the axes, anticlockwise.
-fn corners((min, max): (DVec2, DVec2)) -> [DVec2; 4] {
+fn corners(min: DVec2, max: DVec2) -> [DVec2; 4] {
     [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y))
 }
 
@@ -141,11 +139,6 @@ impl<'a> Highest<'a> {
         Self { over: Outline::new(axes, outline, reach), scratch: OutlineScratch::new(), z: covered }
     }
 
-    /// Whether a part of a box may lie higher than all so far.
-    fn may_rise(&self, min: DVec3, max: DVec3) -> bool {
-        self.over.may_hold(min, max, self.floor(min, max))
-    }
-
     /// The height that a box must exceed to count.
     fn floor(&self, min: DVec3, max: DVec3) -> f64 {
         self.z - min.abs().max(max.abs()).element_sum() * ROUNDING
@@ -156,6 +149,17 @@ impl<'a> Highest<'a> {
         self.over.parts_over(min, max, floor, &mut self.scratch, |corner| {
             *z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
         });
+    }
+}
+
+impl Visit for Highest<'_> {
+    /// Returns whether a part of a box may lie higher than all so far.
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.over.may_hold(bounds.min, bounds.max, self.floor(bounds.min, bounds.max))
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        self.add(bounds.min, bounds.max);
     }
 }
 

@@ -47,12 +47,10 @@ const TIE: f64 = 1e-9;
 /// within 45 degrees of +x. Of equal ones it is the least turned.
 pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
     let mut best = Best::new(hull, |r| r.size().x * r.size().y);
-    let mut longest = (0.0, DVec2::X);
-    Calipers::turn(hull, |calipers| {
-        calipers.keep_longest(&mut longest);
+    let longest = Calipers::turn(hull, |calipers| {
         best.keep(&calipers.rectangle());
     });
-    best.keep(&Rectangle::around(hull, longest.1));
+    best.keep(&Rectangle::around(hull, longest));
     upright(best.rectangle)
 }
 
@@ -71,9 +69,7 @@ pub(crate) fn min_area_within(hull: &[DVec2], ratio: f64, widened: impl Fn(DVec2
     // Multiples of a side for which its texels are as long as those of the other, in either position.
     let unit = widened(DVec2::X);
     let per_texel = unit.y * ratio;
-    let mut longest = (0.0, DVec2::X);
-    Calipers::turn(hull, |calipers| {
-        calipers.keep_longest(&mut longest);
+    let longest = Calipers::turn(hull, |calipers| {
         best.keep(&calipers.rectangle());
         for even in [per_texel, 1.0 / per_texel] {
             for multiple in [even * ratio, even / ratio] {
@@ -83,22 +79,20 @@ pub(crate) fn min_area_within(hull: &[DVec2], ratio: f64, widened: impl Fn(DVec2
             }
         }
     });
-    best.keep(&Rectangle::around(hull, longest.1));
+    best.keep(&Rectangle::around(hull, longest));
     upright(best.rectangle)
 }
 
 /// The rectangle with the least longer side around a convex polygon, which makes the least square.
 pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
     let mut best = Best::new(hull, |r| r.size().max_element());
-    let mut longest = (0.0, DVec2::X);
-    Calipers::turn(hull, |calipers| {
-        calipers.keep_longest(&mut longest);
+    let longest = Calipers::turn(hull, |calipers| {
         best.keep(&calipers.rectangle());
         if let Some(axis) = calipers.balanced(1.0) {
             best.keep(&Rectangle::around(hull, axis));
         }
     });
-    let diagonal = (longest.1 + longest.1.perp()) * core::f64::consts::FRAC_1_SQRT_2;
+    let diagonal = (longest + longest.perp()) * core::f64::consts::FRAC_1_SQRT_2;
     best.keep(&Rectangle::around(hull, diagonal));
     upright(best.rectangle)
 }
@@ -136,8 +130,6 @@ struct Calipers<'a> {
     hull: &'a [DVec2],
     /// Unit direction of the edge that the lower line lies along.
     axis: DVec2,
-    /// Length of that edge.
-    length: f64,
     /// The corners that the lines touch when they turn on: lower (the edge's end), right, upper, left.
     touched: [usize; 4],
     /// Distances below this may be rounding.
@@ -148,11 +140,12 @@ struct Calipers<'a> {
 const NOISE: f64 = 1e-10;
 
 impl<'a> Calipers<'a> {
-    /// Turns the lines once around the polygon, stopping at each edge.
-    fn turn(hull: &'a [DVec2], mut stop: impl FnMut(&Self)) {
+    /// Turns the lines once around the polygon, stopping at each edge. Returns the direction of the longest edge.
+    fn turn(hull: &'a [DVec2], mut stop: impl FnMut(&Self)) -> DVec2 {
         let n = hull.len();
         let noise = Rectangle::around(hull, DVec2::X).size().max_element() * NOISE;
-        let mut calipers = Calipers { hull, axis: DVec2::X, length: 0.0, touched: [0; 4], noise };
+        let mut calipers = Calipers { hull, axis: DVec2::X, touched: [0; 4], noise };
+        let (mut longest, mut greatest) = (DVec2::X, 0.0);
         let mut is_first = true;
         for i in 0..n {
             let end = (i + 1) % n;
@@ -161,7 +154,7 @@ impl<'a> Calipers<'a> {
             if length.is_nan() || length <= 0.0 {
                 continue;
             }
-            (calipers.axis, calipers.length) = (edge / length, length);
+            calipers.axis = edge / length;
             calipers.touched[0] = end;
             let directions = [calipers.axis, calipers.axis.perp(), -calipers.axis];
             for (side, direction) in directions.into_iter().enumerate() {
@@ -171,8 +164,12 @@ impl<'a> Calipers<'a> {
                 calipers.touched[side + 1] = calipers.advance(first, behind, direction);
             }
             is_first = false;
+            if length > greatest {
+                (longest, greatest) = (calipers.axis, length);
+            }
             stop(&calipers);
         }
+        longest
     }
 
     /// The farthest corner along `direction`, from corner `first` on; the search may skip `known`
@@ -190,12 +187,6 @@ impl<'a> Calipers<'a> {
             next += 1;
         }
         (first + k) % n
-    }
-
-    fn keep_longest(&self, longest: &mut (f64, DVec2)) {
-        if self.length > longest.0 {
-            *longest = (self.length, self.axis);
-        }
     }
 
     fn rectangle(&self) -> Rectangle {

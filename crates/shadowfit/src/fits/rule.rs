@@ -2,11 +2,13 @@
 //!
 //! Settings with everything resolved that depends on the kind, by its [`Form`].
 
-use glam::{DVec2, UVec2};
+use glam::{DVec2, DVec3, UVec2};
 
-use super::form::Form;
-use crate::base::checks::MAX_LENGTH;
+use super::form::{Alignment, Form};
+use crate::base::checks::{MAX_LENGTH, ROUNDING, floor};
 use crate::base::{DepthConvention, FitError, checks};
+use crate::light::Volume;
+use crate::light::grid::{Grid, anchor, quantised};
 use crate::technique::settings::{CasterPolicy, FilterKind, FitSettings, MapSettings, RectangleKind};
 
 /// What places the near plane.
@@ -44,12 +46,33 @@ pub(crate) struct FitRule {
     pub(crate) resolution: UVec2,
     /// Depth convention of the fitted clip space.
     pub(crate) convention: DepthConvention,
-    /// Whether all that lies inside the map may read it, and not its slice of the view alone.
+    /// Whether any point inside the map may read it. Otherwise only the points of its slice of the view do.
     pub(crate) serves_all: bool,
 }
 
+/// How a map is read, as far as its fit depends on that.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MapUse {
+    /// Free texels at the map's border, for the filter.
+    pub(crate) border: f32,
+    /// Whether points outside the map's slice of the view may read it.
+    pub(crate) is_shared: bool,
+}
+
+impl MapUse {
+    /// The use of a single map without a technique. Its border is that of the settings, or the reach of the default
+    /// filter.
+    pub(crate) const fn alone(settings: &FitSettings) -> Self {
+        let border = match settings.map.border {
+            Some(texels) => texels,
+            None => FilterKind::Pcf5x5.reach(),
+        };
+        Self { border, is_shared: false }
+    }
+}
+
 impl FitRule {
-    /// The rule of settings, with the free texels at the border.
+    /// Resolves settings for a use of the map.
     ///
     /// # Errors
     ///
@@ -58,30 +81,29 @@ impl FitRule {
     #[inline(always)]
     pub(crate) fn new(
         FitSettings { shape, map: settings }: &FitSettings,
-        border: f32,
+        MapUse { border, is_shared }: MapUse,
         casters_are_known: bool,
     ) -> Result<Self, FitError> {
         let ratio = f64::from(shape.max_texel_ratio);
         checks::within("the fit's greatest texel ratio", ratio, 1.0, f64::from(f32::MAX))?;
         check(settings, border)?;
         let form = Form::of(shape.kind);
-        let depth = if form.is_exact { Depth::Doubled } else { near_plane(settings, casters_are_known) };
+        let is_exact = form.alignment == Alignment::Exact;
+        let depth = if is_exact { Depth::Doubled } else { near_plane(settings, casters_are_known) };
         let rectangle = if form.may_turn { shape.rectangle } else { RectangleKind::AxisAligned };
-        let least_texel = if form.is_exact { 0.0 } else { f64::from(settings.least_texel) };
+        let least_texel = if is_exact { 0.0 } else { f64::from(settings.least_texel) };
         Ok(Self {
             form,
             rectangle,
             depth,
             border: f64::from(border),
             margin: f64::from(settings.margin),
-            max_texel_ratio: Some(shape.max_texel_ratio)
-                .filter(|ratio| *ratio < f32::MAX && form.limits_ratio)
-                .map(f64::from),
+            max_texel_ratio: Some(shape.max_texel_ratio).filter(|ratio| *ratio < f32::MAX).map(f64::from),
             least_texel,
             least_size: (settings.resolution.as_dvec2() - 2.0 * f64::from(border)) * least_texel,
             resolution: settings.resolution,
             convention: settings.depth,
-            serves_all: false,
+            serves_all: is_shared && !is_exact,
         })
     }
 
@@ -98,22 +120,46 @@ impl FitRule {
         self.resolution.as_dvec2() - (2.0 * self.border + 1.0)
     }
 
-    /// Whether a map of this rule can be kept from frame to frame: not the sample's.
-    pub(crate) const fn can_be_held(&self) -> bool {
-        !self.form.is_exact
+    /// Leaves the border's texels free on all sides of a map.
+    #[inline(always)]
+    pub(crate) fn add_border(&self, volume: &mut Volume) {
+        let border = DVec2::splat(self.border);
+        let free = (volume.max - volume.min).truncate() / (self.resolution.as_dvec2() - border * 2.0) * border;
+        (volume.min, volume.max) = (volume.min - free.extend(0.0), volume.max + free.extend(0.0));
+    }
+
+    /// Rounds the extents of a map across the light up and moves it to the world's grid. It still holds its content,
+    /// with the border's texels around it.
+    #[inline(always)]
+    pub(crate) fn snap(&self, volume: &mut Volume, origin: DVec3) -> Grid {
+        let anchor = anchor(&volume.axes, origin);
+        let resolution = self.resolution.as_dvec2();
+        let usable = self.usable();
+        // A map that is larger than its content is rounded by its own extent.
+        let size = (volume.max - volume.min).truncate();
+        let pad = ROUNDING * (size * resolution / usable).max_element();
+        let size = size + 2.0 * pad;
+        let width = quantised(size.x);
+        let mut size = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) });
+        if self.max_texel_ratio.is_some() {
+            let limited = self.limited(size, usable);
+            let stepped = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
+            // The step above the limit may be too long the other way. The limit itself follows from a step too.
+            size = if self.limited(stepped, usable) == stepped { stepped } else { limited };
+        }
+        let texel = size / usable;
+        let line = (volume.min.truncate() - pad + anchor.truncate()) / texel - self.border;
+        let first = DVec2::new(floor(line.x), floor(line.y));
+        let grid = Grid { first, texel, z: (volume.min.z + anchor.z, volume.max.z + anchor.z) };
+        let (min, max) = grid.across(anchor, resolution);
+        (volume.min, volume.max) = (min.extend(volume.min.z), max.extend(volume.max.z));
+        volume.grid = Some(grid);
+        grid
     }
 
     /// This rule without a border, its near plane at the covered region. What it covers is no smaller than with one.
     pub(crate) const fn without_room(self) -> Self {
         Self { border: 0.0, depth: Depth::AtCovered, ..self }
-    }
-}
-
-/// Free texels of settings without a technique: where none are set, the reach of the default filter.
-pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
-    match settings.map.border {
-        Some(texels) => texels,
-        None => FilterKind::Pcf5x5.reach(),
     }
 }
 

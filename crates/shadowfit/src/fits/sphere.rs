@@ -24,12 +24,12 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Covers, Form};
+use super::{Alignment, Covers, Form};
 use crate::base::FitError;
 use crate::base::enclosing::{SymmetricFrustum, minimal};
 use crate::view::ViewFrustum;
 
-pub(super) const FORM: Form = Form { covers: Covers::Sphere, is_on_grid: true, ..Form::OF_VIEWS };
+pub(super) const FORM: Form = Form { covers: Covers::Sphere, alignment: Alignment::OnGrid, ..Form::OF_VIEWS };
 
 impl ViewFrustum {
     /// Centre and radius, in metres, of the minimal sphere around the corners: the centre in

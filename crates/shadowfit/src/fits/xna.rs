@@ -22,8 +22,13 @@
 //! a vertical light takes another up axis (the source divides by zero), reversed and -1..1 depth
 //! are offered, and `margin` is the remedy that the source's text suggests.
 
-use super::{Covers, Form};
+use super::{Alignment, Covers, Form};
 use crate::light::Roll;
 
-pub(super) const FORM: Form =
-    Form { covers: Covers::Corners, roll: Roll::LookAt, is_exact: true, whole_distance: true, ..Form::OF_VIEWS };
+pub(super) const FORM: Form = Form {
+    covers: Covers::Corners,
+    roll: Roll::LookAt,
+    alignment: Alignment::Exact,
+    whole_distance: true,
+    ..Form::OF_VIEWS
+};

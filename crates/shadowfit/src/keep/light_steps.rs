@@ -26,8 +26,8 @@
 use glam::Vec3;
 
 use crate::base::{FitError, checks};
-use crate::fits::LightProjection;
 use crate::light::is_same_direction;
+use crate::projection::LightProjection;
 
 /// When a held light steps, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]

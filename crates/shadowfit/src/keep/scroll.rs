@@ -30,10 +30,10 @@ use core::ops::Range;
 use glam::{DVec3, IVec2, UVec2};
 
 use crate::base::{FitError, checks};
-use crate::fits::{Constraint, LightProjection, Volume};
-use crate::light::LightAxes;
 use crate::light::grid::MAX_LINE;
+use crate::light::{Constraint, LightAxes, Volume};
 use crate::map::FittedMap;
+use crate::projection::LightProjection;
 
 pub use crate::keep::texels::StoredRect;
 pub use crate::keep::texels::TexelRect;
@@ -253,8 +253,8 @@ const MAX_TILE: u32 = 65_536;
 fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightProjection, FitError> {
     let half = anchor.texel * (f64::from(size) * 0.5);
     let depth_range = anchor.depth[1] - anchor.depth[0];
-    let corners = ((-half).extend(-depth_range), half.extend(0.0));
-    let mut volume = Volume::covering(*axes, corners, [Constraint::Held; 6], false);
+    let (min, max) = ((-half).extend(-depth_range), half.extend(0.0));
+    let mut volume = Volume::covering(*axes, min, max, [Constraint::Held; 6], false);
     volume.light_at_near_plane();
     LightProjection::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.projection.depth)
 }

@@ -22,7 +22,7 @@
 use glam::{DVec3, IVec2, UVec2};
 
 use crate::base::{Aabb, moved};
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 
 /// A rectangle of texels. Texture rows count downward from the top, as in
 /// [`uv_from_world`](LightProjection::uv_from_world).

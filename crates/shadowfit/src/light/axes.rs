@@ -22,7 +22,7 @@ pub(crate) struct LightAxes {
 
 /// Length of the difference of two unit directions up to which they count as the same direction,
 /// rounded differently: a few steps of f32.
-const SAME_DIRECTION: f64 = 8.0 / 16_777_216.0;
+const SAME_DIRECTION: f64 = 8.0 * checks::UNIT;
 
 /// Whether two unit directions differ by rounding alone.
 pub(crate) fn is_same_direction(a: DVec3, b: DVec3) -> bool {

@@ -68,7 +68,7 @@ const DEPTH_STEPS: f64 = 16.0;
 /// A depth range that holds another, both along the light's z from the world's origin, in metres:
 /// the held one, or a new one in steps of its length. A new range that replaces a held one has spare
 /// room at both ends.
-pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, (low, high): (f64, f64), waste: f64) -> (f64, f64) {
+pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, low: f64, high: f64, waste: f64) -> (f64, f64) {
     let length = high - low;
     // A larger range rounds more.
     let rounding = 2.0 * ROUNDING * length;

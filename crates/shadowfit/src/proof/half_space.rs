@@ -11,7 +11,7 @@ use glam::{DVec3, Mat4, Vec4};
 use super::{CoverageQuery, MapPlane};
 use crate::base::checks::UNIT;
 use crate::base::{DepthConvention, FitError, checks};
-use crate::fits::LightProjection;
+use crate::projection::LightProjection;
 
 /// Roundings of each term of an affine matrix times an f32 position, as multiples of 2⁻²⁴: one of
 /// the position relative to the origin, and four operations each of which shaders may round

@@ -22,15 +22,17 @@ use glam::{DVec2, DVec3};
 use crate::base::checks::UNIT;
 use crate::base::{FitError, box_corners, checks};
 use crate::bias::{Bias, HARDWARE_SNAP, Reach};
-use crate::content::Content;
+use crate::content::{Bounds, Content, Found, Query, Visit, VisitCorners};
 use crate::diagnostics::{DepthRounding, DepthStorage, depth_rounding};
+use crate::fits::Covers;
 use crate::fits::covered::{Detail, LightHull};
-use crate::fits::{Covers, FitInput, LightProjection, Scratch};
+use crate::input::{FitInput, Scratch};
 use crate::light::{LightAxes, Outline, OutlineScratch};
 use crate::map::FittedMap;
+use crate::projection::LightProjection;
 use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, FitSettings};
-use crate::view::{Range, Slice};
+use crate::view::Range;
 use half_space::HalfSpaces;
 
 /// What [`prove`] found.
@@ -191,38 +193,30 @@ pub fn prove(
     scratch: &mut Scratch,
 ) -> Result<CoverageProof, FitError> {
     let range = query.checked()?;
-    if input.views.is_empty() {
-        return Err(FitError::NoView);
-    }
-    for view in input.views {
-        view.checked()?;
-    }
-    checks::unit("the light's direction", input.direction)?;
-    checks::point("the fit's origin", fit.origin)?;
+    check(input, fit)?;
     let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
     let (content, points) = Content::new(input.scene(), scratch.storage)?;
     let offset = content.origin - fit.origin;
-    let mut receivers = Worst::new(&half_spaces, offset);
-    receivers.add_all(&content, range);
+    let receivers = Worst::of(&content, range, &half_spaces, offset);
     if let Some(proof) = receivers.failure(fit) {
         return Ok(proof);
     }
-    let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     let is_read = if query.is_shared { !fit.is_empty } else { receivers.any.is_some() };
+    let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     if is_read && content.has_casters() && query.casters != CasterPolicy::DepthClamp {
-        let nearest = |over: Outline| nearest_caster(&content, &over, &half_spaces, offset);
-        let (by, point) = if query.is_shared {
-            let (corners, distance) = whole_map(fit, &axes, offset);
-            nearest(Outline::new(&axes, &corners, raster_reach(fit, distance)))
+        let map = whole_map(fit, &axes, offset);
+        let over = if query.is_shared {
+            Outline::new(&axes, &map.corners, raster_reach(fit, map.farthest))
         } else {
-            let hull = LightHull::of((Covers::Receivers, Detail::Outline), &content, axes, range, points)?;
-            nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
+            let hull = LightHull::of(Covers::Receivers, Detail::Outline, &content, axes, range, points)?;
+            Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest))
         };
-        if by < 0.0 {
-            return Ok(CoverageProof::CasterLost { point: fit.origin + point, by: -by as f32 });
+        let NearestCaster { margin, point, .. } = NearestCaster::find(&content, over, &half_spaces, offset);
+        if margin < 0.0 {
+            return Ok(CoverageProof::CasterLost { point: fit.origin + point, by: -margin as f32 });
         }
-        margins.casters = by as f32;
+        margins.casters = margin as f32;
     }
     if let Some((bias, storage)) = query.bias {
         let rounding = depth_rounding(fit, &Bias { constant_depth: bias, ..Bias::default() }, storage);
@@ -233,15 +227,35 @@ pub fn prove(
     Ok(CoverageProof::Proven(margins))
 }
 
-/// All of a map, as an outline along its axes relative to the content's origin, and the greatest distance of it from
-/// the fit's origin. `offset` is from that to the content's.
-fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> ([DVec2; 4], f64) {
+/// Refuses an input or a fit that no proof can use.
+fn check(input: &FitInput, fit: &LightProjection) -> Result<(), FitError> {
+    if input.views.is_empty() {
+        return Err(FitError::NoView);
+    }
+    for view in input.views {
+        view.checked()?;
+    }
+    checks::unit("the light's direction", input.direction)?;
+    checks::point("the fit's origin", fit.origin)?;
+    Ok(())
+}
+
+/// All of a map.
+struct WholeMap {
+    /// Its outline along its axes, relative to the content's origin.
+    corners: [DVec2; 4],
+    /// Greatest distance of it from the fit's origin, in metres.
+    farthest: f64,
+}
+
+/// Returns all of a map. `offset` leads from the fit's origin to the content's.
+fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> WholeMap {
     let (min, max) = fit.clip_box();
     let moved = fit.light_from_world.w_axis.truncate().as_dvec3();
     let from = (moved + axes.project(offset)).truncate();
     let (low, high) = (min.truncate() - from, max.truncate() - from);
     let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
-    (corners.map(|(x, y)| DVec2::new(x, y)), fit.farthest_corner())
+    WholeMap { corners: corners.map(|(x, y)| DVec2::new(x, y)), farthest: fit.farthest_corner() }
 }
 
 /// How far around the outline casters are read, in metres: the reach of the filter with the
@@ -270,21 +284,44 @@ fn texels(fit: &LightProjection, count: DVec2) -> f64 {
 /// of 2⁻²⁴ of the distance and the map's extent: ten in each term of either.
 const SHIFT_ROUNDINGS: f64 = 32.0;
 
-/// The casters' least distance behind the near plane, in metres, and where.
-fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
-    let mut scratch = OutlineScratch::new();
-    let mut least = (f64::INFINITY, DVec3::ZERO);
-    let is_over = |_: &(f64, DVec3), min, max| over.may_hold(min, max, f64::MIN);
-    content.each_caster(&mut least, is_over, |least, min, max| {
-        over.parts_over(min, max, f64::MIN, &mut scratch, |corner| {
-            let p = over.axes.unproject(corner) + offset;
-            let margin = half_spaces.near().into_iter().map(|near| near.margin(p)).fold(f64::INFINITY, f64::min);
-            if margin < least.0 {
-                *least = (margin, p);
+/// The caster over an outline that is nearest to the near plane.
+struct NearestCaster<'a> {
+    over: Outline<'a>,
+    scratch: OutlineScratch,
+    half_spaces: &'a HalfSpaces,
+    /// From the fit's origin to the content's.
+    offset: DVec3,
+    /// Least distance of a part of a caster behind the near plane, in metres. It is negative before the plane.
+    margin: f64,
+    /// The part that has it, relative to the fit's origin.
+    point: DVec3,
+}
+
+impl<'a> NearestCaster<'a> {
+    /// Finds it among the casters of a frame.
+    fn find(content: &Content, over: Outline<'a>, half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
+        let (scratch, margin, point) = (OutlineScratch::new(), f64::INFINITY, DVec3::ZERO);
+        let mut nearest = Self { over, scratch, half_spaces, offset, margin, point };
+        content.visit(Query::Casters, &mut nearest);
+        nearest
+    }
+}
+
+impl Visit for NearestCaster<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.over.may_hold(bounds.min, bounds.max, f64::MIN)
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        let Self { over, scratch, half_spaces, offset, margin, point } = self;
+        over.parts_over(bounds.min, bounds.max, f64::MIN, scratch, |corner| {
+            let p = over.axes.unproject(corner) + *offset;
+            let its = half_spaces.near().into_iter().map(|near| near.margin(p)).fold(f64::INFINITY, f64::min);
+            if its < *margin {
+                (*margin, *point) = (its, p);
             }
         });
-    });
-    least
+    }
 }
 
 /// The points that are least inside.
@@ -298,53 +335,21 @@ struct Worst<'a> {
 }
 
 impl<'a> Worst<'a> {
-    fn new(half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
-        Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None }
-    }
-
-    /// Adds everything that the views see between two depths.
-    fn add_all(&mut self, content: &Content, range: Range) {
-        if !content.knows_receivers() {
-            content.corners(range).for_each(|corner| self.add(corner));
-            return;
+    /// Finds them among everything that the views see between two depths.
+    fn of(content: &Content, range: Range, half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
+        let mut worst = Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None };
+        if content.knows_receivers() {
+            content.visit_corners(range, &mut worst);
+        } else {
+            content.corners(range).for_each(|corner| worst.take(corner));
         }
-        let add = |worst: &mut Self, _, slice: &Slice, (min, max)| worst.add_box(slice, min, max);
-        let all = content.receivers_in(range, self, Self::may_be_worse, add);
-        let Ok(()): Result<(), core::convert::Infallible> = all;
-    }
-
-    /// Adds a receiver's box clipped to a slice.
-    fn add_box(&mut self, slice: &Slice, min: DVec3, max: DVec3) -> Result<(), core::convert::Infallible> {
-        if !self.may_be_worse(min, max) {
-            return Ok(());
-        }
-        slice.clip(min, max, &mut |p| {
-            self.add(p);
-            Ok(())
-        })
-    }
-
-    /// Whether a point of a box may have less margin at some plane than all before it: none is less inside than the
-    /// corners.
-    fn may_be_worse(&self, min: DVec3, max: DVec3) -> bool {
-        self.any.is_none() || box_corners(min, max).into_iter().any(|corner| self.is_worse(corner))
+        worst
     }
 
     /// Whether a point has less margin at some plane than all before it.
     fn is_worse(&self, p: DVec3) -> bool {
         let p = p + self.offset;
         self.half_spaces.all.iter().any(|half_space| half_space.margin(p) < self.least[half_space.plane as usize].0)
-    }
-
-    fn add(&mut self, p: DVec3) {
-        let p = p + self.offset;
-        self.any = Some(p);
-        for half_space in &self.half_spaces.all {
-            let (margin, least) = (half_space.margin(p), &mut self.least[half_space.plane as usize]);
-            if margin < least.0 {
-                *least = (margin, p);
-            }
-        }
     }
 
     /// What is wrong, if anything: the plane that most of the map's extent is missing at.
@@ -363,6 +368,25 @@ impl<'a> Worst<'a> {
             }
         }
         worst.1
+    }
+}
+
+impl VisitCorners for Worst<'_> {
+    /// Returns whether a point of a box may have less margin at some plane than all before it. No point is less inside
+    /// than all corners.
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.any.is_none() || box_corners(bounds.min, bounds.max).into_iter().any(|corner| self.is_worse(corner))
+    }
+
+    fn take(&mut self, corner: DVec3) {
+        let p = corner + self.offset;
+        self.any = Some(p);
+        for half_space in &self.half_spaces.all {
+            let (margin, least) = (half_space.margin(p), &mut self.least[half_space.plane as usize]);
+            if margin < least.0 {
+                *least = (margin, p);
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::content::Content;
+use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::demand::histogram::DepthHistogram;
 use crate::technique::settings::MAX_MAPS;
 use crate::view::{Picture, RayCount, View, covered, crossing};
@@ -154,12 +154,9 @@ const AROUND: f64 = 1.0 / 3.0;
 /// Shares of the rays that first meet a box in each bin; equal shares where no box is known.
 pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, rays: RayCount) -> Weights {
     let mut spread = Spread::new(bins);
-    for (view_index, view) in content.views().enumerate() {
-        let mut grid = Grid::new(&view, rays);
-        let may_meet = |grid: &Grid, depths: (f64, f64), min, max| grid.may_meet(&view, depths.0, min, max);
-        content.each_receiver(view_index, &mut grid, may_meet, |grid, depths, min, max| {
-            grid.meet(&view, bins, depths.0, min, max);
-        });
+    for part in content.whole_views() {
+        let mut grid = Grid::new(&part.view, bins, rays);
+        content.visit(Query::Lit(&part), &mut grid);
         for ray in &grid.rays[..rays.columns * rays.rows] {
             let mut weight = 1.0;
             for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < NOWHERE) {
@@ -175,7 +172,7 @@ pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, rays: RayCount) -
 }
 
 /// Room for the rounding of shares of a ray.
-const ROUNDING: f64 = 1e-9;
+const RAY_ROUNDING: f64 = 1e-9;
 
 /// Marks the absence of a bin.
 const NOWHERE: u8 = u8::MAX;
@@ -201,7 +198,7 @@ impl Ray {
     }
 
     /// Adds a box that it enters and leaves at these shares.
-    fn add(&mut self, (mut enter, leave): (f64, f64), bin: impl Fn(f64) -> u8) {
+    fn add(&mut self, mut enter: f64, leave: f64, bin: impl Fn(f64) -> u8) {
         if enter <= 0.0 {
             // The farther of two ends; there is none yet at first.
             let leave = bin(leave);
@@ -266,17 +263,19 @@ impl Spread {
 }
 
 /// Rays through a picture, from its near to its far rectangle, row by row.
-struct Grid {
+struct Grid<'a> {
     rays: [Ray; MOST_RAYS],
     count: RayCount,
+    view: &'a View,
     picture: Picture,
+    bins: &'a Bins,
     near: f64,
     depth: f64,
 }
 
-impl Grid {
+impl<'a> Grid<'a> {
     #[expect(clippy::large_stack_arrays, reason = "56 KiB, for the time that it takes to look around")]
-    fn new(view: &View, count: RayCount) -> Self {
+    fn new(view: &'a View, bins: &'a Bins, count: RayCount) -> Self {
         let whole = view.slice(view.near, view.far);
         let corners = |i: usize| [whole.corners[i], whole.corners[i + 1], whole.corners[i + 2], whole.corners[i + 3]];
         let (start, end) = (corners(0), corners(4));
@@ -290,29 +289,33 @@ impl Grid {
                 *ray = Ray::new(first.0 + start_step * x, first.1 + end_step * x);
             }
         }
-        Self { rays, count, picture: view.picture(), near: view.near, depth: view.far - view.near }
+        Self { rays, count, view, picture: view.picture(), bins, near: view.near, depth: view.far - view.near }
     }
+}
 
-    /// Whether a box that begins at a view depth, or a box in it, may be among the nearest ones along a ray.
-    fn may_meet(&self, view: &View, nearest: f64, min: DVec3, max: DVec3) -> bool {
-        let Some((columns, rows)) = covered(view, &self.picture, self.count, min, max) else { return false };
-        let nearest = (nearest - self.near) / self.depth - ROUNDING;
+impl Visit for Grid<'_> {
+    /// Returns whether a box may be among the nearest ones along a ray.
+    fn wants(&self, bounds: &Bounds) -> bool {
+        let covered = covered(self.view, &self.picture, self.count, bounds.min, bounds.max);
+        let Some((columns, rows)) = covered else { return false };
+        let nearest = (bounds.depths.near - self.near) / self.depth - RAY_ROUNDING;
         let mut rays = rows.flat_map(|row| &self.rays[row * self.count.columns..][columns.clone()]);
         rays.any(|ray| nearest < ray.enters[LAYERS - 1])
     }
 
-    /// Intersects all rays with a box that begins at a view depth.
-    fn meet(&mut self, view: &View, bins: &Bins, nearest: f64, min: DVec3, max: DVec3) {
-        let Some((columns, rows)) = covered(view, &self.picture, self.count, min, max) else { return };
-        let bin = |t: f64| bins.of(self.near + self.depth * t) as u8;
+    /// Intersects all rays with a box.
+    fn take(&mut self, Found { bounds: Bounds { min, max, depths }, .. }: &Found) {
+        let covered = covered(self.view, &self.picture, self.count, *min, *max);
+        let Some((columns, rows)) = covered else { return };
+        let bin = |t: f64| self.bins.of(self.near + self.depth * t) as u8;
         // Shares of a ray are those of the view depth.
-        let nearest = (nearest - self.near) / self.depth - ROUNDING;
+        let nearest = (depths.near - self.near) / self.depth - RAY_ROUNDING;
         for row in rows {
             for ray in &mut self.rays[row * self.count.columns..][columns.clone()] {
                 if nearest < ray.enters[LAYERS - 1]
-                    && let Some(crossing) = crossing(ray.start, ray.along, min, max)
+                    && let Some((enter, leave)) = crossing(ray.start, ray.along, *min, *max)
                 {
-                    ray.add(crossing, bin);
+                    ray.add(enter, leave, bin);
                 }
             }
         }

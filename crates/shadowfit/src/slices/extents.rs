@@ -21,11 +21,11 @@ use glam::{DVec2, DVec3, Vec3};
 use super::bins::{BINS, Bins, log2};
 use crate::base::box_corners;
 use crate::base::checks::{greater, lesser};
-use crate::content::Content;
+use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::fits::{Covers, FitRule};
 use crate::light::{LightAxes, grid};
 use crate::technique::settings::RectangleKind;
-use crate::view::{EDGES, Plane, Range, View, at, clip_to_box, inner_part};
+use crate::view::{Depths, EDGES, Plane, Range, View, at, clip_to_box, inner_part};
 
 /// Directions over half a turn; a rectangle's other side is along the direction a quarter turn
 /// further on.
@@ -109,7 +109,11 @@ impl Sizes {
         let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
         if maps.rule.form.covers == Covers::Receivers && maps.content.knows_receivers() {
-            collect_receivers(&mut extents, maps.content, &directions, bins);
+            for part in maps.content.whole_views() {
+                let slabs = Slabs::new(&part.view, bins);
+                let mut collector = Collector { extents: &mut extents, slabs, directions: &directions };
+                maps.content.visit(Query::Lit(&part), &mut collector);
+            }
         } else {
             for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
                 let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
@@ -129,47 +133,40 @@ impl Sizes {
     }
 }
 
-/// Collects what the map of each bin would hold of the receivers.
-fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
-    for (index, view) in content.views().enumerate() {
-        let slabs = Slabs::new(&view, bins);
-        let is_new = |extents: &[Dop; BINS], depths, min, max| {
-            let (low, high) = directions.extent(min, max, HIERARCHY);
-            slabs.reached(depths).any(|bin| !extents[bin].holds(&low, &high))
-        };
-        content.each_receiver(index, extents, is_new, |extents, depths, min, max| {
-            collect_box(extents, &slabs, directions, depths, min, max);
-        });
-    }
+/// Collects what the map of each bin would hold of the receivers in a view.
+struct Collector<'a> {
+    extents: &'a mut [Dop; BINS],
+    slabs: Slabs,
+    directions: &'a Directions,
 }
 
-/// Collects what the map of each bin would hold of a box.
-fn collect_box(
-    extents: &mut [Dop; BINS],
-    slabs: &Slabs,
-    directions: &Directions,
-    depths: (f64, f64),
-    min: DVec3,
-    max: DVec3,
-) {
-    let reached = slabs.reached(depths);
-    let (low, high) = directions.extent(min, max, 0.0);
-    // Bins whose extent the box cannot widen, the first at 1.
-    let mut is_held = [true; BINS + 2];
-    let mut are_all_held = true;
-    for bin in reached.clone() {
-        is_held[bin + 1] = extents[bin].holds(&low, &high);
-        are_all_held &= is_held[bin + 1];
+impl Visit for Collector<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        let (low, high) = self.directions.extent(bounds.min, bounds.max, HIERARCHY);
+        self.slabs.reached(bounds.depths).any(|bin| !self.extents[bin].holds(&low, &high))
     }
-    if are_all_held {
-        return;
-    }
-    slabs.clip(min, max, &reached, |bins, p| {
-        if bins.clone().any(|bin| !is_held[bin]) {
-            let along = directions.along(p);
-            bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        let Self { extents, slabs, directions } = self;
+        let reached = slabs.reached(bounds.depths);
+        let (low, high) = directions.extent(bounds.min, bounds.max, 0.0);
+        // Bins whose extent the box cannot widen, the first at 1.
+        let mut is_held = [true; BINS + 2];
+        let mut are_all_held = true;
+        for bin in reached.clone() {
+            is_held[bin + 1] = extents[bin].holds(&low, &high);
+            are_all_held &= is_held[bin + 1];
         }
-    });
+        if are_all_held {
+            return;
+        }
+        slabs.clip(bounds.min, bounds.max, &reached, |bins, p| {
+            if bins.clone().any(|bin| !is_held[bin]) {
+                let along = directions.along(p);
+                bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
+            }
+        });
+    }
 }
 
 /// Least and greatest coordinates along the fixed directions.
@@ -323,7 +320,7 @@ impl Slabs {
     }
 
     /// The bins that a range of view depths may reach into.
-    pub(super) fn reached(&self, (near, far): (f64, f64)) -> ops::Range<usize> {
+    pub(super) fn reached(&self, Depths { near, far }: Depths) -> ops::Range<usize> {
         let first = self.depths[1..].partition_point(|plane| *plane < near);
         let end = self.depths[..BINS].partition_point(|plane| *plane <= far);
         first.max(self.filled.start)..end.min(self.filled.end)

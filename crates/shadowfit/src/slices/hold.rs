@@ -13,21 +13,28 @@
 //!    └─────────────────┘
 //! ```
 //!
-//! The views of the last two frames give the camera's rotation and movement, which are assumed to go on.
+//! The views of the last two frames give the camera's [motion](super::motion), which is assumed to go on.
+//!
+//! Depths are found in one of two ways. If only its slice of the view reads a map, casters count over the outline of the
+//! slice. If any point in the map may read it, casters and receivers count over the whole map.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 
 use crate::base::checks::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::content::{Content, MAX_SPHERE_VIEWS};
 use crate::fits;
 use crate::fits::covered::{Detail, LightHull};
+use crate::fits::near_plane::{self, NearPlane};
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{Constraint, FitInput, FitRule, Frame, Snapping, Volume, near_plane};
+use crate::fits::{Alignment, FitRule, Frame, Snapping};
+use crate::input::FitInput;
 use crate::light::grid::Grid;
-use crate::light::{LightAxes, grid};
+use crate::light::{Constraint, LightAxes, Volume, grid};
 use crate::technique::settings::Hysteresis;
 use crate::view::{Range, ViewFrustum};
+
+use super::motion::Motion;
 
 /// A map of an earlier frame, in absolute world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,31 +62,135 @@ pub(super) struct Holder<'a, 'b> {
 }
 
 impl Holder<'_, '_> {
-    /// The map of this frame: the held one if it still covers what it must.
+    /// Returns the map of this frame: the held one if it still covers what it must and is not too large.
     pub(super) fn hold(&self, held: Option<HeldMap>, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
         let rule = self.frame.rule;
-        // The border and the near plane depend on the texels of the map that is kept or made.
-        let plain = trial(&rule.without_room());
-        let fresh = |points: &mut [DVec2]| {
-            fits::fit_map(self.frame.content, &self.frame.light, &plain, slice, Snapping::Tight, points)
-        };
         let is_of_light = |held: &HeldMap| held.is_of(&self.frame.light.axes(rule.form.roll), rule);
-        let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
+        let Some(held) = held.filter(is_of_light) else { return self.make(&self.fresh(slice, points)?, slice, points) };
         let needed = self.needed(&held, Detail::Bounds, slice, points)?;
-        let Some(kept) = self.keep(&held, &needed, rule) else {
-            return self.make(&fresh(points)?, rule, slice, points);
+        let Some(kept) = self.keep(&held, &needed) else {
+            return self.make(&self.fresh(slice, points)?, slice, points);
         };
         // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
-        let waste = f64::from(self.settings.max_waste);
         let held_size = held.texel * rule.usable();
-        let held_area = held_size.x * held_size.y;
+        let (held_area, waste) = (held_size.x * held_size.y, f64::from(self.settings.max_waste));
         let is_small = |needed: &Needed| held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste;
-        if is_small(&needed) || rule.serves_all && is_small(&self.needed(&held, Detail::Outline, slice, points)?) {
+        if is_small(&needed) || needed.is_bounds && is_small(&self.needed(&held, Detail::Outline, slice, points)?) {
             return Ok(kept);
         }
-        let fresh = fresh(points)?;
+        let fresh = self.fresh(slice, points)?;
         let size = fresh.max - fresh.min;
-        if held_area > size.x * size.y * waste * waste { self.make(&fresh, rule, slice, points) } else { Ok(kept) }
+        if held_area > size.x * size.y * waste * waste { self.make(&fresh, slice, points) } else { Ok(kept) }
+    }
+
+    /// Fits a slice without its border and near plane, which depend on the texels of the map that is kept or made.
+    fn fresh(&self, slice: Range, points: &mut [DVec2]) -> Result<Volume, FitError> {
+        let plain = trial(&self.frame.rule.without_room());
+        fits::fit_map(self.frame.content, &self.frame.light, &plain, slice, Snapping::Tight, points)
+    }
+
+    /// Moves the held map by whole texels, if what must be covered fits into it.
+    fn keep(&self, held: &HeldMap, needed: &Needed) -> Option<HeldMap> {
+        let anchor = grid::anchor(&held.axes, self.frame.input.views[0].origin);
+        let low = floor((needed.across.min + anchor.truncate()) / held.texel);
+        let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
+        if high.x > low.x || high.y > low.y {
+            return None;
+        }
+        let mut kept = *held;
+        kept.first = held.first.min(low).max(high);
+        let depths = self.depths(&kept, needed);
+        let waste = f64::from(self.settings.max_waste);
+        kept.z = grid::stabilised_depth(Some(held.z), depths.far + anchor.z, depths.near + anchor.z, waste);
+        kept.is_empty = needed.is_empty;
+        kept.set_by = [Constraint::Held; 6];
+        Some(kept)
+    }
+
+    /// Finds what must be covered, along the held axes.
+    fn needed(&self, held: &HeldMap, detail: Detail, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
+        let rule = self.frame.rule;
+        // Casters are looked for over the outline, or else over the whole map.
+        let detail = if rule.serves_all { detail } else { Detail::Outline };
+        let hull = LightHull::of(rule.form.covers, detail, self.frame.content, held.axes, slice, points)?;
+        let extent = (held.texel * held.resolution).max_element();
+        let rounding = (hull.farthest + extent) * ROUNDING;
+        let pad = rounding + rule.margin;
+        let border = held.texel * rule.border;
+        let mut across = Rectangle::around(hull.outline, DVec2::X);
+        across.min -= border + pad;
+        across.max += border + pad;
+        let reach = near_plane::filter_reach(held.texel, rule, rounding);
+        let (far, near) = (hull.z.0 - pad, hull.z.1 + pad);
+        let over_outline = || near_plane::find(near, &held.axes, hull.outline, self.frame.content, rule.depth, reach);
+        Ok(Needed {
+            across,
+            far,
+            near,
+            over_outline: (!rule.serves_all).then(over_outline),
+            reach,
+            area: area(hull.outline),
+            is_bounds: detail == Detail::Bounds,
+            is_empty: hull.is_empty,
+        })
+    }
+
+    /// Finds the depths that a map must reach in its present place.
+    fn depths(&self, map: &HeldMap, needed: &Needed) -> Depths {
+        let (axes, content) = (&map.axes, self.frame.content);
+        if let Some(near) = &needed.over_outline {
+            return Depths { far: needed.far, near: near.z, near_set_by: near.set_by };
+        }
+        let Volume { min, max, .. } = map.volume(content.origin);
+        let (min, max) = (min.truncate(), max.truncate());
+        let near = near_plane::find_over(needed.near, axes, min, max, content, self.frame.rule.depth, needed.reach);
+        let far = near_plane::find_far(needed.far, axes, min, max, content);
+        Depths { far, near: near.z, near_set_by: near.set_by }
+    }
+
+    /// Makes a map with room for the motion to come.
+    fn make(&self, fresh: &Volume, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
+        let rule = self.frame.rule;
+        let mut volume = self.look_ahead(fresh, slice, points)?.unwrap_or(*fresh);
+        let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.settings.margin));
+        volume.min -= room.extend(0.0);
+        volume.max += room.extend(0.0);
+        let origin = self.frame.input.views[0].origin;
+        let grid = rule.snap(&mut volume, origin);
+        let mut map = HeldMap::new(&volume, grid, rule, fresh);
+        let needed = self.needed(&map, Detail::Bounds, slice, points)?;
+        let anchor = grid::anchor(&map.axes, origin).z;
+        let depths = self.depths(&map, &needed);
+        let (far, near) = (depths.far + anchor, depths.near + anchor);
+        let ahead = grid::stabilised_depth(None, grid.z.0.min(far), grid.z.1.max(near), 1.0);
+        // A depth range that the next frame would give up at once is not used.
+        map.z = grid::stabilised_depth(Some(ahead), far, near, f64::from(self.settings.max_waste));
+        map.set_by[5] = depths.near_set_by.unwrap_or(map.set_by[5]);
+        Ok(map)
+    }
+
+    /// Fits a slice around what the views will see some frames on, as many as the settings' growth allows. `None` if
+    /// nothing moves, or for lack of views: a map without room is still valid for this frame.
+    fn look_ahead(&self, fresh: &Volume, slice: Range, points: &mut [DVec2]) -> Result<Option<Volume>, FitError> {
+        let view = &self.frame.input.views[0];
+        let Some(motion) = self.motion.filter(|motion| !motion.is_still(view)) else { return Ok(None) };
+        let plain = trial(&FitRule { border: 0.0, ..*self.frame.rule });
+        let (old, growth) = (fresh.max - fresh.min, f64::from(self.settings.max_growth));
+        let mut within_growth = |frames: u32| {
+            let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
+            let larger = match self.fit_ahead(&ahead, &plain, slice, points) {
+                Ok(larger) => larger,
+                Err(error @ FitError::ScratchTooSmall { .. }) => return Err(error),
+                Err(_) => return Ok(None),
+            };
+            let size = larger.max - larger.min;
+            Ok(Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth))
+        };
+        if self.frame.rule.serves_all {
+            by_halves(self.settings.look_ahead, within_growth)
+        } else {
+            steps_ahead(self.settings.look_ahead).find_map(|frames| within_growth(frames).transpose()).transpose()
+        }
     }
 
     /// A plain fit around what the views see and what they will see in some frames.
@@ -102,145 +213,63 @@ impl Holder<'_, '_> {
         let (content, points) = Content::new(input.scene(), points)?;
         fits::fit_map(&content, &self.frame.light, rule, slice, Snapping::Tight, points)
     }
-
-    /// The held map moved by whole texels, if what must be covered fits into it.
-    fn keep(&self, held: &HeldMap, needed: &Needed, rule: &FitRule) -> Option<HeldMap> {
-        let anchor = grid::anchor(&held.axes, self.frame.input.views[0].origin);
-        let low = floor((needed.across.min + anchor.truncate()) / held.texel);
-        let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
-        if high.x > low.x || high.y > low.y {
-            return None;
-        }
-        let mut kept = *held;
-        kept.first = held.first.min(low).max(high);
-        let waste = f64::from(self.settings.max_waste);
-        let (z, _) = self.depths(&kept, needed, rule);
-        kept.z = grid::stabilised_depth(Some(held.z), (z.0 + anchor.z, z.1 + anchor.z), waste);
-        kept.is_empty = needed.is_empty;
-        kept.set_by = [Constraint::Held; 6];
-        Some(kept)
-    }
-
-    /// What must be covered and where the near plane must be, along the held axes. Its area may come out too small
-    /// where no more than bounds are asked for.
-    fn needed(&self, held: &HeldMap, detail: Detail, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
-        let rule = self.frame.rule;
-        // Casters are looked for over the outline, or else over the whole map.
-        let detail = if rule.serves_all { detail } else { Detail::Outline };
-        let hull = LightHull::of((rule.form.covers, detail), self.frame.content, held.axes, slice, points)?;
-        let extent = (held.texel * held.resolution).max_element();
-        let rounding = (hull.farthest + extent) * ROUNDING;
-        let pad = rounding + rule.margin;
-        let border = held.texel * rule.border;
-        let mut across = Rectangle::around(hull.outline, DVec2::X);
-        across.min -= border + pad;
-        across.max += border + pad;
-        let reach = near_plane::filter_reach(held.texel, rule, rounding);
-        let mut z = (hull.z.0 - pad, hull.z.1 + pad);
-        let mut near_set_by = None;
-        if !rule.serves_all {
-            let near = near_plane::find(z.1, &held.axes, hull.outline, self.frame.content, rule.depth, reach);
-            (z.1, near_set_by) = (near.z, near.set_by);
-        }
-        let (area, is_empty) = (area(hull.outline), hull.is_empty);
-        Ok(Needed { across, z, near_set_by, reach, area, is_empty })
-    }
-
-    /// Depths that a map must reach, where it lies by now, and what sets the near one if it is not what is covered.
-    fn depths(&self, map: &HeldMap, needed: &Needed, rule: &FitRule) -> ((f64, f64), Option<Constraint>) {
-        if !rule.serves_all {
-            return (needed.z, needed.near_set_by);
-        }
-        let volume = map.volume(self.frame.content.origin);
-        let across = (volume.min.truncate(), volume.max.truncate());
-        let near = near_plane::find_over(needed.z.1, &map.axes, across, self.frame.content, rule.depth, needed.reach);
-        let far = near_plane::find_far(needed.z.0, &map.axes, across, self.frame.content);
-        ((far, near.z), near.set_by)
-    }
-
-    /// What will be covered some frames on, as many as the settings' growth allows; `None` where nothing moves, or
-    /// for lack of views: a map without room is still valid for this frame.
-    fn look_ahead(
-        &self,
-        fresh: &Volume,
-        rule: &FitRule,
-        slice: Range,
-        points: &mut [DVec2],
-    ) -> Result<Option<Volume>, FitError> {
-        let view = &self.frame.input.views[0];
-        let Some(motion) = self.motion.filter(|motion| !motion.is_still(view)) else { return Ok(None) };
-        let plain = trial(&FitRule { border: 0.0, ..*rule });
-        let (old, growth) = (fresh.max - fresh.min, f64::from(self.settings.max_growth));
-        let mut within_growth = |frames: u32| {
-            let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
-            let larger = match self.fit_ahead(&ahead, &plain, slice, points) {
-                Ok(larger) => larger,
-                Err(error @ FitError::ScratchTooSmall { .. }) => return Err(error),
-                Err(_) => return Ok(None),
-            };
-            let size = larger.max - larger.min;
-            Ok(Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth))
-        };
-        if !rule.serves_all {
-            let found = steps_ahead(self.settings.look_ahead).find_map(|frames| within_growth(frames).transpose());
-            return found.transpose();
-        }
-        // The more frames the larger: the greatest of a few numbers is found by halves.
-        let steps = || core::iter::successors(Some(self.settings.look_ahead), |n| Some(n / 2)).take_while(|n| *n > 0);
-        let (mut low, mut high, mut found) = (0, steps().count(), None);
-        while low < high {
-            let middle = usize::midpoint(low, high);
-            match steps().nth(middle).map_or(Ok(None), &mut within_growth)? {
-                Some(volume) => (high, found) = (middle, Some(volume)),
-                None => low = middle + 1,
-            }
-        }
-        Ok(found)
-    }
-
-    /// A new map with room for the motion to come.
-    fn make(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
-        let mut volume = self.look_ahead(fresh, rule, slice, points)?.unwrap_or(*fresh);
-        let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.settings.margin));
-        volume.min -= room.extend(0.0);
-        volume.max += room.extend(0.0);
-        let origin = self.frame.input.views[0].origin;
-        let grid = volume.snap(origin, rule);
-        let mut map = HeldMap::new(&volume, grid, rule, fresh);
-        let needed = self.needed(&map, Detail::Bounds, slice, points)?;
-        let anchor = grid::anchor(&map.axes, origin).z;
-        let (z, near_set_by) = self.depths(&map, &needed, rule);
-        let now = (z.0 + anchor, z.1 + anchor);
-        let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
-        // A depth range that the next frame would give up at once is not used.
-        map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.settings.max_waste));
-        map.set_by[5] = near_set_by.unwrap_or(map.set_by[5]);
-        Ok(map)
-    }
 }
 
-/// Numbers of frames to look ahead, each a quarter less than the one before.
+/// Numbers of frames to look ahead, each a quarter less than the one before. All are tried in this order, since a map does
+/// not always grow with the number: what a turning camera sees comes back.
 fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
     core::iter::successors(Some(horizon), |frames| Some(frames / 4 * 3 + frames % 4 * 3 / 4))
         .take_while(|frames| *frames > 0)
 }
 
+/// Finds a number of frames to look ahead within the growth that is allowed, each half of the one before, by bisection.
+/// It is the greatest one if maps grow with the number. If not, it is still within the growth. That is enough for maps
+/// that cover more than a slice anyway, and saves most of the fits.
+fn by_halves(
+    horizon: u32,
+    mut within_growth: impl FnMut(u32) -> Result<Option<Volume>, FitError>,
+) -> Result<Option<Volume>, FitError> {
+    let steps = || core::iter::successors(Some(horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
+    let (mut low, mut high, mut found) = (0, steps().count(), None);
+    while low < high {
+        let middle = usize::midpoint(low, high);
+        match steps().nth(middle).map_or(Ok(None), &mut within_growth)? {
+            Some(volume) => (high, found) = (middle, Some(volume)),
+            None => low = middle + 1,
+        }
+    }
+    Ok(found)
+}
+
 /// A rule for maps whose depths are found later: the rectangle alone is enough, the contents are not visited.
 fn trial(rule: &FitRule) -> FitRule {
-    FitRule { serves_all: rule.serves_all && rule.form.is_on_grid, ..*rule }
+    FitRule { serves_all: rule.serves_all && rule.form.alignment == Alignment::OnGrid, ..*rule }
 }
 
 /// What a map must cover in this frame, along its axes and relative to the origin.
 struct Needed {
     across: Rectangle,
-    z: (f64, f64),
-    near_set_by: Option<Constraint>,
+    /// Depths of what must be covered, along the light's z.
+    far: f64,
+    near: f64,
+    /// The near plane, if casters count over the outline. Otherwise it depends on the place of the map.
+    over_outline: Option<NearPlane>,
     /// How far beside it casters count, in metres.
     reach: f64,
     /// Area of the outline of what must be covered, in square metres.
     area: f64,
-    /// Whether nothing of it is known to receive.
+    /// Whether the outline may lack corners, so that its area may be too small.
+    is_bounds: bool,
+    /// Whether no part of it is known to receive.
     is_empty: bool,
+}
+
+/// Depths of a map along the light's z, relative to the origin.
+struct Depths {
+    far: f64,
+    near: f64,
+    /// What sets the near one, unless it is what must be covered.
+    near_set_by: Option<Constraint>,
 }
 
 /// Share by which the rounding of a map's axes may change an area.
@@ -265,7 +294,7 @@ impl HeldMap {
     /// The box that it stores, relative to an origin.
     pub(super) fn volume(&self, origin: DVec3) -> Volume {
         let grid = Grid { first: self.first, texel: self.texel, z: self.z };
-        Volume::on_grid(self.axes, grid, self.resolution, origin, (self.set_by, self.is_empty))
+        Volume::on_grid(self.axes, grid, self.resolution, origin, self.set_by, self.is_empty)
     }
 
     /// Whether the map is of the same light and resolution.
@@ -282,88 +311,4 @@ fn area(outline: &[DVec2]) -> f64 {
 
 fn floor(v: DVec2) -> DVec2 {
     DVec2::new(checks::floor(v.x), checks::floor(v.y))
-}
-
-/// The step of a view from one frame to the next.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
-    /// Rotation about the eye, as the world axes' images.
-    turn: [DVec3; 3],
-    /// Movement of the eye, in metres.
-    step: DVec3,
-}
-
-/// Difference of two views' edges, as an angle in radians, and of their near corners, as a share of the
-/// far ones' distance, above which the lens has changed and nothing can be predicted.
-const SAME_LENS: f64 = 1e-4;
-
-/// The same for their far corners, for which an f32 matrix of plain depth has an error of 4 · 2⁻²⁴ ·
-/// far / near.
-const SAME_FAR: f64 = 1.0 / 64.0;
-
-/// Orthonormal axes of a view; `None` for a view without them.
-fn axes(view: &ViewFrustum) -> Option<[DVec3; 3]> {
-    let forward = view.forward.as_dvec3();
-    let right = (view.corners[5] - view.corners[4]).as_dvec3();
-    let up = right.cross(forward);
-    let right = forward.cross(up);
-    let (r, u, f) = (checks::length(right), checks::length(up), checks::length(forward));
-    if r > 0.0 && u > 0.0 && f > 0.0 { Some([right / r, up / u, forward / f]) } else { None }
-}
-
-impl Motion {
-    /// The step between two views, if they look through the same lens.
-    pub(super) fn between(before: &ViewFrustum, now: &ViewFrustum) -> Option<Self> {
-        let (a, b) = (axes(before)?, axes(now)?);
-        // Σ bᵢ aᵢᵀ maps one view's axes to the other's.
-        let image = |v: DVec3| b[0] * a[0].dot(v) + b[1] * a[1].dot(v) + b[2] * a[2].dot(v);
-        let motion =
-            Self { turn: [image(DVec3::X), image(DVec3::Y), image(DVec3::Z)], step: now.origin - before.origin };
-        let expected = motion.after(before, 1);
-        let far = checks::length(now.corners[4].as_dvec3());
-        let apart = |i: usize| checks::length((expected.corners[i] - now.corners[i]).as_dvec3());
-        let is_same = |i: usize| {
-            let edges = [&expected, now].map(|view| (view.corners[i + 4] - view.corners[i]).as_dvec3());
-            let [a, b] = edges.map(|edge| edge / checks::length(edge));
-            apart(i) <= SAME_LENS * far && apart(i + 4) <= SAME_FAR * far && checks::length(a - b) <= SAME_LENS
-        };
-        if (0..4).all(is_same) { Some(motion) } else { None }
-    }
-
-    /// Whether a view stands still, up to rounding.
-    pub(super) fn is_still(&self, view: &ViewFrustum) -> bool {
-        let turn = self.turn;
-        let turned = (turn[0] - DVec3::X).abs().max((turn[1] - DVec3::Y).abs()).max((turn[2] - DVec3::Z).abs());
-        let far = checks::length(view.corners[4].as_dvec3());
-        checks::length(self.step) <= STILL * far && turned.max_element() < STILL
-    }
-
-    /// A view after a number of further frames of the same motion.
-    pub(super) fn after(&self, view: &ViewFrustum, frames: u32) -> ViewFrustum {
-        let mut turn = [DVec3::X, DVec3::Y, DVec3::Z];
-        let mut power = self.turn;
-        let mut left = frames;
-        while left > 0 {
-            if left & 1 == 1 {
-                turn = turn.map(|v| apply(&power, v));
-            }
-            power = power.map(|v| apply(&power, v));
-            left >>= 1;
-        }
-        let turned = |v: Vec3| apply(&turn, v.as_dvec3()).as_vec3();
-        ViewFrustum {
-            origin: view.origin + self.step * f64::from(frames),
-            corners: view.corners.map(turned),
-            forward: turned(view.forward),
-            ..*view
-        }
-    }
-}
-
-/// Turn below which a view counts as still, in radians, and movement as a share of the far corners'
-/// distance: the rounding of f32 corners.
-const STILL: f64 = 1e-6;
-
-fn apply(matrix: &[DVec3; 3], v: DVec3) -> DVec3 {
-    matrix[0] * v.x + matrix[1] * v.y + matrix[2] * v.z
 }

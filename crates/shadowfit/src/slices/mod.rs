@@ -11,6 +11,7 @@
 mod bins;
 mod extents;
 mod hold;
+mod motion;
 mod optimise;
 mod splits;
 
@@ -18,13 +19,15 @@ use glam::{DVec2, Vec3};
 
 use crate::base::FitError;
 use crate::base::checks::VIEW_DEPTH_ROUNDING;
-use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
+use crate::fits::{self, Alignment, Frame, PlacedMap, PlacedMaps, Snapping};
+use crate::light::Volume;
 use crate::technique::Slices;
 use crate::technique::settings::{Hysteresis, MAX_MAPS, MapSelection, Stabilise};
 use crate::view::{Range, ViewFrustum};
 
 use bins::Splits;
-use hold::{HeldMap, Holder, Motion};
+use hold::{HeldMap, Holder};
+use motion::Motion;
 use splits::{Chooser, HeldSplits};
 
 /// What slices begin with in the next frame.
@@ -121,12 +124,12 @@ impl Placer<'_, '_> {
         let holder = Holder { frame, settings: hold, motion };
         let mut maps = [None; MAX_MAPS];
         for (i, map) in maps.iter_mut().enumerate().take(self.settings.count as usize) {
-            let volume = if frame.rule.can_be_held() {
+            let volume = if frame.rule.form.alignment == Alignment::Exact {
+                self.fitted(i, Snapping::Tight)?
+            } else {
                 let now = holder.hold(before.and_then(|before| before[i]), self.slice(i), self.points)?;
                 held[i] = Some(now);
                 now.volume(frame.content.origin)
-            } else {
-                self.fitted(i, Snapping::Tight)?
             };
             *map = Some(self.placed(i, volume));
         }

@@ -10,7 +10,7 @@ use crate::base::{FitError, checks};
 use crate::fits::{Covers, Frame};
 use crate::technique::Slices;
 use crate::technique::settings::{MAX_MAPS, SplitScheme, Stabilise};
-use crate::view::{Range, RayCount};
+use crate::view::{Depths, Range, RayCount};
 
 use super::bins::{BINS, Bins, Splits, Weights, even, weights_of_boxes, weights_of_histogram};
 use super::extents::{Maps, Sizes, slice_bin};
@@ -80,53 +80,55 @@ impl<'a, 'b> Chooser<'a, 'b> {
         {
             let age = held.age.saturating_add(1);
             let is_young = age < COMPARE_EVERY;
-            if is_young || self.serves(&splits, held.spread, spread) {
+            let (near, far) = held.spread;
+            if is_young || self.serves(&splits, Depths { near, far }, spread) {
                 return Ok(HeldSplits { splits, age: if is_young { age } else { 0 }, ..held });
             }
         }
         let splits = self.choose(spread)?;
-        Ok(HeldSplits { splits, spread: self.bounded(spread), far: self.frame.range.far, age: 0 })
+        let Depths { near, far } = self.bounded(spread);
+        Ok(HeldSplits { splits, spread: (near, far), far: self.frame.range.far, age: 0 })
     }
 
     /// The depths over which the maps are distributed: those of the receivers in view, if known.
-    fn spread(&self) -> (f64, f64) {
+    fn spread(&self) -> Depths {
         let (near, far) = (f64::from(self.frame.range.near), f64::from(self.frame.range.far));
         let (near, far) = match self.frame.content.depth_range() {
-            Some((first, last)) => (first.max(near), last.min(far)),
+            Some(seen) => (seen.near.max(near), seen.far.min(far)),
             None => (near, far),
         };
         // Logarithms need a positive near end; no practical view has a greater depth ratio than
         // this.
         let near = near.max(far * NEAREST);
-        if near < far { (near, far) } else { (far * 0.5, far) }
+        Depths { near: if near < far { near } else { far * 0.5 }, far }
     }
 
     /// The same within the bounds of what is visible, if they are known and the scheme is not
     /// content-aware itself.
-    fn bounded(&self, (near, far): (f64, f64)) -> (f64, f64) {
+    fn bounded(&self, spread: Depths) -> Depths {
         let is_fixed = !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
-        let Some(bounds) = self.frame.input.depth_bounds.filter(|_| is_fixed) else { return (near, far) };
-        let within = |bound: f32| f64::from(bound).max(near).min(far);
-        (within(bounds.near), within(bounds.far))
+        let Some(bounds) = self.frame.input.depth_bounds.filter(|_| is_fixed) else { return spread };
+        let within = |bound: f32| f64::from(bound).max(spread.near).min(spread.far);
+        Depths { near: within(bounds.near), far: within(bounds.far) }
     }
 
     /// View depth to which the last map reaches: that of what is shadowed where fits clip the
     /// receivers to their slice, else that of the receivers. If it is to be held, no turn of the
     /// camera may exceed it, and there is room for some movement.
-    fn end(&self, spread: (f64, f64)) -> f64 {
+    fn end(&self, spread: Depths) -> f64 {
         let far = f64::from(self.frame.range.far);
         if self.frame.rule.form.whole_distance {
             return far;
         }
         let is_held = self.settings.stabilise != Stabilise::Off;
         let end = if is_held { self.frame.content.farthest().map(|far| far * (1.0 + FAR_ROOM)) } else { None };
-        end.unwrap_or(spread.1).min(far)
+        end.unwrap_or(spread.far).min(far)
     }
 
     /// The splits by the technique's scheme over the given depths.
-    fn choose(&self, spread: (f64, f64)) -> Result<Splits, FitError> {
+    fn choose(&self, spread: Depths) -> Result<Splits, FitError> {
         let count = self.settings.count as usize;
-        let (near, far) = self.bounded(spread);
+        let Depths { near, far } = self.bounded(spread);
         let splits = match self.settings.splits {
             SplitScheme::Uniform => practical(near, far, count, 0.0),
             SplitScheme::Logarithmic => practical(near, far, count, 1.0),
@@ -142,7 +144,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
 
     /// The same splits, ascending, from the near end of what is shadowed to the far end of the
     /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
-    fn whole(&self, mut splits: Splits, spread: (f64, f64)) -> Splits {
+    fn whole(&self, mut splits: Splits, spread: Depths) -> Splits {
         let count = self.settings.count as usize;
         let end = self.end(spread) as f32;
         splits[0] = self.frame.range.near;
@@ -153,7 +155,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
     }
 
     /// The best splits for what is visible.
-    fn by_content(&self, spread: (f64, f64)) -> Splits {
+    fn by_content(&self, spread: Depths) -> Splits {
         let Estimate { bins, weights, sizes } = self.estimate(spread);
         let chosen = optimise::best(bins, weights, sizes, self.settings.count as usize);
         let mut splits = [0.0; MAX_MAPS + 1];
@@ -169,11 +171,11 @@ impl<'a, 'b> Chooser<'a, 'b> {
 
     /// Splits of an earlier frame, in which shadows ended at `last_far`, if they hold all of this one's
     /// depths and not far more. The rounding of a camera's matrix changes nothing but their far end.
-    fn kept(&self, splits: &Splits, last_far: f32, now: (f64, f64)) -> Option<Splits> {
+    fn kept(&self, splits: &Splits, last_far: f32, now: Depths) -> Option<Splits> {
         let count = self.settings.count as usize;
         let (end, far) = (f64::from(splits[count]), f64::from(self.frame.range.far));
         let is_wasteful = end > self.end(now) * f64::from(self.settings.stabilise.max_waste());
-        let needed = now.1.min(far);
+        let needed = now.far.min(far);
         let is_same_far = (far - f64::from(last_far)).abs() <= far.abs() * FAR_ROUNDING;
         let reaches = end >= needed || (is_same_far && end >= f64::from(last_far));
         if is_wasteful || !reaches || !self.is_same_near(splits[0]) {
@@ -197,14 +199,14 @@ impl<'a, 'b> Chooser<'a, 'b> {
 
     /// Whether splits of an earlier frame are still good enough for this one, compared with the
     /// best ones.
-    fn serves(&self, splits: &Splits, held: (f64, f64), now: (f64, f64)) -> bool {
+    fn serves(&self, splits: &Splits, held: Depths, now: Depths) -> bool {
         let count = self.settings.count as usize;
         let waste = f64::from(self.settings.stabilise.max_waste());
         if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
             let is_near = |now: f64, held: f64| now >= held / waste && now <= held * waste;
             let bounded = self.bounded(now);
             // Without bounds the far end is what the splits have to reach.
-            return is_near(bounded.0, held.0) && (bounded == now || is_near(bounded.1, held.1));
+            return is_near(bounded.near, held.near) && (bounded == now || is_near(bounded.far, held.far));
         }
         let Estimate { bins, weights, sizes } = self.estimate(now);
         let mut chosen = [bins.count; MAX_MAPS + 1];
@@ -222,7 +224,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
     }
 
     /// What the best splits over the given depths follow from.
-    fn estimate(&self, spread: (f64, f64)) -> &Estimate {
+    fn estimate(&self, spread: Depths) -> &Estimate {
         self.estimate.get_or_init(|| {
             let bins = self.bins(spread);
             Estimate { bins, weights: self.weights(&bins), sizes: self.sizes(&bins) }
@@ -237,7 +239,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
             rule: self.frame.rule,
             is_snapped: matches!(self.settings.stabilise, Stabilise::Snap { .. }),
             near: f64::from(self.frame.range.near),
-            end: self.end((bins.near, bins.far)),
+            end: self.end(Depths { near: bins.near, far: bins.far }),
         };
         let sizes = maps.sizes(bins);
         match self.read_beyond(bins) {
@@ -247,8 +249,8 @@ impl<'a, 'b> Chooser<'a, 'b> {
     }
 
     /// The bins of a range of view depths.
-    fn bins(&self, (near, far): (f64, f64)) -> Bins {
-        Bins::new(near, far, if self.frame.rule.serves_all { SHARED_BINS } else { BINS })
+    fn bins(&self, spread: Depths) -> Bins {
+        Bins::new(spread.near, spread.far, if self.frame.rule.serves_all { SHARED_BINS } else { BINS })
     }
 
     /// Number of bins by which maps are read beyond their slices.
@@ -324,13 +326,11 @@ const NEAREST: f64 = 1.0 / 65_536.0;
 fn manual(given: &[f32; MAX_MAPS - 1], count: usize, range: Range) -> Result<Splits, FitError> {
     let mut splits = [range.far; MAX_MAPS + 1];
     splits[0] = range.near;
-    let mut last = f32::MIN;
     for i in 1..count {
-        let split = checks::finite("a manual split", f64::from(given[i - 1]))? as f32;
-        if split <= last {
-            return Err(FitError::NearNotBelowFar { near: last, far: split });
+        splits[i] = checks::finite("a manual split", f64::from(given[i - 1]))? as f32;
+        if i > 1 && splits[i] <= splits[i - 1] {
+            return Err(FitError::NearNotBelowFar { near: splits[i - 1], far: splits[i] });
         }
-        (splits[i], last) = (split, split);
     }
     Ok(splits)
 }

@@ -45,8 +45,8 @@ use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::culling::CasterVolume;
-use crate::fits::light_fit::{COVER_TOLERANCE, WorldMatrices};
 use crate::light::{LightAxes, is_vertical};
+use crate::projection::{COVER_TOLERANCE, WorldMatrices};
 use crate::view::{PerspectiveCamera, ViewFrustum};
 
 /// A light at a point that shines through a rectangular window: a lamp, a headlight, a projector.

@@ -18,7 +18,7 @@
 use glam::{DVec3, DVec4, Vec3};
 
 use super::frustum::{CORNERS_XY, Unprojection, ViewFrustum};
-use super::slice::EDGES;
+use super::slice::{Depths, EDGES};
 use crate::base::{DepthConvention, FitError, checks};
 
 /// Share of w, at the plane where it is least, by which w may differ over a picture whose planes count as parallel.
@@ -44,10 +44,17 @@ const OCTAVE_STEPS: f64 = 8.0;
 const DEPTH_STEPS: f64 = 16.0;
 
 /// Share of a view depth that is left for rounding.
-const ROUNDING: f64 = 1e-6;
+const PLANE_ROUNDING: f64 = 1e-6;
+
+/// A range of clip x or clip y.
+#[derive(Clone, Copy)]
+struct Side {
+    least: f64,
+    greatest: f64,
+}
 
 /// The whole picture: clip x, then clip y.
-const WHOLE: [(f64, f64); 2] = [(-1.0, 1.0); 2];
+const WHOLE: [Side; 2] = [Side { least: -1.0, greatest: 1.0 }; 2];
 
 /// Corners of the clip cube on its near face. Those of the far face follow. Both have the order of [`CORNERS_XY`].
 const NEAR_FACE: core::ops::Range<usize> = 0..4;
@@ -77,16 +84,16 @@ impl Unprojection {
         let limit = f64::from(max_distance);
         let Some(seen) = cube.within(limit) else {
             // Where the plane hides the whole picture, the view is empty at any depth.
-            let near = cube.within(f64::MAX).map_or(limit.min(1.0), |all| all.depths.0);
+            let near = cube.within(f64::MAX).map_or(limit.min(1.0), |all| all.depths.near);
             checks::may_begin_beyond(near as f32, max_distance)?;
-            return cube.frustum(self.eye, WHOLE, (near, near));
+            return cube.frustum(self.eye, WHOLE, Depths { near, far: near });
         };
         let is_endless = seen.least_w <= self.infinite_w * cube.greatest_w();
         if max_distance == f32::MAX && (is_endless || seen.is_cut) {
             return Err(FitError::Endless);
         }
-        let (near, far) = cube.stepped(seen.depths);
-        cube.frustum(self.eye, seen.picture, (near, far.min(limit)))
+        let Depths { near, far } = cube.stepped(seen.depths);
+        cube.frustum(self.eye, seen.picture, Depths { near, far: far.min(limit) })
     }
 
     /// The clip cube in the world, with the direction of view.
@@ -120,9 +127,9 @@ struct Cube {
 /// The part of a clip cube that lies before a view depth.
 struct Seen {
     /// Least and greatest view depth, in metres.
-    depths: (f64, f64),
+    depths: Depths,
     /// The picture's part that shows it: least and greatest clip x, then clip y.
-    picture: [(f64, f64); 2],
+    picture: [Side; 2],
     least_w: f64,
     /// Whether a part of the cube lies beyond.
     is_cut: bool,
@@ -148,7 +155,7 @@ impl Cube {
             let across = |side: Vertex| side.position * along.w - along.position * side.w;
             across(right).cross(across(up))
         } else {
-            check_rays(&corners, (right.w, up.w))?;
+            check_rays(&corners, right.w, up.w)?;
             along.position
         };
         let length = checks::length(axis);
@@ -156,7 +163,8 @@ impl Cube {
         let centre = at(0.0, 0.0, near, 1.0);
         let change = axis.dot(along.position) * centre.w - axis.dot(centre.position) * along.w;
         if !(length > 0.0 && length.is_finite()) || change == 0.0 || greatest == 0.0 {
-            return Err(coinciding([right.position, up.position, along.position].map(checks::length)));
+            let [right, up, along] = [right.position, up.position, along.position].map(checks::length);
+            return Err(coinciding(right, up, along));
         }
         let forward = axis / if change < 0.0 { -length } else { length };
         // A ray begins at the eye, where w is infinite, and w falls from there on.
@@ -176,8 +184,12 @@ impl Cube {
     /// The part before a view depth; `None` where there is none.
     fn within(&self, limit: f64) -> Option<Seen> {
         let room = |vertex: &Vertex| if limit == f64::MAX { vertex.w } else { limit * vertex.w - vertex.h };
-        let mut seen =
-            Seen { depths: (f64::MAX, f64::MIN), picture: [(f64::MAX, f64::MIN); 2], least_w: f64::MAX, is_cut: false };
+        let mut seen = Seen {
+            depths: Depths { near: f64::INFINITY, far: f64::NEG_INFINITY },
+            picture: [Side { least: f64::INFINITY, greatest: f64::NEG_INFINITY }; 2],
+            least_w: f64::INFINITY,
+            is_cut: false,
+        };
         let corners = || self.corners.iter().zip(CORNERS_XY.iter().cycle());
         for (corner, (x, y)) in corners() {
             if room(corner) >= 0.0 {
@@ -197,32 +209,34 @@ impl Cube {
             let ((ax, ay), (bx, by)) = (CORNERS_XY[i % 4], CORNERS_XY[j % 4]);
             seen.add(mix(a.h, b.h), mix(a.w, b.w), [mix(ax, bx), mix(ay, by)]);
         }
-        (seen.depths.0 < seen.depths.1).then_some(seen)
+        (seen.depths.near < seen.depths.far).then_some(seen)
     }
 
     /// View depths rounded outward to steps, so that they mostly stay the same while the planes move a little.
-    fn stepped(&self, (near, far): (f64, f64)) -> (f64, f64) {
+    fn stepped(&self, Depths { near, far }: Depths) -> Depths {
         if self.is_perspective && near > 0.0 {
             let step =
                 |depth: f64, round: fn(f64) -> f64| libm::exp2(round(libm::log2(depth) * OCTAVE_STEPS) / OCTAVE_STEPS);
-            return (step(near * (1.0 - ROUNDING), libm::floor), step(far * (1.0 + ROUNDING), libm::ceil));
+            return Depths {
+                near: step(near * (1.0 - PLANE_ROUNDING), libm::floor),
+                far: step(far * (1.0 + PLANE_ROUNDING), libm::ceil),
+            };
         }
-        let rounding = (far - near) * ROUNDING;
+        let rounding = (far - near) * PLANE_ROUNDING;
         let step = libm::exp2(libm::ceil(libm::log2((far - near) / DEPTH_STEPS)));
-        (libm::floor((near - rounding) / step) * step, libm::ceil((far + rounding) / step) * step)
+        Depths { near: libm::floor((near - rounding) / step) * step, far: libm::ceil((far + rounding) / step) * step }
     }
 
     /// The frustum between two view depths, of a part of the picture.
-    fn frustum(
-        &self,
-        origin: DVec3,
-        picture: [(f64, f64); 2],
-        (near, far): (f64, f64),
-    ) -> Result<ViewFrustum, FitError> {
+    fn frustum(&self, origin: DVec3, picture: [Side; 2], depths: Depths) -> Result<ViewFrustum, FitError> {
+        let Depths { near, far } = depths;
         let mut corners = [Vec3::ZERO; 8];
-        let [(left, right), (bottom, top)] = picture.map(stepped_side);
+        let [across, along] = picture.map(stepped_side);
         for (i, (x, y)) in CORNERS_XY.into_iter().enumerate() {
-            let (x, y) = (if x < 0.0 { left } else { right }, if y < 0.0 { bottom } else { top });
+            let (x, y) = (
+                if x < 0.0 { across.least } else { across.greatest },
+                if y < 0.0 { along.least } else { along.greatest },
+            );
             corners[i] = self.point(x, y, near).as_vec3();
             corners[i + 4] = self.point(x, y, far).as_vec3();
         }
@@ -260,23 +274,23 @@ impl Seen {
         }
         let depth = h / w;
         self.least_w = self.least_w.min(w);
-        self.depths = (self.depths.0.min(depth), self.depths.1.max(depth));
-        for (range, at) in self.picture.iter_mut().zip(at) {
-            *range = (range.0.min(at), range.1.max(at));
+        self.depths = Depths { near: self.depths.near.min(depth), far: self.depths.far.max(depth) };
+        for (side, at) in self.picture.iter_mut().zip(at) {
+            *side = Side { least: side.least.min(at), greatest: side.greatest.max(at) };
         }
     }
 }
 
 /// A range of clip x or y, rounded outward to steps.
-fn stepped_side((least, greatest): (f64, f64)) -> (f64, f64) {
+fn stepped_side(side: Side) -> Side {
     let steps = PICTURE_STEPS * 0.5;
-    let low = libm::floor((least - ROUNDING) * steps) / steps;
-    let high = libm::ceil((greatest + ROUNDING) * steps) / steps;
-    (low.max(-1.0), high.min(1.0))
+    let low = libm::floor((side.least - PLANE_ROUNDING) * steps) / steps;
+    let high = libm::ceil((side.greatest + PLANE_ROUNDING) * steps) / steps;
+    Side { least: low.max(-1.0), greatest: high.min(1.0) }
 }
 
 /// Refuses a picture with parallel view rays whose w is zero or changes its sign within the picture.
-fn check_rays(corners: &[Vertex; 8], (right, up): (f64, f64)) -> Result<(), FitError> {
+fn check_rays(corners: &[Vertex; 8], right: f64, up: f64) -> Result<(), FitError> {
     let (least, greatest) =
         corners.iter().fold((f64::MAX, f64::MIN), |(min, max), corner| (min.min(corner.w), max.max(corner.w)));
     if least > 0.0 || greatest < 0.0 {
@@ -295,7 +309,7 @@ fn check_rays(corners: &[Vertex; 8], (right, up): (f64, f64)) -> Result<(), FitE
 }
 
 /// The error for a clip cube without a volume, by the lengths of its sides.
-fn coinciding([right, up, along]: [f64; 3]) -> FitError {
+fn coinciding(right: f64, up: f64, along: f64) -> FitError {
     let plane = if right.min(up) > along {
         "near and far planes"
     } else if right < up {

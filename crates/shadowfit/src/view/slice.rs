@@ -26,6 +26,13 @@ pub(crate) struct Range {
     pub(crate) far: f32,
 }
 
+/// A range of view depths in f64, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Depths {
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+}
+
 /// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
 /// they leave nothing of it.
 #[inline(always)]
@@ -151,13 +158,13 @@ impl View {
     }
 
     /// Least and greatest view depth of a box that may touch the frustum; `None` when it does not.
-    pub(crate) fn depths(&self, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
+    pub(crate) fn depths(&self, min: DVec3, max: DVec3) -> Option<Depths> {
         if self.sides.iter().any(|plane| plane.farthest(min, max) < 0.0) {
             return None;
         }
         let flipped = Plane { normal: -self.depth.normal, d: -self.depth.d };
-        let (least, greatest) = (-flipped.farthest(min, max), self.depth.farthest(min, max));
-        if least > self.far || greatest < self.near { None } else { Some((least, greatest)) }
+        let (near, far) = (-flipped.farthest(min, max), self.depth.farthest(min, max));
+        if near > self.far || far < self.near { None } else { Some(Depths { near, far }) }
     }
 }
 
@@ -198,24 +205,35 @@ pub(crate) const EDGES: [(usize, usize); 12] =
 impl Slice {
     /// Passes on all vertices of box ∩ slice, some of them more than once, and possibly points of
     /// its edges. Nothing when they do not meet.
-    pub(crate) fn clip<E>(
-        &self,
-        min: DVec3,
-        max: DVec3,
-        emit: &mut impl FnMut(DVec3) -> Result<(), E>,
-    ) -> Result<(), E> {
+    pub(crate) fn clip(&self, min: DVec3, max: DVec3, emit: &mut impl FnMut(DVec3)) {
         let mut crossed = [false; 6];
         for (plane, crossed) in self.planes.iter().zip(&mut crossed) {
             if plane.farthest(min, max) < 0.0 {
-                return Ok(());
+                return;
             }
             *crossed = plane.nearest(min, max) < 0.0;
         }
         let corners = box_corners(min, max);
         if crossed == [false; 6] {
-            return corners.into_iter().try_for_each(emit);
+            return corners.into_iter().for_each(emit);
         }
-        // Distances of the corners within the planes that the box crosses.
+        self.clip_box(&corners, crossed, emit);
+        // An edge of the slice meets no box that does not cross both of its planes.
+        for ((i, j), (one, other)) in EDGES.into_iter().zip(PLANES_OF_EDGES) {
+            if crossed[one]
+                && crossed[other]
+                && let Some((a, b)) = clip_to_box(self.corners[i], self.corners[j], min, max)
+            {
+                emit(a);
+                emit(b);
+            }
+        }
+    }
+
+    /// Passes on the corners of a box, and the ends of its edges, inside the planes that it crosses.
+    #[inline]
+    fn clip_box(&self, corners: &[DVec3; 8], crossed: [bool; 6], emit: &mut impl FnMut(DVec3)) {
+        // Distances of the corners within the planes.
         let mut inside = [[0.0; 8]; 6];
         let mut count = 0;
         for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| *crossed) {
@@ -223,31 +241,20 @@ impl Slice {
             count += 1;
         }
         let inside = &inside[..count];
-        for (i, corner) in corners.into_iter().enumerate() {
+        for (i, corner) in corners.iter().enumerate() {
             if inside.iter().all(|plane| plane[i] >= 0.0) {
-                emit(corner)?;
+                emit(*corner);
             }
         }
         for (i, j) in EDGES {
             let Some((enter, leave)) = inner_part(inside, i, j) else { continue };
             if enter > 0.0 {
-                emit(at(corners[i], corners[j], enter))?;
+                emit(at(corners[i], corners[j], enter));
             }
             if leave < 1.0 {
-                emit(at(corners[i], corners[j], leave))?;
+                emit(at(corners[i], corners[j], leave));
             }
         }
-        // An edge of the slice meets no box that does not cross both of its planes.
-        for ((i, j), (one, other)) in EDGES.into_iter().zip(PLANES_OF_EDGES) {
-            if crossed[one]
-                && crossed[other]
-                && let Some((a, b)) = clip_to_box(self.corners[i], self.corners[j], min, max)
-            {
-                emit(a)?;
-                emit(b)?;
-            }
-        }
-        Ok(())
     }
 }
 

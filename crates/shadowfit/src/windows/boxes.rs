@@ -7,12 +7,13 @@
 
 use glam::DVec3;
 
-use super::cells::{Cells, Counted};
+use super::cells::Cells;
+use super::counted::Counted;
 use crate::base::checks;
-use crate::content::Content;
 use crate::content::normal_cone::NormalCone;
+use crate::content::{Bounds, Found, Query, Visit};
 use crate::demand::grid::{DemandSpace, PIXELS, Plane, needed_texel};
-use crate::fits::FitInput;
+use crate::fits::Frame;
 use crate::view::{Picture as Positions, RayCount, Slice, View, covered, crossing};
 
 /// Rays across and down the picture.
@@ -31,6 +32,20 @@ struct Layer {
 
 const NOTHING: Layer = Layer { enter: f32::MAX, leave: f32::MAX, index: u32::MAX };
 
+/// A ray from its start to its end, in metres relative to the fit's origin.
+#[derive(Clone, Copy)]
+struct Line {
+    start: DVec3,
+    along: DVec3,
+}
+
+/// The surfaces in a box.
+struct Surface {
+    cone: NormalCone,
+    /// Middle of the box.
+    middle: DVec3,
+}
+
 /// A ray's boxes: the nearest, and the one that it begins in and leaves last.
 #[derive(Clone, Copy)]
 struct Ray {
@@ -38,25 +53,28 @@ struct Ray {
     around: Layer,
 }
 
-/// Adds what the views see of the boxes, up to a view depth. `up` is the world's.
-pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane: &Plane, (up, distance): (DVec3, f32)) {
-    for (view, frustum) in content.views().zip(content.views) {
-        let Ok(space) = DemandSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
-        let picture = Picture::new(&view, plane);
-        #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
-        let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
-        let may_meet = |rays: &_, nearest, corners| picture.may_meet(&view, nearest, corners, rays);
-        content.each_in_view(&view, &mut rays, may_meet, |rays, i, corners| picture.meet(&view, i, corners, rays));
+/// Adds what the views of a frame see of the boxes.
+pub(super) fn add(cells: &mut Cells, frame: &Frame, plane: &Plane) {
+    let Frame { input, content, .. } = frame;
+    for part in content.whole_views() {
+        let frustum = &content.views[part.index];
+        let Ok(space) = DemandSpace::new(frustum, -plane.axes.z, frame.light.up().as_vec3(), frame.range.far) else {
+            continue;
+        };
+        let mut rays = Rays::new(&part.view, plane);
+        content.visit(Query::Visible(&part), &mut rays);
+        let Rays { picture, all, .. } = &rays;
         let mut counted = Counted::new();
         let offset = frustum.origin - content.origin;
-        for (i, ray) in rays.iter().enumerate() {
+        for (i, ray) in all.iter().enumerate() {
             let line = picture.ray(i % RAYS.columns, i / RAYS.columns);
             // Counts what a ray meets in a box; returns the share of it that goes no farther.
             let mut count = |layer: &Layer, weight: f32| {
                 let index = layer.index as usize;
                 let cone = input.receiver_cones.get(index).copied().unwrap_or(NormalCone::ALL);
-                let Some(bounds) = content.receiver(index) else { return 0.0 };
-                picture.look(line, layer, (&cone, bounds), |point, texel, share| {
+                let Some((min, max)) = content.receiver(index) else { return 0.0 };
+                let surface = Surface { cone, middle: (min + max) * 0.5 };
+                picture.look(&line, layer, &surface, |point, texel, share| {
                     let place = plane.of(plane.axes.project(point - offset)).as_vec2();
                     if let Some(cell) = space.cell_of(place, texel as f32) {
                         counted.add(cell, weight * share);
@@ -71,7 +89,7 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
                 count(&ray.around, AROUND);
             }
         }
-        cells.add(&counted, FINEST, (&space, plane), content.origin);
+        cells.add(&counted, OVERRATED, &space, plane, content.origin);
     }
 }
 
@@ -79,7 +97,6 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
 struct Picture<'a> {
     plane: &'a Plane,
     whole: Slice,
-    positions: Positions,
     right: DVec3,
     down: DVec3,
     /// Width of a pixel at the near and the far rectangle, in metres.
@@ -94,65 +111,22 @@ impl<'a> Picture<'a> {
         let heights = [checks::length(c[3] - c[0]), checks::length(down)];
         let (right, down) = (right / checks::length(right), down / heights[1]);
         let pixels = heights.map(|height| height / f64::from(PIXELS));
-        Self { plane, whole, positions: view.picture(), right, down, pixels }
+        Self { plane, whole, right, down, pixels }
     }
 
-    /// Start and end of a ray.
-    fn ray(&self, column: usize, row: usize) -> (DVec3, DVec3) {
+    /// A ray from the near to the far rectangle.
+    fn ray(&self, column: usize, row: usize) -> Line {
         let (x, y) = ((column as f64 + 0.5) / RAYS.columns as f64, (row as f64 + 0.5) / RAYS.rows as f64);
         let c = &self.whole.corners;
         let at = |i: usize| (c[i] * (1.0 - x) + c[i + 1] * x) * (1.0 - y) + (c[i + 3] * (1.0 - x) + c[i + 2] * x) * y;
-        (at(0), at(4))
-    }
-
-    /// Whether a box that begins at a view depth, or a box in it, may be among the nearest ones along a ray.
-    fn may_meet(
-        &self,
-        view: &View,
-        nearest: f64,
-        (min, max): (DVec3, DVec3),
-        rays: &[Ray; RAYS.columns * RAYS.rows],
-    ) -> bool {
-        let Some((columns, rows)) = covered(view, &self.positions, RAYS, min, max) else { return false };
-        let nearest = (nearest - view.near) / (view.far - view.near) * (1.0 - ROUNDING) - ROUNDING;
-        let mut rays = rows.flat_map(|row| &rays[row * RAYS.columns..][columns.clone()]);
-        nearest <= 0.0 || rays.any(|ray| nearest < f64::from(ray.layers[LAYERS - 1].enter))
-    }
-
-    /// Intersects all rays with a box.
-    fn meet(&self, view: &View, index: usize, (min, max): (DVec3, DVec3), rays: &mut [Ray; RAYS.columns * RAYS.rows]) {
-        let Some((columns, rows)) = covered(view, &self.positions, RAYS, min, max) else { return };
-        for row in rows {
-            for column in columns.clone() {
-                let (start, end) = self.ray(column, row);
-                let Some((enter, leave)) = crossing(start, end - start, min, max) else { continue };
-                let mut layer = Layer { enter: enter as f32, leave: leave as f32, index: index as u32 };
-                let ray = &mut rays[row * RAYS.columns + column];
-                if enter <= 0.0 {
-                    if ray.around.index == u32::MAX || ray.around.leave < layer.leave {
-                        ray.around = layer;
-                    }
-                    continue;
-                }
-                for kept in &mut ray.layers {
-                    if layer.enter < kept.enter {
-                        core::mem::swap(&mut layer, kept);
-                    }
-                }
-            }
-        }
+        let start = at(0);
+        Line { start, along: at(4) - start }
     }
 
     /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share; returns
     /// the share of the ray that ends there.
-    fn look(
-        &self,
-        (start, end): (DVec3, DVec3),
-        layer: &Layer,
-        (cone, (min, max)): (&NormalCone, (DVec3, DVec3)),
-        mut emit: impl FnMut(DVec3, f64, f32),
-    ) -> f32 {
-        let along = end - start;
+    fn look(&self, line: &Line, layer: &Layer, surface: &Surface, mut emit: impl FnMut(DVec3, f64, f32)) -> f32 {
+        let (Line { start, along }, Surface { cone, middle }) = (*line, surface);
         let (enter, leave) = (f64::from(layer.enter), f64::from(layer.leave));
         let pixel = |t: f64| self.pixels[0] + (self.pixels[1] - self.pixels[0]) * t;
         if cone.cos_half_angle <= FLAT {
@@ -164,7 +138,7 @@ impl<'a> Picture<'a> {
         }
         let normal = cone.axis.as_dvec3();
         let across = normal.dot(along);
-        let t = normal.dot((min + max) * 0.5 - start) / across;
+        let t = normal.dot(*middle - start) / across;
         // A ray along the surface meets it nowhere.
         let met = if t >= enter && t <= leave { MET } else { BESIDE };
         let is_lit = normal.dot(self.plane.axes.z.as_dvec3()) * -across > 0.0;
@@ -179,12 +153,66 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Rounding of shares of a ray to f32, and of view depths to such shares.
-const ROUNDING: f64 = 1e-6;
+/// The nearest boxes along all rays of a view.
+struct Rays<'a> {
+    view: &'a View,
+    picture: Picture<'a>,
+    positions: Positions,
+    /// Row by row.
+    all: [Ray; RAYS.columns * RAYS.rows],
+}
 
-/// Share of the points with the finest demands, which count as no finer than those of the rest: estimates from
-/// boxes find too many near the eye.
-const FINEST: f32 = 0.1;
+impl<'a> Rays<'a> {
+    #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
+    fn new(view: &'a View, plane: &'a Plane) -> Self {
+        let all = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
+        Self { view, picture: Picture::new(view, plane), positions: view.picture(), all }
+    }
+}
+
+impl Visit for Rays<'_> {
+    /// Returns whether a box may be among the nearest ones along a ray.
+    fn wants(&self, bounds: &Bounds) -> bool {
+        let view = self.view;
+        let covered = covered(view, &self.positions, RAYS, bounds.min, bounds.max);
+        let Some((columns, rows)) = covered else { return false };
+        let nearest =
+            (bounds.depths.near - view.near) / (view.far - view.near) * (1.0 - SHARE_ROUNDING) - SHARE_ROUNDING;
+        let mut rays = rows.flat_map(|row| &self.all[row * RAYS.columns..][columns.clone()]);
+        nearest <= 0.0 || rays.any(|ray| nearest < f64::from(ray.layers[LAYERS - 1].enter))
+    }
+
+    /// Intersects all rays with a box.
+    fn take(&mut self, Found { bounds: Bounds { min, max, .. }, index }: &Found) {
+        let Some((columns, rows)) = covered(self.view, &self.positions, RAYS, *min, *max) else { return };
+        for row in rows {
+            for column in columns.clone() {
+                let Line { start, along } = self.picture.ray(column, row);
+                let Some((enter, leave)) = crossing(start, along, *min, *max) else { continue };
+                let mut layer = Layer { enter: enter as f32, leave: leave as f32, index: *index as u32 };
+                let ray = &mut self.all[row * RAYS.columns + column];
+                if enter <= 0.0 {
+                    if ray.around.index == u32::MAX || ray.around.leave < layer.leave {
+                        ray.around = layer;
+                    }
+                    continue;
+                }
+                for kept in &mut ray.layers {
+                    if layer.enter < kept.enter {
+                        core::mem::swap(&mut layer, kept);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rounding of shares of a ray to f32, and of view depths to such shares.
+const SHARE_ROUNDING: f64 = 1e-6;
+
+/// Share of the points with the finest demands. They count as no finer than the others, since estimates from boxes find
+/// too many near the eye.
+const OVERRATED: f32 = 0.1;
 
 /// Cosine of the half angle of a cone above which its surfaces count as flat.
 const FLAT: f32 = 0.97;

@@ -5,10 +5,10 @@ use glam::{DVec2, DVec3};
 
 use crate::base::checks::{ROUNDING, THINNEST};
 use crate::base::{Boxes, FitError, moved};
-use crate::content::Content;
+use crate::content::{Bounds, Content, Found, Query, Visit, VisitCorners};
 use crate::demand::grid::Plane;
-use crate::fits::{Constraint, Depth, FitRule};
-use crate::light::{Column, LightAxes};
+use crate::fits::{Depth, FitRule};
+use crate::light::{Column, Constraint, LightAxes};
 use crate::view::Range;
 
 /// Boxes as the light sees them, those of the lists three elements each: least and greatest x and y, and z.
@@ -61,31 +61,17 @@ impl<'a, 'b> Shadows<'a, 'b> {
 
     /// Finds what is in view.
     fn find_bounds(&mut self, range: Range) {
-        let (content, axes) = (self.content, &self.axes);
+        let content = self.content;
         if content.knows_receivers() {
-            let mut bounds = (DVec3::MAX, DVec3::MIN);
-            let widens = |(min, max): &(DVec3, DVec3), b: &[DVec2; PER_BOX]| {
-                let (b_min, b_max) = (b[0].extend(b[2].x), b[1].extend(b[2].y));
-                !(b_min.cmpge(*min).all() && b_max.cmple(*max).all())
-            };
-            let is_new = |bounds: &(DVec3, DVec3), low, high| widens(bounds, &projected(low, high, axes));
-            let receivers = self.receivers.as_chunks().0;
-            let Ok(()) = content.receivers_in(range, &mut bounds, is_new, |bounds, i, slice, (low, high)| {
-                if i.is_some_and(|i| !widens(bounds, &receivers[i])) {
-                    return Ok::<(), core::convert::Infallible>(());
-                }
-                slice.clip(low, high, &mut |p| {
-                    let p = axes.project(p);
-                    *bounds = (bounds.0.min(p), bounds.1.max(p));
-                    Ok(())
-                })
-            });
-            (self.min, self.max) = bounds;
+            let projected = self.receivers.as_chunks().0;
+            let mut seen = SeenBounds { axes: &self.axes, projected, min: self.min, max: self.max };
+            content.visit_corners(range, &mut seen);
+            (self.min, self.max) = (seen.min, seen.max);
         }
         self.is_empty = content.knows_receivers() && self.min.cmpgt(self.max).any();
         if !content.knows_receivers() || self.is_empty {
             for p in content.corners(range) {
-                let p = axes.project(p);
+                let p = self.axes.project(p);
                 (self.min, self.max) = (self.min.min(p), self.max.max(p));
             }
         }
@@ -101,12 +87,12 @@ impl<'a, 'b> Shadows<'a, 'b> {
     }
 
     /// The depths of the parts of all boxes that lie over a rectangle.
-    pub(super) fn depth(&self, (min, max): (DVec2, DVec2), rule: &FitRule) -> WindowDepth {
+    pub(super) fn depth(&self, min: DVec2, max: DVec2, rule: &FitRule) -> WindowDepth {
         let [receivers, casters] = self.content.lists();
         let mut over = Over::new(&self.axes, min, max);
         if !self.is_empty {
             over.add_list(receivers, self.receivers, self.content.origin);
-            over.add_standing(self.content);
+            self.content.visit(Query::Standing, &mut over);
         }
         let (mut far_by, mut near_by) = (Constraint::Receivers, Constraint::Receivers);
         if over.low > over.high {
@@ -124,7 +110,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
                 over.add_list(casters, self.casters, self.content.origin);
                 if self.is_empty {
                     over.add_list(receivers.filter(|_| casters.is_none()), self.receivers, self.content.origin);
-                    over.add_standing(self.content);
+                    self.content.visit(Query::Standing, &mut over);
                 }
                 high = over.high;
                 near_by = if high > covered { Constraint::Casters } else { near_by };
@@ -133,6 +119,39 @@ impl<'a, 'b> Shadows<'a, 'b> {
         let farthest = min.abs().max(max.abs()).max_element() + low.abs().max(high.abs());
         let pad = ROUNDING * (farthest + high - low) + rule.margin + farthest * THINNEST;
         WindowDepth { low: low - pad, high: high + pad, far_by, near_by, vertices: libm::sqrt(vertices) }
+    }
+}
+
+/// Least and greatest corner of the receivers in view, along the light's axes.
+struct SeenBounds<'a> {
+    axes: &'a LightAxes,
+    /// Boxes of the list as [`project`] has projected them.
+    projected: &'a [[DVec2; PER_BOX]],
+    min: DVec3,
+    max: DVec3,
+}
+
+impl SeenBounds<'_> {
+    /// Returns whether a projected box reaches beyond the bounds.
+    fn may_widen(&self, b: &[DVec2; PER_BOX]) -> bool {
+        let (min, max) = (b[0].extend(b[2].x), b[1].extend(b[2].y));
+        !(min.cmpge(self.min).all() && max.cmple(self.max).all())
+    }
+}
+
+impl VisitCorners for SeenBounds<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.may_widen(&projected(bounds.min, bounds.max, self.axes))
+    }
+
+    fn wants_box(&self, found: &Found) -> bool {
+        // The tree has asked for its boxes already.
+        self.projected.get(found.index).is_none_or(|b| self.may_widen(b))
+    }
+
+    fn take(&mut self, corner: DVec3) {
+        let p = self.axes.project(corner);
+        (self.min, self.max) = (self.min.min(p), self.max.max(p));
     }
 }
 
@@ -160,20 +179,9 @@ impl<'a> Over<'a> {
         for (aabb, b) in list.boxes.iter().zip(projected.as_chunks().0) {
             if is_over(b, self.column.min, self.column.max) && self.is_new(b[2], b) {
                 let (min, max) = moved(aabb, list.origin - origin);
-                self.add((min, max), b);
+                self.add(min, max, b);
             }
         }
-    }
-
-    /// Adds the standing boxes.
-    fn add_standing(&mut self, content: &Content) {
-        let axes = self.axes;
-        let is_new = |over: &Self, min, max| {
-            let b = projected(min, max, axes);
-            let is_over = is_over(&b, over.column.min, over.column.max);
-            is_over && over.is_new(b[2], &b) && over.is_new(over.part((min, max), &b), &b)
-        };
-        content.each_standing(self, is_new, |over, min, max| over.add((min, max), &projected(min, max, axes)));
     }
 
     /// Whether a box with depths over the rectangle reaches beyond those so far, or has a corner farther away.
@@ -182,8 +190,8 @@ impl<'a> Over<'a> {
         z.x <= z.y && (z.x < self.low || z.y > self.high || farthest_squared(b) > self.farthest_squared)
     }
 
-    fn add(&mut self, corners: (DVec3, DVec3), b: &[DVec2; PER_BOX]) {
-        let z = self.part(corners, b);
+    fn add(&mut self, min: DVec3, max: DVec3, b: &[DVec2; PER_BOX]) {
+        let z = self.part(min, max, b);
         if z.x <= z.y {
             (self.low, self.high) = (self.low.min(z.x), self.high.max(z.y));
             self.farthest_squared = self.farthest_squared.max(farthest_squared(b));
@@ -192,10 +200,22 @@ impl<'a> Over<'a> {
 
     /// Least and greatest depth of the part of a box over the rectangle; the least is above the greatest where there is
     /// none. A large ground under a low sun is many times as deep as any of its parts.
-    fn part(&self, (min, max): (DVec3, DVec3), b: &[DVec2; PER_BOX]) -> DVec2 {
+    fn part(&self, min: DVec3, max: DVec3, b: &[DVec2; PER_BOX]) -> DVec2 {
         let (low, high) = self.column.depths(min, max);
         let rounding = min.abs().max(max.abs()).element_sum() * ROUNDING;
         DVec2::new(b[2].x.max(low - rounding), b[2].y.min(high + rounding))
+    }
+}
+
+impl Visit for Over<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        let b = projected(bounds.min, bounds.max, self.axes);
+        let is_over = is_over(&b, self.column.min, self.column.max);
+        is_over && self.is_new(b[2], &b) && self.is_new(self.part(bounds.min, bounds.max, &b), &b)
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        self.add(bounds.min, bounds.max, &projected(bounds.min, bounds.max, self.axes));
     }
 }
 

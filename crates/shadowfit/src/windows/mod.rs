@@ -55,22 +55,27 @@
 
 mod boxes;
 mod cells;
+mod counted;
 mod depth;
+mod lattice;
 mod plan;
+mod raster;
 mod search;
 
 pub(crate) use search::Held as HeldWindows;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use crate::base::{FitError, checks};
+use crate::base::FitError;
 use crate::demand::grid::Plane;
-use crate::fits::{Constraint, FitRule, Frame, PlacedMap, PlacedMaps, Volume};
+use crate::fits::{Frame, PlacedMap, PlacedMaps};
 use crate::light::grid::{self, Grid};
+use crate::light::{Constraint, Volume};
 use crate::technique::Windows;
 use crate::technique::settings::MAX_MAPS;
-use cells::{Cells, Rect};
+use cells::Cells;
 use depth::Shadows;
+use lattice::{Lattice, Window};
 use search::Search;
 
 /// Places the maps of a frame as windows, the finest first.
@@ -90,9 +95,10 @@ pub(crate) fn place(
     let (mut cells, is_guess) = visible(frame, &plane);
     // 3. The last window, which holds everything, then the others.
     let drawn_before = before.as_ref().map(|before| &before.drawn);
-    let whole = lattice.last(last, drawn_before.map(|drawn| &drawn[last]), shadows.bounds(&plane));
+    let (min, max) = shadows.bounds(&plane);
+    let whole = lattice.last(last, drawn_before.map(|drawn| &drawn[last]), min, max);
     cells.keep_near(&lattice.rect(&whole));
-    let mut held = Search::new(&lattice, &cells, (last, &whole), before.as_ref(), is_guess).next();
+    let mut held = Search::new(&lattice, &cells, last, &whole, before.as_ref(), is_guess).next();
     // 4. Their volumes, with depth ranges that are held while they serve.
     let mut maps = [None; MAX_MAPS];
     for (i, map) in maps.iter_mut().enumerate().take(last + 1) {
@@ -114,7 +120,7 @@ fn visible(frame: &Frame, plane: &Plane) -> (Cells, bool) {
     }
     let is_guess = cells.len == 0;
     if is_guess {
-        boxes::add(&mut cells, frame.input, frame.content, plane, (frame.light.up(), frame.range.far));
+        boxes::add(&mut cells, frame, plane);
     }
     (cells, is_guess)
 }
@@ -126,121 +132,11 @@ fn volume(frame: &Frame, waste: f32, lattice: &Lattice, window: &mut Window, sha
     let mut grid = Grid { first: window.first, texel: lattice.texel(window.steps), z: (0.0, 0.0) };
     let (min, max) = grid.across(anchor, resolution);
     // A texel more on all sides, for the rasteriser.
-    let depth = shadows.depth((min - grid.texel, max + grid.texel), frame.rule);
-    let needed = (depth.low + anchor.z, depth.high + anchor.z);
-    grid.z = grid::stabilised_depth(window.z, needed, f64::from(waste));
+    let depth = shadows.depth(min - grid.texel, max + grid.texel, frame.rule);
+    grid.z = grid::stabilised_depth(window.z, depth.low + anchor.z, depth.high + anchor.z, f64::from(waste));
     window.z = Some(grid.z);
     let side = Constraint::Window;
     let set_by = [side, side, side, side, depth.far_by, depth.near_by];
-    let volume = Volume::on_grid(axes, grid, resolution, origin, (set_by, shadows.is_empty));
+    let volume = Volume::on_grid(axes, grid, resolution, origin, set_by, shadows.is_empty);
     Volume { vertex_distance: depth.vertices, ..volume }
-}
-
-/// What a point costs whose texel is this many times too wide: the ratio's power of 3/2.
-///
-/// By the ratio itself, or its square, pictures are as good on average; the one leaves more points with
-/// far too wide texels, the other has wider ones where most points are.
-fn cost_of(ratio: f32) -> f32 {
-    ratio * libm::sqrtf(ratio)
-}
-
-/// A window, in absolute world coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Window {
-    /// Width of a texel, in eighths of an octave of a metre.
-    pub(super) steps: i32,
-    /// Grid lines of its left and bottom side.
-    pub(super) first: DVec2,
-    /// Far and near plane along the light's z from the world's origin, in metres, if they are known.
-    pub(super) z: Option<(f64, f64)>,
-}
-
-/// The plane across the light as seen from the origin of a fit, and the sizes of its windows.
-struct Lattice {
-    pub(super) plane: Plane,
-    /// Position of the origin of the fit in the plane.
-    anchor: DVec2,
-    /// Free texels at the border of each window, and those between the borders.
-    border: f64,
-    pub(super) usable: DVec2,
-    /// Least width of a window's texels, in eighths of an octave of a metre.
-    pub(super) least: i32,
-}
-
-/// Eighths of an octave by which the texels of the last window may be too wide before it is made anew:
-/// about one and a half times.
-const LAST_WASTE: i32 = 5;
-
-/// Share of the way to the middle that the last window moves beyond what it must.
-const MOVE_ON: f64 = 0.3;
-
-impl Lattice {
-    /// The lattice of windows that are fitted by a rule.
-    fn new(plane: Plane, origin: DVec3, rule: &FitRule) -> Self {
-        let anchor = plane.of(plane.axes.project(origin));
-        // Along the plane's height texels are shorter than wide.
-        let is_limited = rule.least_texel > 0.0;
-        let least = if is_limited { grid::eighths_above(rule.least_texel / plane.shape) } else { i32::MIN };
-        Self { plane, anchor, border: rule.border, usable: rule.usable(), least }
-    }
-
-    /// Size of a window's texels, in metres.
-    fn texel(&self, steps: i32) -> DVec2 {
-        let width = grid::eighths(steps);
-        DVec2::new(width, width * self.plane.shape)
-    }
-
-    /// What a window holds between its borders.
-    fn rect(&self, window: &Window) -> Rect {
-        let texel = grid::eighths(window.steps);
-        // One texel is lost to the shift onto the grid: half of it on either side.
-        let min = (window.first + self.border + 0.5) * texel - self.anchor;
-        Rect { min: min.as_vec2(), size: (self.usable * texel).as_vec2() }
-    }
-
-    /// The window that holds a rectangle of its size between its borders.
-    fn window(&self, steps: i32, rect: &Rect) -> Window {
-        self.at(steps, rect.min.as_dvec2(), checks::floor)
-    }
-
-    /// The window whose least corner between the borders is about here.
-    fn at(&self, steps: i32, min: DVec2, round: impl Fn(f64) -> f64) -> Window {
-        let line = (min + self.anchor) / grid::eighths(steps) - self.border;
-        Window { steps, first: DVec2::new(round(line.x), round(line.y)), z: None }
-    }
-
-    /// The last window, which holds a part of the plane: the held one while it serves.
-    fn last(&self, index: usize, held: Option<&Window>, (min, max): (DVec2, DVec2)) -> Window {
-        let usable = self.usable;
-        // Each of the finer windows has other texels.
-        let least = self.least.saturating_add(i32::from(index as u8));
-        let needed = grid::eighths_above(((max - min) / usable).max_element()).max(least);
-        let is_wasteful = |held: &&Window| held.steps > needed.saturating_add(LAST_WASTE);
-        let held = held.filter(|held| held.steps >= needed && !is_wasteful(held));
-        let steps = held.map_or(needed, |held| held.steps);
-        let size = (usable + 1.0) * grid::eighths(steps);
-        let low = |window: &Window| (window.first + self.border) * grid::eighths(steps) - self.anchor;
-        let holds = |window: &Window| low(window).cmple(min).all() && (low(window) + size).cmpge(max).all();
-        let around = || self.at(steps, (min + max - usable * grid::eighths(steps)) * 0.5, checks::floor);
-        let Some(held) = held else {
-            return around();
-        };
-        if holds(held) {
-            return *held;
-        }
-        // The least move, and some of what is left toward the middle.
-        let least = low(held).clamp((max - size).min(min), min);
-        let middle = (min + max - size) * 0.5;
-        let moved = self.at(steps, least + (middle - least) * MOVE_ON, libm::ceil);
-        if holds(&moved) { moved } else { around() }
-    }
-
-    /// A window of another plane, which keeps its texels and what it was around as seen from the origin
-    /// of the fit: a light that turns a little moves little there.
-    fn turned(&self, window: &Window, from: &Plane, origin: DVec3) -> Window {
-        let texel = grid::eighths(window.steps);
-        let line = window.first + (self.anchor - from.of(from.axes.project(origin))) / texel;
-        Window { first: DVec2::new(checks::floor(line.x), checks::floor(line.y)), z: None, ..*window }
-    }
 }

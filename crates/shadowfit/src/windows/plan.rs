@@ -1,14 +1,33 @@
-//! How fine each window's texels are, and where each stands.
+//! Sizes and places of all windows, and how they change.
 //!
-//! A plan says both for all windows. Its cost is what the visible points pay for texels that are too wide; the
-//! [search](super::search) compares plans by it.
+//! A plan P has a texel width tᵢ and a place for each window i. Its cost is what the visible points pay for texels that
+//! are too wide:
+//!
+//! ```text
+//!   cost(P) = Σ over cells c   w_c · Σ over windows i   share_i(c) · (t_i / s_c)^(3/2)
+//!
+//!   w_c        points in cell c               share_i(c)   part of c inside window i and in no finer window
+//!   s_c        texel width that c asks for    t_i          texel width of window i
+//! ```
+//!
+//! The [search](super::search) has three plans, of which only one is drawn. In a frame:
+//!
+//! ```text
+//!   drawn ──move_windows: each keeps 99.3% of its best place──▶ drawn'       best ◀── try_changes: one window a frame
+//!   drawn' ──if cost(drawn') > limit · cost(best): replace_one──▶ drawn''    limit 1.35 → 1.1 over 60 frames
+//!   restart ──after a whole round: if cheaper, becomes best; then a new ladder──▶ restart
+//! ```
+//!
+//! Texel widths ascend from window to window in every plan (`is_in_order`).
 
 use core::ops::Range;
 
 use glam::Vec2;
 
-use super::cells::{self, Cells, MAX_CELLS, PerCell, Rect};
-use super::cost_of;
+use super::cells::{Cells, PerCell};
+use super::counted::MAX_CELLS;
+use super::lattice::{MOVE_ON, Rect, cost_of};
+use super::raster;
 use crate::light::grid;
 use crate::technique::settings::MAX_MAPS;
 
@@ -26,7 +45,7 @@ impl Plan {
         (self.steps[window], self.rects[window]) = (other.steps[window], other.rects[window]);
     }
 
-    /// This plan with a window of another one.
+    /// Returns this plan with a window of another one.
     fn replaced(mut self, window: usize, other: &Self) -> Self {
         self.replace(window, other);
         self
@@ -43,33 +62,43 @@ pub(super) struct Planner<'a> {
     pub(super) count: usize,
 }
 
-/// What the finer windows of a plan hold, and what they leave to coarser ones.
+/// What some of a plan's windows, the finest ones, cover.
 #[derive(Clone)]
-struct Served {
-    /// Shares of the cells that none of them holds.
+struct Coverage {
+    /// Shares of the cells that none of them covers.
     left: PerCell,
-    /// Cost of what they hold, as a multiple of the cost of a texel of one metre.
+    /// Price of each cell: `Σ share_i · t_i^(3/2)` over these windows.
     price: PerCell,
+}
+
+/// A drawn plan after a replacement.
+pub(super) struct Replacement {
+    pub(super) plan: Plan,
+    /// Whether further windows are to be replaced in the next frames.
+    pub(super) has_more_to_come: bool,
+}
+
+/// A plan and its cost.
+struct Candidate {
+    plan: Plan,
+    cost: f32,
 }
 
 /// Ratios of the texels of neighbours with which a search begins, in eighths of an octave.
 const LADDERS: [i32; 6] = [4, 7, 10, 13, 17, 22];
 
-/// How much finer than the last window's the first one's texels may be, in eighths of an octave: more than the
-/// octaves of a demand grid, and little enough that all its lines are exact.
-const FINEST: i32 = 20 * 8;
+/// Greatest ratio of the last window's texels to those of the first one, in eighths of an octave: more than the octaves
+/// of a demand grid, and little enough that all grid lines are exact.
+const GREATEST_RATIO: i32 = 20 * 8;
 
 /// Changes of a window's texels that are tried, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
-/// Share of the cost in the best place that a window must hold to stay where it is.
+/// Share of the cost in the best place that a window must hold to stay in its place.
 const HOLDS: f32 = 0.993;
 
-/// Share of what it held that a window must hold for its best place not to be looked for out of turn.
+/// Share of the cost that a window held at its last search. If it holds less, it is searched out of turn.
 const LOOKS: f32 = 0.99;
-
-/// Share of the way to the best place that a window moves beyond what it must.
-const MOVE_ON: f32 = 0.3;
 
 /// Cost of the drawn windows over that of the best plan up to which none is replaced.
 pub(super) const SERVES: f32 = 1.1;
@@ -78,9 +107,9 @@ pub(super) const SERVES: f32 = 1.1;
 const FEW: f32 = 0.02;
 
 impl Planner<'_> {
-    /// The best of several even ladders of windows in front of the last one.
+    /// Returns the best of several even ladders of windows below a given last one.
     pub(super) fn ladder(&self, last: i32, rect: Rect) -> Plan {
-        let mut best: Option<(f32, Plan)> = None;
+        let mut best: Option<Candidate> = None;
         for ratio in LADDERS {
             let mut plan = Plan::default();
             for i in 0..self.count {
@@ -90,16 +119,16 @@ impl Planner<'_> {
             plan.rects[self.count - 1] = rect;
             self.place_all(&mut plan);
             let cost = self.cost(&plan);
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, plan));
+            if best.as_ref().is_none_or(|best| cost < best.cost) {
+                best = Some(Candidate { plan, cost });
             }
         }
-        best.map_or_else(Plan::default, |(_, plan)| plan)
+        best.map_or_else(Plan::default, |best| best.plan)
     }
 
-    /// Searches on from a plan: puts one window where it is best now, and tries changes of single
-    /// windows. `turn` counts the changes that were tried.
-    pub(super) fn seek(&self, plan: &mut Plan, turn: &mut u32, changes: u32) {
+    /// Improves a plan: puts one window in its best place, and tries changes of single windows. `turn` counts the
+    /// changes that were tried.
+    pub(super) fn try_changes(&self, plan: &mut Plan, turn: &mut u32, changes: u32) {
         let others = self.count as u32 - 1;
         if others == 0 {
             return;
@@ -109,28 +138,28 @@ impl Planner<'_> {
             let number = *turn % (others * CHANGES.len() as u32);
             *turn = turn.wrapping_add(1);
             let (window, change) = ((number % others) as usize, CHANGES[(number / others) as usize]);
-            let served = self.served(plan, window);
+            let finer = self.coverage(plan, window);
             // A round begins with windows in their best places.
-            let replaced = (number < others).then(|| self.with(plan, &served, window, 0)).flatten();
-            for (other, its) in [replaced, self.with(plan, &served, window, change)].into_iter().flatten() {
-                if its < cost {
-                    (*plan, cost) = (other, its);
+            let moved = (number < others).then(|| self.changed(plan, &finer, window, 0)).flatten();
+            for candidate in [moved, self.changed(plan, &finer, window, change)].into_iter().flatten() {
+                if candidate.cost < cost {
+                    (*plan, cost) = (candidate.plan, candidate.cost);
                 }
             }
         }
     }
 
     /// Number of all changes of all windows but the last.
-    pub(super) const fn round(&self) -> u32 {
+    pub(super) const fn changes_per_round(&self) -> u32 {
         (self.count as u32 - 1) * CHANGES.len() as u32
     }
 
-    /// A plan for a last window that may have other texels than its own.
+    /// Fits a plan below a last window that may have other texels than its own.
     pub(super) fn below(&self, mut plan: Plan, last: i32, rect: Rect) -> Plan {
         plan.steps[self.count - 1] = last;
         plan.rects[self.count - 1] = rect;
         for i in (0..self.count - 1).rev() {
-            let least = self.least_of(i).max(last.saturating_sub(FINEST));
+            let least = self.least_of(i).max(last.saturating_sub(GREATEST_RATIO));
             let steps = plan.steps[i].max(least).min(plan.steps[i + 1] - 1);
             if steps != plan.steps[i] {
                 plan.steps[i] = steps;
@@ -142,20 +171,20 @@ impl Planner<'_> {
         plan
     }
 
-    /// Moves each window that no longer holds most of what it could. `holds` has the shares of the cost
-    /// that windows held when their best places were last looked for: one window is looked at in each
-    /// turn, and those that hold less than they did.
-    pub(super) fn keep(&self, plan: &mut Plan, best: &Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
+    /// Moves each window that no longer holds most of what its best place would. `holds` has the shares of the cost that
+    /// windows held at their last searches. Each call searches for one window in turn, and for those whose shares have
+    /// fallen.
+    pub(super) fn move_windows(&self, plan: &mut Plan, best: &Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
         for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
             let all = self.cells.sum(&self.cells.cost, &left, |cost, left| cost * left);
-            let share = |rect: &Rect| if all > 0.0 { self.held(rect, &left) / all } else { 1.0 };
+            let share = |rect: &Rect| if all > 0.0 { self.cost_inside(rect, &left) / all } else { 1.0 };
             let is_turn = turn as usize % (self.count - 1) == i;
             if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
                 let mut moved = *plan;
-                moved.rects[i] = self.kept(&plan.rects[i], &left);
-                // For what a coarser window holds already, two do not change places, and none leaves the place that it has
-                // in the best plan: it would be put back again and again.
+                moved.rects[i] = self.least_move(&plan.rects[i], &left);
+                // Two windows must not swap places for what the other one holds. A window in its place of the best plan
+                // would be put back there again and again.
                 let way = (moved.rects[i].min - plan.rects[i].min).abs();
                 let is_leap = way.cmpgt(plan.rects[i].size * 0.5).any();
                 let is_best = (plan.steps[i], plan.rects[i]) == (best.steps[i], best.rects[i]);
@@ -164,42 +193,40 @@ impl Planner<'_> {
                 }
                 *holds = share(&plan.rects[i]);
             }
-            self.take(&plan.rects[i], &mut left);
+            self.add_window(&plan.rects[i], &mut left);
         }
     }
 
-    /// The drawn windows, as many of them replaced by their counterparts in the best plan as it takes to be nearly as
-    /// good.
-    pub(super) fn follow_at_once(&self, drawn: Plan, target: &Plan) -> Plan {
-        let found = self.cost(target);
+    /// Replaces drawn windows by their counterparts in the best plan until the drawn plan is nearly as good.
+    pub(super) fn replace_all(&self, drawn: Plan, best: &Plan) -> Plan {
+        let found = self.cost(best);
         let mut plan = drawn;
         while self.cost(&plan) > found * SERVES {
-            let Some(run) = self.worth_most(&plan, target) else { return plan };
+            let Some(run) = self.best_run(&plan, best) else { return plan };
             for i in run {
-                plan.replace(i, target);
+                plan.replace(i, best);
             }
         }
         plan
     }
 
-    /// The drawn windows, while they cost no more than the best plan times `most`, and whether there is more to do. Beyond
-    /// that one is replaced by its counterpart in the best plan. Its texels must lie between those of its neighbours, so
-    /// that it may take some that follow one another to gain: then it goes on in the next frames.
-    pub(super) fn follow(&self, drawn: Plan, target: &Plan, most: f32) -> (Plan, bool) {
-        if self.cost(&drawn) <= self.cost(target) * most {
-            return (drawn, false);
-        }
-        let Some(run) = self.worth_most(&drawn, target) else { return (drawn, false) };
-        let replaced = run.clone().map(|i| drawn.replaced(i, target));
+    /// Replaces one drawn window by its counterpart in the best plan, if the drawn plan costs more than the best one
+    /// times `limit`. Its texels must lie between those of its neighbours, so that several windows in a row may have to
+    /// be replaced for a gain. The others follow in the next frames.
+    pub(super) fn replace_one(&self, drawn: Plan, best: &Plan, limit: f32) -> Replacement {
+        let is_good = self.cost(&drawn) <= self.cost(best) * limit;
+        let run = if is_good { None } else { self.best_run(&drawn, best) };
+        let Some(run) = run else { return Replacement { plan: drawn, has_more_to_come: false } };
+        let replaced = run.clone().map(|i| drawn.replaced(i, best));
         // Of windows that all become coarser it is the coarsest, of those that become finer the finest.
         let may_be = replaced.filter(|plan| *plan != drawn && self.is_in_order(&plan.steps));
-        let best = may_be.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
-        (best.unwrap_or(drawn), run.len() > 1)
+        let cheapest = may_be.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
+        Replacement { plan: cheapest.unwrap_or(drawn), has_more_to_come: run.len() > 1 }
     }
 
-    /// Those windows that follow one another with whose counterparts in another plan most is gained for each point whose
-    /// texels change; `None` where nothing is.
-    fn worth_most(&self, plan: &Plan, target: &Plan) -> Option<Range<usize>> {
+    /// Returns the run of consecutive windows whose replacement by another plan's gains most for each point that then
+    /// reads other texels. `None` if no run gains anything.
+    fn best_run(&self, plan: &Plan, target: &Plan) -> Option<Range<usize>> {
         let (cost, readers) = (self.cost(plan), self.readers(plan));
         let mut best: Option<(f32, Range<usize>)> = None;
         for first in 0..self.count - 1 {
@@ -226,83 +253,84 @@ impl Planner<'_> {
         core::array::from_fn(|i| {
             let before = rest;
             if i < self.count - 1 {
-                self.take(&plan.rects[i], &mut left);
+                self.add_window(&plan.rects[i], &mut left);
                 rest = points(&left);
             }
             (before - rest) / all
         })
     }
 
-    /// A plan with other texels of one window, which is put where it is best, and its cost; `None` where sizes would
-    /// cross. `served` is what finer windows do.
-    fn with(&self, plan: &Plan, served: &Served, window: usize, change: i32) -> Option<(Plan, f32)> {
-        let mut other = *plan;
-        other.steps[window] += change;
-        if !self.is_in_order(&other.steps) {
+    /// Returns a plan with other texels of one window, in its best place. `None` if sizes would cross. `finer` is the
+    /// coverage of the finer windows.
+    fn changed(&self, plan: &Plan, finer: &Coverage, window: usize, change: i32) -> Option<Candidate> {
+        let mut plan = *plan;
+        plan.steps[window] += change;
+        if !self.is_in_order(&plan.steps) {
             return None;
         }
-        other.rects[window] = cells::best(self.cells, &served.left, self.size(other.steps[window]));
-        let cost = self.cost_beyond(served.clone(), &other, window);
-        Some((other, cost))
+        plan.rects[window] = raster::best(self.cells, &finer.left, self.size(plan.steps[window]));
+        let cost = self.cost_from(finer.clone(), &plan, window);
+        Some(Candidate { plan, cost })
     }
 
-    /// The held place while it holds nearly as much as the best one, else the least move to it.
-    fn kept(&self, held: &Rect, left: &PerCell) -> Rect {
-        let best = cells::best(self.cells, left, held.size);
-        let enough = self.held(&best, left) * HOLDS;
-        if self.held(held, left) >= enough {
+    /// Returns the held place while it holds nearly as much as the best one, else the least move that does, and
+    /// [some more](MOVE_ON).
+    fn least_move(&self, held: &Rect, left: &PerCell) -> Rect {
+        let best = raster::best(self.cells, left, held.size);
+        let enough = self.cost_inside(&best, left) * HOLDS;
+        if self.cost_inside(held, left) >= enough {
             return *held;
         }
         let way = best.min - held.min;
         let at = |share: f32| Rect { min: held.min + way * share, size: held.size };
-        let share = (1..8).map(|i| i as f32 / 8.0).find(|share| self.held(&at(*share), left) >= enough);
-        share.map_or(best, |share| at(share + (1.0 - share) * MOVE_ON))
+        let share = (1..8).map(|i| i as f32 / 8.0).find(|share| self.cost_inside(&at(*share), left) >= enough);
+        share.map_or(best, |share| at(share + (1.0 - share) * MOVE_ON as f32))
     }
 
-    /// Puts all windows but the last where they are best.
+    /// Puts all windows but the last in their best places, one after the other.
     fn place_all(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            plan.rects[i] = cells::best(self.cells, &left, self.size(plan.steps[i]));
-            self.take(&plan.rects[i], &mut left);
+            plan.rects[i] = raster::best(self.cells, &left, self.size(plan.steps[i]));
+            self.add_window(&plan.rects[i], &mut left);
         }
     }
 
-    /// The cheaper one of two plans.
-    pub(super) fn better(&self, one: Plan, other: Plan) -> Plan {
+    /// Returns the cheaper one of two plans.
+    pub(super) fn cheaper(&self, one: Plan, other: Plan) -> Plan {
         if self.cost(&other) < self.cost(&one) { other } else { one }
     }
 
-    /// What a plan costs.
+    /// Returns the cost of a plan.
     pub(super) fn cost(&self, plan: &Plan) -> f32 {
-        self.cost_beyond(self.served(plan, 0), plan, 0)
+        self.cost_from(self.coverage(plan, 0), plan, 0)
     }
 
-    /// Cost of a plan whose first windows are served already.
-    fn cost_beyond(&self, mut served: Served, plan: &Plan, first: usize) -> f32 {
-        self.serve(&mut served, plan, first..self.count - 1);
+    /// Returns the cost of a plan for which the coverage of the windows before `first` is known.
+    fn cost_from(&self, mut coverage: Coverage, plan: &Plan, first: usize) -> f32 {
+        self.add_windows(&mut coverage, plan, first..self.count - 1);
         let last = price_of(plan.steps[self.count - 1]);
-        for (price, left) in served.price.iter_mut().zip(&served.left) {
+        for (price, left) in coverage.price.iter_mut().zip(&coverage.left) {
             *price += left * last;
         }
-        self.cells.sum(&self.cells.cost, &served.price, |cost, price| cost * price)
+        self.cells.sum(&self.cells.cost, &coverage.price, |cost, price| cost * price)
     }
 
-    /// What the first windows of a plan hold and leave.
-    fn served(&self, plan: &Plan, windows: usize) -> Served {
-        let mut served = Served { left: [1.0; MAX_CELLS], price: [0.0; MAX_CELLS] };
-        self.serve(&mut served, plan, 0..windows);
-        served
+    /// Returns the coverage of the first windows of a plan.
+    fn coverage(&self, plan: &Plan, windows: usize) -> Coverage {
+        let mut coverage = Coverage { left: [1.0; MAX_CELLS], price: [0.0; MAX_CELLS] };
+        self.add_windows(&mut coverage, plan, 0..windows);
+        coverage
     }
 
-    /// Adds what more windows hold.
-    fn serve(&self, served: &mut Served, plan: &Plan, windows: Range<usize>) {
+    /// Adds windows of a plan to a coverage.
+    fn add_windows(&self, coverage: &mut Coverage, plan: &Plan, windows: Range<usize>) {
         let mut shares = [0.0; MAX_CELLS];
         for i in windows {
             self.cells.shares(&plan.rects[i], &mut shares);
             let its = price_of(plan.steps[i]);
             let n = self.cells.len;
-            let all = served.price[..n].iter_mut().zip(&mut served.left[..n]);
+            let all = coverage.price[..n].iter_mut().zip(&mut coverage.left[..n]);
             for ((price, left), share) in all.zip(&shares[..n]) {
                 let taken = share * *left;
                 *price += taken * its;
@@ -311,8 +339,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Cost of the cells inside a rectangle, as far as they are left.
-    fn held(&self, rect: &Rect, left: &PerCell) -> f32 {
+    /// Returns the cost of what is left of the cells inside a rectangle.
+    fn cost_inside(&self, rect: &Rect, left: &PerCell) -> f32 {
         let mut shares = [0.0; MAX_CELLS];
         self.cells.shares(rect, &mut shares);
         for (share, left) in shares.iter_mut().zip(left) {
@@ -321,8 +349,8 @@ impl Planner<'_> {
         self.cells.sum(&self.cells.cost, &shares, |cost, share| cost * share)
     }
 
-    /// Takes away what a window holds.
-    fn take(&self, rect: &Rect, left: &mut PerCell) {
+    /// Takes the part of the cells inside a window from what is left.
+    fn add_window(&self, rect: &Rect, left: &mut PerCell) {
         let mut shares = [0.0; MAX_CELLS];
         self.cells.shares(rect, &mut shares);
         for (left, share) in left.iter_mut().zip(&shares) {
@@ -334,18 +362,18 @@ impl Planner<'_> {
         self.usable * grid::eighths(steps) as f32
     }
 
-    /// Least texels of a window, which are coarser than those of the ones before it.
+    /// Returns the least texels of a window. They are coarser than those of the windows before it.
     fn least_of(&self, window: usize) -> i32 {
         self.least.saturating_add(i32::from(window as u8))
     }
 
     fn is_in_order(&self, steps: &[i32; MAX_MAPS]) -> bool {
-        let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > FINEST || steps[0] < self.least;
+        let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > GREATEST_RATIO || steps[0] < self.least;
         !is_fine && steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
     }
 }
 
-/// What a point that asks for texels of one metre costs in a window.
+/// Returns the cost, in a window, of a point that asks for texels of one metre.
 fn price_of(steps: i32) -> f32 {
     cost_of(grid::eighths(steps) as f32)
 }

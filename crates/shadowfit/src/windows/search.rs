@@ -1,19 +1,27 @@
 //! The search for better windows, a few changes in each frame.
 //!
-//! Three plans are kept: the windows that are drawn, the best plan found so far, and a second search that is
-//! restarted from scratch whenever it has tried all its changes. Nobody sees the two searches. Drawn windows
-//! keep their texels and move as little as they can; only where the best plan is better by enough, one of them
-//! is replaced by its counterpart there, or some are in as many frames.
+//! There are three [plans](super::plan): the drawn windows, the best plan so far, and a second search that is restarted
+//! from scratch whenever it has tried all its changes. The phase of a frame says which of them changes:
+//!
+//! | phase | when | what is tried | what may be drawn |
+//! |---|---|---|---|
+//! | `First` | no frame before | a ladder and three rounds of changes of `best` | `best` |
+//! | `FirstDemand` | demand is known for the first time | a ladder and a round of changes of `best` | as many windows of `best` as it takes |
+//! | `ImproveBest` | `restart` has tried as many changes | one change of `best` for every four windows | moved windows, and one of `best` |
+//! | `ImproveRestart` | `best` has tried more changes | the same of `restart`; after a round the cheaper plan becomes `best`, and `restart` a new ladder | the same |
+//!
+//! Drawn windows keep their texels and move as little as possible. One of them is replaced by its counterpart in the best
+//! plan only if that plan is cheaper by enough.
 
 use glam::DVec3;
 
-use super::cells::{Cells, Rect};
-use super::plan::{Plan, Planner, SERVES};
-use super::{Lattice, Window};
+use super::cells::Cells;
+use super::lattice::{Lattice, Rect, Window};
+use super::plan::{Plan, Planner, Replacement, SERVES};
 use crate::demand::grid::Plane;
 use crate::technique::settings::MAX_MAPS;
 
-/// What windows begin with in the next frame.
+/// The state of windows from one frame to the next.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Held {
@@ -31,8 +39,9 @@ pub(crate) struct Held {
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Progress {
-    /// Number of the change that is tried next in the best plan, and in the second search.
+    /// Number of the change that is tried next in the best plan.
     next: u32,
+    /// The same in the second search.
     next_of_restart: u32,
     /// Share of the cost in each place that the drawn windows held when their places were last looked for.
     holds: [f32; MAX_MAPS],
@@ -53,14 +62,24 @@ const WINDOWS_PER_CHANGE: u32 = 4;
 const SERVES_LONGER: f32 = 0.25;
 const OLD: u8 = 60;
 
+/// What a frame searches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    First,
+    FirstDemand,
+    ImproveBest,
+    ImproveRestart,
+}
+
 /// One frame's search.
 pub(super) struct Search<'a> {
     planner: Planner<'a>,
     lattice: &'a Lattice,
     /// The windows that were drawn in the frame before.
     before: Option<&'a [Window; MAX_MAPS]>,
-    /// Texels and place of the last window, which is given.
-    whole: (&'a Window, Rect),
+    /// The last window, which is given, and its place.
+    whole: &'a Window,
+    whole_rect: Rect,
     drawn: Plan,
     best: Plan,
     restart: Plan,
@@ -73,104 +92,112 @@ impl<'a> Search<'a> {
     pub(super) fn new(
         lattice: &'a Lattice,
         cells: &'a Cells,
-        (last, whole): (usize, &'a Window),
+        last: usize,
+        whole: &'a Window,
         before: Option<&'a Held>,
         is_guess: bool,
     ) -> Self {
         let planner = Planner { cells, usable: lattice.usable.as_vec2(), least: lattice.least, count: last + 1 };
-        let whole = (whole, lattice.rect(whole));
+        let whole_rect = lattice.rect(whole);
         let plan = |windows: &[Window; MAX_MAPS]| {
             let mut plan = Plan::default();
             for (i, window) in windows.iter().enumerate().take(last + 1) {
                 (plan.steps[i], plan.rects[i]) = (window.steps, lattice.rect(window));
             }
-            planner.below(plan, whole.0.steps, whole.1)
+            planner.below(plan, whole.steps, whole_rect)
         };
         let plan_of =
             |windows: fn(&Held) -> &[Window; MAX_MAPS]| before.map_or_else(Plan::default, |h| plan(windows(h)));
         let (drawn, best, restart) = (plan_of(|h| &h.drawn), plan_of(|h| &h.best), plan_of(|h| &h.restart));
         let progress = before.map_or_else(Progress::default, |before| before.progress);
         let before = before.map(|before| &before.drawn);
-        Self { planner, lattice, before, whole, drawn, best, restart, progress, is_guess }
+        Self { planner, lattice, before, whole, whole_rect, drawn, best, restart, progress, is_guess }
     }
 
-    /// Searches on; gives this frame's windows and what the next frame begins with.
+    /// Searches on. Returns this frame's windows and what the next frame begins with.
     pub(super) fn next(mut self) -> Held {
-        let is_told = self.progress.is_guess && !self.is_guess;
-        if self.before.is_none() {
-            self.begin();
-        } else {
-            if is_told {
-                self.learn();
-            } else if self.progress.next_of_restart >= self.progress.next {
-                self.improve_best();
-            } else {
-                self.improve_restart();
-            }
-            self.draw(is_told);
+        let phase = self.phase();
+        match phase {
+            Phase::First => self.begin(),
+            Phase::FirstDemand => self.learn(),
+            Phase::ImproveBest => self.improve_best(),
+            Phase::ImproveRestart => self.improve_restart(),
+        }
+        if phase != Phase::First {
+            self.draw(phase);
         }
         self.held()
     }
 
-    /// The first frame: some rounds at once, and all plans the same.
+    fn phase(&self) -> Phase {
+        let Progress { next, next_of_restart, is_guess, .. } = self.progress;
+        match self.before {
+            None => Phase::First,
+            Some(_) if is_guess && !self.is_guess => Phase::FirstDemand,
+            Some(_) if next_of_restart >= next => Phase::ImproveBest,
+            Some(_) => Phase::ImproveRestart,
+        }
+    }
+
+    /// Begins with some rounds at once. All plans are the same.
     fn begin(&mut self) {
         self.best = self.ladder();
-        let changes = ROUNDS_AT_FIRST * self.planner.round();
-        self.planner.seek(&mut self.best, &mut self.progress.next, changes);
+        let changes = ROUNDS_AT_FIRST * self.planner.changes_per_round();
+        self.planner.try_changes(&mut self.best, &mut self.progress.next, changes);
         self.progress.next_of_restart = self.progress.next;
         (self.drawn, self.restart) = (self.best, self.best);
     }
 
-    /// The first frame in which it is known what is visible: a whole round at once.
+    /// Uses the first demand grid: a whole round at once.
     fn learn(&mut self) {
-        self.best = self.planner.better(self.best, self.ladder());
-        self.planner.seek(&mut self.best, &mut self.progress.next, self.planner.round());
+        self.best = self.planner.cheaper(self.best, self.ladder());
+        self.planner.try_changes(&mut self.best, &mut self.progress.next, self.planner.changes_per_round());
         self.progress.next_of_restart = self.progress.next;
     }
 
     /// Tries changes of the best plan.
     fn improve_best(&mut self) {
         let changes = self.changes();
-        self.planner.seek(&mut self.best, &mut self.progress.next, changes);
+        self.planner.try_changes(&mut self.best, &mut self.progress.next, changes);
     }
 
     /// Tries changes in the second search, or takes what it found and restarts it.
     fn improve_restart(&mut self) {
         let changes = self.changes();
         let next = &mut self.progress.next_of_restart;
-        if next.is_multiple_of(self.planner.round().max(1)) {
+        if next.is_multiple_of(self.planner.changes_per_round().max(1)) {
             *next = next.wrapping_add(changes);
-            self.best = self.planner.better(self.best, self.restart);
+            self.best = self.planner.cheaper(self.best, self.restart);
             self.restart = self.ladder();
         } else {
-            self.planner.seek(&mut self.restart, next, changes);
+            self.planner.try_changes(&mut self.restart, next, changes);
         }
     }
 
-    /// Moves the drawn windows as little as they can be, and replaces some where the best plan is better by enough.
-    fn draw(&mut self, is_told: bool) {
+    /// Moves the drawn windows as little as possible. Replaces some if the best plan is cheaper by enough.
+    fn draw(&mut self, phase: Phase) {
         let Progress { next, holds, age, .. } = &mut self.progress;
-        self.planner.keep(&mut self.drawn, &self.best, holds, *next);
-        let most = SERVES + SERVES_LONGER * (1.0 - f32::from(*age) / f32::from(OLD));
-        let (followed, goes_on) = if is_told {
-            (self.planner.follow_at_once(self.drawn, &self.best), false)
+        self.planner.move_windows(&mut self.drawn, &self.best, holds, *next);
+        let limit = SERVES + SERVES_LONGER * (1.0 - f32::from(*age) / f32::from(OLD));
+        let Replacement { plan, has_more_to_come } = if phase == Phase::FirstDemand {
+            Replacement { plan: self.planner.replace_all(self.drawn, &self.best), has_more_to_come: false }
         } else {
-            self.planner.follow(self.drawn, &self.best, most)
+            self.planner.replace_one(self.drawn, &self.best, limit)
         };
-        *age = if followed == self.drawn {
+        *age = if plan == self.drawn {
             age.saturating_add(1).min(OLD)
-        } else if goes_on {
-            // As if nothing had been replaced for long, until it is done.
+        } else if has_more_to_come {
+            // As if no window had been replaced for long, until all have.
             OLD
         } else {
             0
         };
-        self.drawn = followed;
+        self.drawn = plan;
     }
 
-    /// Even steps of texels in front of the last window.
+    /// A plan with even ratios of texels in front of the last window.
     fn ladder(&self) -> Plan {
-        self.planner.ladder(self.whole.0.steps, self.whole.1)
+        self.planner.ladder(self.whole.steps, self.whole_rect)
     }
 
     /// Number of changes that are tried in a frame.
@@ -194,7 +221,7 @@ impl<'a> Search<'a> {
             let stays = |window: &&Window| window.steps == steps && self.lattice.rect(window) == rect;
             *window = self.before.map(|before| &before[i]).filter(stays).copied().unwrap_or(*window);
         }
-        drawn[self.planner.count - 1] = *self.whole.0;
+        drawn[self.planner.count - 1] = *self.whole;
         let progress = Progress { is_guess: self.is_guess, ..self.progress };
         let (best, restart) = (windows(&self.best), windows(&self.restart));
         Held { plane: self.lattice.plane, drawn, best, restart, progress }

@@ -1,19 +1,16 @@
-//! What every fit returns: the light's matrices and the box they store.
+//! The result of every fit: the light's matrices and the box that the map stores.
 //!
-//! All maps take positions relative to an origin in f64, so that they stay exact far from the
-//! world's origin; [`LightProjection::relative_to`] moves that origin.
+//! All maps take positions relative to an origin in f64, so that they stay exact far from the world's origin.
+//! [`LightProjection::relative_to`] moves that origin.
 //!
-//! A fit is also made from the matrix of other code, so that it can be drawn, culled and evaluated like those of this
-//! crate.
-
-use crate::fits::volume::Constraint;
+//! [`LightProjection::from_clip_from_world`] makes a projection from the matrix of other code, so that it can be drawn,
+//! culled and evaluated like the projections of this crate.
 
 use glam::{DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
-use crate::fits::Volume;
-use crate::light::LightAxes;
+use crate::light::{Constraint, LightAxes, Volume};
 
 /// An orthographic view-projection of a directional light.
 ///
@@ -101,26 +98,13 @@ impl LightProjection {
         }
         let centre = (volume.min + volume.max) * 0.5;
         let light = DVec3::new(centre.x, centre.y, volume.light_z);
-        let LightAxes { x, y, z } = volume.axes;
-        let t = (-light).as_vec3();
-        let (scale, offset) = projection(size, volume, depth);
+        let light_from_world = light_from_world(&volume.axes, light);
+        let clip_from_light = clip_from_light(size, volume, depth);
         let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
-        let light_from_world = Mat4::from_cols(
-            Vec4::new(x.x, y.x, z.x, 0.0),
-            Vec4::new(x.y, y.y, z.y, 0.0),
-            Vec4::new(x.z, y.z, z.z, 0.0),
-            Vec4::new(t.x, t.y, t.z, 1.0),
-        );
-        let clip_from_light = Mat4::from_cols(
-            Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
-            Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
-            Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
-            Vec4::new(0.0, 0.0, offset as f32, 1.0),
-        );
         let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, depth);
         Ok(Self {
             origin,
-            direction: -z,
+            direction: -volume.axes.z,
             light_from_world,
             clip_from_light,
             clip_from_world,
@@ -245,9 +229,21 @@ impl LightProjection {
     }
 }
 
-/// Scale of x, y, z and offset of z from light space to clip space.
+/// Light space from the world, for a light at a place along its axes.
 #[inline(always)]
-fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f64) {
+fn light_from_world(&LightAxes { x, y, z }: &LightAxes, light: DVec3) -> Mat4 {
+    let t = (-light).as_vec3();
+    Mat4::from_cols(
+        Vec4::new(x.x, y.x, z.x, 0.0),
+        Vec4::new(x.y, y.y, z.y, 0.0),
+        Vec4::new(x.z, y.z, z.z, 0.0),
+        Vec4::new(t.x, t.y, t.z, 1.0),
+    )
+}
+
+/// Clip space from light space.
+#[inline(always)]
+fn clip_from_light(size: DVec3, volume: &Volume, depth: DepthConvention) -> Mat4 {
     let near = (volume.max.z - volume.light_z) / volume.depth_range;
     let per_metre = 1.0 / volume.depth_range;
     // Distance behind the near plane, as a share of the range, is near - per_metre z.
@@ -256,7 +252,12 @@ fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f
         DepthConvention::Reversed => (per_metre, 1.0 - near),
         DepthConvention::NegativeOneToOne => (-2.0 * per_metre, 2.0 * near - 1.0),
     };
-    (DVec3::new(2.0 / size.x, 2.0 / size.y, scale), offset)
+    Mat4::from_cols(
+        Vec4::new((2.0 / size.x) as f32, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, (2.0 / size.y) as f32, 0.0, 0.0),
+        Vec4::new(0.0, 0.0, scale as f32, 0.0),
+        Vec4::new(0.0, 0.0, offset as f32, 1.0),
+    )
 }
 
 /// `clip_from_world` and `uv_from_world`, computed in f64.
@@ -319,7 +320,8 @@ impl LightProjection {
         let rows = Rows::of(clip_from_world, depth, origin)?;
         let axes = rows.axes.map(|row| row / checks::length(row));
         let along = axes[2].dot(direction);
-        check_axes(axes, along)?;
+        let [x, y, z] = axes;
+        check_axes(x, y, z, along)?;
         if (along > 0.0) == (depth == DepthConvention::Reversed) {
             return Err(FitError::NotOrthographic { why: "its depth runs against the light in this convention" });
         }
@@ -368,12 +370,12 @@ impl Rows {
         );
         let (min, max) = (middle - half, middle + half);
         let axes = LightAxes { x: axes[0].as_vec3(), y: axes[1].as_vec3(), z: (axes[2] * -travel).as_vec3() };
-        let volume = Volume::covering(axes, (min, max), [Constraint::default(); 6], false);
+        let volume = Volume::covering(axes, min, max, [Constraint::default(); 6], false);
         Volume { light_z: max.z, depth_range: half.z * 2.0, ..volume }
     }
 }
 
-fn check_axes([x, y, z]: [DVec3; 3], along: f64) -> Result<(), FitError> {
+fn check_axes(x: DVec3, y: DVec3, z: DVec3, along: f64) -> Result<(), FitError> {
     let skew = x.dot(y).abs().max(x.dot(z).abs()).max(y.dot(z).abs());
     if skew > SKEW {
         return Err(FitError::NotOrthographic { why: "its axes are not perpendicular" });

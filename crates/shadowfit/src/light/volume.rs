@@ -1,12 +1,11 @@
-//! A fit's decision, before it becomes matrices: a box along the light's axes, and where it lies on
-//! the world's texel grid.
+//! A fit's decision before it becomes matrices: a box along the light's axes, and its position on the world's texel
+//! grid.
 
 use glam::{DVec2, DVec3};
 
-use crate::base::checks::{self, ROUNDING, floor};
-use crate::fits::FitRule;
-use crate::light::LightAxes;
-use crate::light::grid::{Grid, anchor, quantised, stabilised_depth};
+use super::axes::LightAxes;
+use super::grid::{Grid, anchor, stabilised_depth};
+use crate::base::checks;
 
 /// What set a plane of a fitted box: what to change for a tighter fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,18 +54,13 @@ pub(crate) struct Volume {
 impl Volume {
     /// A box whose near plane has yet to be found, and with it the light.
     #[inline(always)]
-    pub(crate) fn covering(
-        axes: LightAxes,
-        (min, max): (DVec3, DVec3),
-        set_by: [Constraint; 6],
-        is_empty: bool,
-    ) -> Self {
+    pub(crate) fn covering(axes: LightAxes, min: DVec3, max: DVec3, set_by: [Constraint; 6], is_empty: bool) -> Self {
         Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, set_by, is_empty, grid: None }
     }
 
     /// A box around the origin, for a map that nothing reads.
     pub(crate) fn nowhere(axes: LightAxes) -> Self {
-        let mut volume = Self::covering(axes, (DVec3::NEG_ONE, DVec3::ONE), [Constraint::View; 6], true);
+        let mut volume = Self::covering(axes, DVec3::NEG_ONE, DVec3::ONE, [Constraint::View; 6], true);
         volume.light_at_near_plane();
         volume
     }
@@ -77,50 +71,15 @@ impl Volume {
         grid: Grid,
         resolution: DVec2,
         origin: DVec3,
-        (set_by, is_empty): ([Constraint; 6], bool),
+        set_by: [Constraint; 6],
+        is_empty: bool,
     ) -> Self {
         let anchor = anchor(&axes, origin);
         let (min, max) = grid.across(anchor, resolution);
-        let corners = (min.extend(grid.z.0 - anchor.z), max.extend(grid.z.1 - anchor.z));
-        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, corners, set_by, is_empty) };
+        let (min, max) = (min.extend(grid.z.0 - anchor.z), max.extend(grid.z.1 - anchor.z));
+        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, min, max, set_by, is_empty) };
         volume.light_at_near_plane();
         volume
-    }
-
-    /// Leaves the border's texels free on all sides.
-    #[inline(always)]
-    pub(crate) fn add_border(&mut self, rule: &FitRule) {
-        let border = DVec2::splat(rule.border);
-        let free = (self.max - self.min).truncate() / (rule.resolution.as_dvec2() - border * 2.0) * border;
-        (self.min, self.max) = (self.min - free.extend(0.0), self.max + free.extend(0.0));
-    }
-
-    /// Rounds the extents across the light up and moves the box to the world's grid, so that it still
-    /// holds its content, with the border's texels around it.
-    #[inline(always)]
-    pub(crate) fn snap(&mut self, origin: DVec3, rule: &FitRule) -> Grid {
-        let anchor = anchor(&self.axes, origin);
-        let resolution = rule.resolution.as_dvec2();
-        let usable = rule.usable();
-        // A map that is larger than its content is rounded by its own extent.
-        let size = (self.max - self.min).truncate();
-        let pad = ROUNDING * (size * resolution / usable).max_element();
-        let size = size + 2.0 * pad;
-        let width = quantised(size.x);
-        let mut size = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) });
-        if rule.max_texel_ratio.is_some() {
-            let limited = rule.limited(size, usable);
-            let stepped = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
-            // The step above the limit may be too long the other way. The limit itself follows from a step too.
-            size = if rule.limited(stepped, usable) == stepped { stepped } else { limited };
-        }
-        let texel = size / usable;
-        let line = (self.min.truncate() - pad + anchor.truncate()) / texel - rule.border;
-        let first = DVec2::new(floor(line.x), floor(line.y));
-        let grid = Grid { first, texel, z: (self.min.z + anchor.z, self.max.z + anchor.z) };
-        let (min, max) = grid.across(anchor, resolution);
-        (self.min, self.max, self.grid) = (min.extend(self.min.z), max.extend(self.max.z), Some(grid));
-        grid
     }
 
     /// Puts the near and far plane of a box on the grid to a range that holds them: the range held
@@ -130,7 +89,7 @@ impl Volume {
     pub(crate) fn stabilise_depth(&mut self, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
         let anchor = anchor(&self.axes, origin).z;
         if let Some(grid) = &mut self.grid {
-            grid.z = stabilised_depth(held, (self.min.z + anchor, self.max.z + anchor), waste);
+            grid.z = stabilised_depth(held, self.min.z + anchor, self.max.z + anchor, waste);
             (self.min.z, self.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
             self.light_at_near_plane();
         }

@@ -1,0 +1,183 @@
+//! How far the boxes of a frame extend: in view depth, from the eyes and across the light.
+
+use glam::{DVec2, DVec3};
+
+use super::Content;
+use super::boxes::Bounds;
+use super::views::ViewPart;
+use super::visit::{Found, Query, Visit};
+use crate::light::LightAxes;
+use crate::view::{Depths, Range, Slice};
+
+impl Content<'_> {
+    /// Returns the least and greatest view depth of the lit receivers in view, if there are any.
+    pub(crate) fn depth_range(&self) -> Option<Depths> {
+        let (mut near, mut far) = (None, None);
+        for part in self.whole_views() {
+            let mut seen = SeenDepths { part: &part, whole: part.slice(), near, far };
+            self.visit(Query::Lit(&part), &mut seen);
+            (near, far) = (seen.near, seen.far);
+        }
+        near.zip(far).map(|(near, far)| Depths { near, far }).filter(|depths| depths.near < depths.far)
+    }
+
+    /// Returns the greatest distance of any receiver from an eye, in view or not: no turn of the camera makes a view
+    /// depth exceed it. `None` if no receiver is known.
+    pub(crate) fn farthest(&self) -> Option<f64> {
+        let mut squared = None;
+        for view in self.views {
+            let mut farthest = FarthestFromEye { from_eye: self.origin - view.origin, squared };
+            self.visit(Query::Receivers, &mut farthest);
+            squared = farthest.squared;
+        }
+        squared.map(libm::sqrt)
+    }
+
+    /// Returns the greatest distance from the origin of a corner of the lit receivers in a range of view depths, in
+    /// metres, and at least `least`.
+    pub(crate) fn farthest_seen(&self, range: Range, least: f64) -> f64 {
+        let (near, far) = (f64::from(range.near), f64::from(range.far));
+        let mut farthest = FarthestSeen { near, far, squared: least * least };
+        if self.knows_receivers() {
+            self.whole_views().for_each(|part| self.visit(Query::Lit(&part), &mut farthest));
+        }
+        libm::sqrt(farthest.squared)
+    }
+
+    /// Returns the bounds of all receivers across the light, in view or not, along the light's axes. `None` if no
+    /// receiver is known.
+    pub(crate) fn receivers_across(&self, axes: &LightAxes) -> Option<(DVec2, DVec2)> {
+        *self.across.get_or_init(|| {
+            let mut across = Across { axes, bounds: None };
+            self.visit(Query::Receivers, &mut across);
+            across.bounds
+        })
+    }
+
+    /// Returns a box around all casters, in view or not, if there are any.
+    pub(crate) fn caster_bounds(&self) -> Option<(DVec3, DVec3)> {
+        let mut union = Union(None);
+        self.visit(Query::Casters, &mut union);
+        union.0
+    }
+}
+
+/// Returns the squared distance of a box's farthest corner from the origin.
+fn farthest_corner_squared(min: DVec3, max: DVec3) -> f64 {
+    let corner = min.abs().max(max.abs());
+    corner.dot(corner)
+}
+
+/// View depths of the parts of boxes that lie in a view.
+struct SeenDepths<'p> {
+    part: &'p ViewPart,
+    whole: Slice,
+    /// Least and greatest depth so far.
+    near: Option<f64>,
+    far: Option<f64>,
+}
+
+impl Visit for SeenDepths<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.near.is_none_or(|near| bounds.depths.near < near)
+            || self.far.is_none_or(|far| bounds.depths.far.min(self.part.far) > far)
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        let (view, nearest) = (&self.part.view, &mut self.near);
+        let far = bounds.depths.far.min(view.far);
+        self.far = Some(self.far.map_or(far, |known| known.max(far)));
+        // The part of a box that is in view may begin much farther out than the box.
+        if nearest.is_none_or(|near| bounds.depths.near < near) {
+            self.whole.clip(bounds.min, bounds.max, &mut |p| {
+                let near = view.depth.distance(p).max(view.near);
+                *nearest = Some(nearest.map_or(near, |known| known.min(near)));
+            });
+        }
+    }
+}
+
+/// Squared distance of the farthest corner of any box from an eye.
+struct FarthestFromEye {
+    /// From the eye to the fit's origin, which boxes are relative to.
+    from_eye: DVec3,
+    squared: Option<f64>,
+}
+
+impl FarthestFromEye {
+    fn of(&self, bounds: &Bounds) -> f64 {
+        farthest_corner_squared(bounds.min + self.from_eye, bounds.max + self.from_eye)
+    }
+}
+
+impl Visit for FarthestFromEye {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.squared.is_none_or(|squared| self.of(bounds) * ROUNDED_UP >= squared)
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        self.squared = Some(self.of(bounds).max(self.squared.unwrap_or(0.0)));
+    }
+}
+
+/// Factor by which the bounds of boxes are counted as farther away, so that rounding hides no box in them.
+const ROUNDED_UP: f64 = 1.0 + 1e-9;
+
+/// Squared distance from the origin of the farthest corner of boxes in a range of view depths.
+struct FarthestSeen {
+    near: f64,
+    far: f64,
+    squared: f64,
+}
+
+impl Visit for FarthestSeen {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        bounds.depths.near <= self.far
+            && bounds.depths.far >= self.near
+            && farthest_corner_squared(bounds.min, bounds.max) > self.squared
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        if self.wants(bounds) {
+            self.squared = farthest_corner_squared(bounds.min, bounds.max);
+        }
+    }
+}
+
+/// Bounds of boxes across the light.
+struct Across<'a> {
+    axes: &'a LightAxes,
+    bounds: Option<(DVec2, DVec2)>,
+}
+
+impl Across<'_> {
+    fn of(&self, bounds: &Bounds) -> (DVec2, DVec2) {
+        let (centre, half) = self.axes.project_box(bounds.min, bounds.max);
+        ((centre - half).truncate(), (centre + half).truncate())
+    }
+}
+
+impl Visit for Across<'_> {
+    fn wants(&self, bounds: &Bounds) -> bool {
+        let (low, high) = self.of(bounds);
+        self.bounds.is_none_or(|(min, max)| !(low.cmpge(min).all() && high.cmple(max).all()))
+    }
+
+    fn take(&mut self, Found { bounds, .. }: &Found) {
+        let (low, high) = self.of(bounds);
+        self.bounds = Some(self.bounds.map_or((low, high), |(min, max)| (min.min(low), max.max(high))));
+    }
+}
+
+/// A box around all boxes.
+struct Union(Option<(DVec3, DVec3)>);
+
+impl Visit for Union {
+    fn wants(&self, &Bounds { min, max, .. }: &Bounds) -> bool {
+        self.0.is_none_or(|(low, high)| !(min.cmpge(low).all() && max.cmple(high).all()))
+    }
+
+    fn take(&mut self, Found { bounds: Bounds { min, max, .. }, .. }: &Found) {
+        self.0 = Some(self.0.map_or((*min, *max), |(low, high)| (low.min(*min), high.max(*max))));
+    }
+}

@@ -1,0 +1,120 @@
+//! The views of a frame: their slices, spheres around these, and the parts that boxes are looked for in.
+
+use glam::{DVec3, Vec3};
+
+use super::Content;
+use super::boxes::Bounds;
+use crate::base::FitError;
+use crate::base::enclosing::{EnclosingSphere, SymmetricFrustum, minimal};
+use crate::view::{Depths, Range, Slice, View, slice_corners};
+
+/// Most views that share a stable map.
+pub(crate) const MAX_SPHERE_VIEWS: usize = 8;
+
+/// The part of a view between two view depths.
+pub(crate) struct ViewPart {
+    /// Index of the view.
+    pub(crate) index: usize,
+    pub(crate) view: View,
+    /// View depths of its ends, within those of the view, in metres.
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+}
+
+impl ViewPart {
+    /// The part as a convex body.
+    pub(crate) fn slice(&self) -> Slice {
+        self.view.slice(self.near, self.far)
+    }
+
+    /// Returns the bounds of a box that may reach into the part.
+    #[inline]
+    pub(super) fn bounds(&self, min: DVec3, max: DVec3) -> Option<Bounds> {
+        self.view.depths(min, max).and_then(|depths| self.bounds_at(min, max, depths))
+    }
+
+    /// Returns the bounds of a box with known view depths, if it may reach into the part.
+    #[inline]
+    pub(super) fn bounds_at(&self, min: DVec3, max: DVec3, depths: Depths) -> Option<Bounds> {
+        (depths.near <= self.far && depths.far >= self.near).then_some(Bounds { min, max, depths })
+    }
+}
+
+impl Content<'_> {
+    /// The minimal sphere around all views' slices, relative to the origin.
+    #[inline(always)]
+    pub(crate) fn enclosing_sphere(&self, range: Range) -> Result<EnclosingSphere, FitError> {
+        if let ([view], Some(symmetric)) = (self.views, self.symmetric()) {
+            let (near, far) = (range.near.max(view.near), range.far.min(view.far));
+            if near >= far {
+                return Err(FitError::NearNotBelowFar { near, far });
+            }
+            let per_metre = 1.0 / (f64::from(view.far) - f64::from(view.near));
+            let share = |depth: f32| (f64::from(depth) - f64::from(view.near)) * per_metre;
+            return Ok(symmetric.sphere(share(near), share(far)));
+        }
+        self.enclosing_sphere_of_any(range)
+    }
+
+    /// The same for several views, or for one that is not symmetric.
+    #[inline(never)]
+    fn enclosing_sphere_of_any(&self, range: Range) -> Result<EnclosingSphere, FitError> {
+        let mut corners = [DVec3::ZERO; 8 * MAX_SPHERE_VIEWS];
+        let mut count = 0;
+        for slice in self.slices(range) {
+            let Some(free) = corners.get_mut(8 * count..8 * count + 8) else {
+                let (value, max) = (self.views.len() as f64, MAX_SPHERE_VIEWS as f64);
+                return Err(FitError::OutOfRange {
+                    input: "the number of views of a stable fit",
+                    value,
+                    min: 1.0,
+                    max,
+                });
+            };
+            free.copy_from_slice(&slice);
+            count += 1;
+        }
+        if count == 0 {
+            return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
+        }
+        Ok(minimal(&corners[..8 * count]))
+    }
+
+    /// The first view, if its spheres are those of a symmetric frustum.
+    fn symmetric(&self) -> Option<&SymmetricFrustum> {
+        self.symmetric.get_or_init(|| SymmetricFrustum::new(&self.views[0].corners.map(Vec3::as_dvec3))).as_ref()
+    }
+
+    /// The views as fits use them.
+    pub(crate) fn views(&self) -> impl Iterator<Item = View> {
+        self.views.iter().map(|view| View::new(view, self.origin))
+    }
+
+    /// All of each view.
+    pub(crate) fn whole_views(&self) -> impl Iterator<Item = ViewPart> {
+        self.views().enumerate().map(|(index, view)| {
+            let (near, far) = (view.near, view.far);
+            ViewPart { index, view, near, far }
+        })
+    }
+
+    /// The part of each view between two view depths, unless it is empty.
+    pub(crate) fn parts(&self, range: Range) -> impl Iterator<Item = ViewPart> {
+        let parts = self.whole_views().map(move |part| ViewPart {
+            near: f64::from(range.near).max(part.near).min(part.far),
+            far: f64::from(range.far).min(part.far).max(part.near),
+            ..part
+        });
+        parts.filter(|part| part.near < part.far)
+    }
+
+    /// Corners of the views' slices.
+    pub(crate) fn corners(&self, range: Range) -> impl Iterator<Item = DVec3> {
+        self.slices(range).flatten()
+    }
+
+    /// Corners of each view's slice that is not empty.
+    pub(crate) fn slices(&self, range: Range) -> impl Iterator<Item = [DVec3; 8]> {
+        self.views.iter().filter_map(move |view| slice_corners(view, self.origin, range.near, range.far))
+    }
+}

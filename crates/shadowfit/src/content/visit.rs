@@ -1,0 +1,198 @@
+//! One way to ask for the boxes of a frame: a [`Query`] names them, a [`Visit`] receives them.
+//!
+//! The boxes of the lists and of the tree are asked for here and nowhere else. Both are hierarchies: a list has
+//! [runs](super::groups) of neighbours, the tree has nodes. A visitor first sees the bounds of a run or node and skips
+//! all boxes in it if none of them can change its result.
+
+use glam::{DVec2, DVec3};
+
+use super::Content;
+use super::boxes::{Bounds, scattered};
+use super::groups::Groups;
+use super::views::ViewPart;
+use crate::base::{Aabb, Boxes, moved};
+use crate::view::{Depths, Range, Slice};
+
+/// The boxes that are asked for.
+#[derive(Clone, Copy)]
+pub(crate) enum Query<'q> {
+    /// All casters, in view or not.
+    Casters,
+    /// All receivers, in view or not.
+    Receivers,
+    /// The boxes of the tree alone, in view or not.
+    Standing,
+    /// Receivers in a part of a view, those that face away from the light included.
+    Visible(&'q ViewPart),
+    /// Receivers in a part of a view, except those that face away from the light.
+    Lit(&'q ViewPart),
+    /// The boxes of [`Self::Lit`]. Boxes of the list come with [large steps](scattered) between them, and without runs:
+    /// for visitors whose result few boxes that lie apart nearly determine.
+    Scattered(&'q ViewPart),
+}
+
+/// A box that a query found.
+#[derive(Clone, Copy)]
+pub(crate) struct Found {
+    pub(crate) bounds: Bounds,
+    /// Number of the box: its index in the list, or the length of the list plus its number in the tree.
+    pub(crate) index: usize,
+}
+
+/// Receives the boxes of a query. Boxes of the tree that are asked for by view come about the nearest first.
+pub(crate) trait Visit {
+    /// Returns whether a box within these bounds may still change the result.
+    fn wants(&self, bounds: &Bounds) -> bool;
+
+    /// Takes a box. Boxes of a list may come without being wanted.
+    fn take(&mut self, found: &Found);
+}
+
+/// Receives the corners of boxes that are clipped to views.
+pub(crate) trait VisitCorners {
+    /// Returns whether a corner within these bounds may still change the result.
+    fn wants(&self, bounds: &Bounds) -> bool;
+
+    /// Returns whether a corner of a box may still change the result. Visitors that know the box by its index may
+    /// answer faster.
+    #[inline]
+    fn wants_box(&self, found: &Found) -> bool {
+        self.wants(&found.bounds)
+    }
+
+    /// Takes a corner, relative to the fit's origin.
+    fn take(&mut self, corner: DVec3);
+}
+
+/// Clips boxes to a slice of a view.
+struct Clipping<'v, V> {
+    corners: &'v mut V,
+    slice: Slice,
+}
+
+impl<V: VisitCorners> Visit for Clipping<'_, V> {
+    #[inline]
+    fn wants(&self, bounds: &Bounds) -> bool {
+        self.corners.wants(bounds)
+    }
+
+    #[inline]
+    fn take(&mut self, found: &Found) {
+        if self.corners.wants_box(found) {
+            self.slice.clip(found.bounds.min, found.bounds.max, &mut |corner| self.corners.take(corner));
+        }
+    }
+}
+
+impl<'a> Content<'a> {
+    /// Passes the boxes of a query to a visitor: first those of the list, then those of the tree.
+    #[inline]
+    pub(crate) fn visit(&self, query: Query, visitor: &mut impl Visit) {
+        let anywhere = |_: usize, min, max| Some(Bounds::anywhere(min, max));
+        match query {
+            Query::Casters => {
+                self.visit_list(self.casters, &self.caster_groups, anywhere, visitor);
+                self.visit_tree(self.casters, visitor);
+            }
+            Query::Receivers => {
+                self.visit_list(self.receivers, &self.receiver_groups, anywhere, visitor);
+                self.visit_tree(self.receivers, visitor);
+            }
+            Query::Standing => self.visit_tree(None, visitor),
+            Query::Visible(part) => {
+                let in_part = |_: usize, min, max| part.bounds(min, max);
+                self.visit_list(self.receivers, &self.receiver_groups, in_part, visitor);
+                self.visit_tree_in(part, visitor);
+            }
+            Query::Lit(part) => {
+                let depths = self.depths_in(part.index);
+                let in_part = |i: usize, min, max| part.bounds_at(min, max, depths_of(depths[i]));
+                self.visit_list(self.receivers, &self.receiver_groups, in_part, visitor);
+                self.visit_tree_in(part, visitor);
+            }
+            Query::Scattered(part) => {
+                let depths = self.depths_in(part.index);
+                for index in scattered(depths.len()) {
+                    let bounds = |(min, max)| part.bounds_at(min, max, depths_of(depths[index]));
+                    if let Some(bounds) = self.receiver(index).and_then(bounds) {
+                        visitor.take(&Found { bounds, index });
+                    }
+                }
+                self.visit_tree_in(part, visitor);
+            }
+        }
+    }
+
+    /// Passes the corners of the lit receivers, clipped to what the views have between two view depths, to a visitor.
+    #[inline]
+    pub(crate) fn visit_corners(&self, range: Range, corners: &mut impl VisitCorners) {
+        for part in self.parts(range) {
+            let slice = part.slice();
+            self.visit(Query::Scattered(&part), &mut Clipping { corners: &mut *corners, slice });
+        }
+    }
+
+    /// Passes the boxes of a list to a visitor: those for which `bounds` gives some, by their indices and corners.
+    #[inline]
+    fn visit_list(
+        &self,
+        list: Option<Boxes<'a>>,
+        groups: &Groups<'a>,
+        bounds: impl Fn(usize, DVec3, DVec3) -> Option<Bounds>,
+        visitor: &mut impl Visit,
+    ) {
+        let Some(list) = list else { return };
+        let offset = list.origin - self.origin;
+        for (run, min, max) in groups.runs() {
+            if !visitor.wants(&Bounds::anywhere(min, max)) {
+                continue;
+            }
+            for index in run.filter(|index| !list.boxes[*index].is_empty()) {
+                let (min, max) = moved(&list.boxes[index], offset);
+                if let Some(bounds) = bounds(index, min, max) {
+                    visitor.take(&Found { bounds, index });
+                }
+            }
+        }
+    }
+
+    /// Passes all boxes of the tree to a visitor, numbered after those of a list.
+    #[inline]
+    fn visit_tree<V: Visit>(&self, list: Option<Boxes<'a>>, visitor: &mut V) {
+        let Some(tree) = self.standing else { return };
+        let (offset, listed) = (tree.origin() - self.origin, list.map_or(0, |list| list.boxes.len()));
+        let bounds = |aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            Bounds::anywhere(min, max)
+        };
+        let enter = |visitor: &mut V, (), aabb: &Aabb| visitor.wants(&bounds(aabb)).then_some(());
+        tree.visit((), visitor, enter, |visitor, (), number, aabb| {
+            visitor.take(&Found { bounds: bounds(aabb), index: listed + number as usize });
+        });
+    }
+
+    /// Passes the boxes of the tree in a part of a view to a visitor, numbered after the listed receivers.
+    #[inline]
+    fn visit_tree_in<V: Visit>(&self, part: &ViewPart, visitor: &mut V) {
+        let Some(tree) = self.standing else { return };
+        let (offset, listed) = (tree.origin() - self.origin, self.listed());
+        let distances = |aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            part.bounds(min, max).map(|bounds| (bounds.depths.near, bounds.depths.far))
+        };
+        let bounds = |(near, far): (f64, f64), aabb: &Aabb| {
+            let (min, max) = moved(aabb, offset);
+            Bounds { min, max, depths: Depths { near, far } }
+        };
+        let enter = |visitor: &V, distances, aabb: &Aabb| visitor.wants(&bounds(distances, aabb));
+        tree.visit_nearest(visitor, distances, enter, |visitor, distances, number, aabb| {
+            visitor.take(&Found { bounds: bounds(distances, aabb), index: listed + number as usize });
+        });
+    }
+}
+
+/// View depths of a listed receiver as they are stored.
+#[inline]
+fn depths_of(stored: DVec2) -> Depths {
+    Depths { near: stored.x, far: stored.y }
+}
