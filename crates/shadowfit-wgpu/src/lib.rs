@@ -78,7 +78,6 @@
 //!   themselves.
 
 mod bindings;
-mod cache;
 mod cached_maps;
 mod caught;
 mod culling;
@@ -99,15 +98,7 @@ mod sun_frame;
 mod sun_shadows;
 mod uniform;
 
-#[cfg(any(test, fuzzing))]
-#[doc(hidden)]
-pub mod fuzzed {
-    //! What fuzzing feeds; no other build has it.
-    pub use crate::cache::fuzzed::cache_plan;
-}
-
-pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
-pub use cached_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
+pub use cached_maps::{ShadowPass, ShadowPiece};
 pub use culling::CullingPiece;
 pub use descriptor::ShadowMapDescriptor;
 pub use error::ShadowMapError;
@@ -117,6 +108,7 @@ pub use map::ShadowMap;
 pub use map_texture::{MapTexture, MapTextureError};
 pub use map_view::MapView;
 pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
+pub use shadowfit::cache::{Casters, Culling, MapUpdate, PassContent, UpdateContent, UpdateSchedule};
 pub use shadowfit::settings::MAX_MAPS;
 pub use sun_frame::SunFrame;
 pub use sun_shadows::{SunShadows, SunShadowsError, SunSteps};
