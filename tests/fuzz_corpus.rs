@@ -5,6 +5,8 @@
 
 #[path = "fuzz/src/bytes.rs"]
 mod bytes;
+#[path = "fuzz/src/cache_plan.rs"]
+mod cache_plan;
 #[path = "fuzz/src/corpus.rs"]
 mod corpus;
 #[path = "fuzz/src/finite.rs"]
@@ -43,4 +45,9 @@ fn saved_games_read_back_the_same_and_go_on() {
 #[test]
 fn floats_of_any_bits_give_errors_or_finite_maps() {
     corpus::replay("fit_input", fit_input::fit_input);
+}
+
+#[test]
+fn histories_of_casters_leave_maps_as_full_redraws_do() {
+    corpus::replay("cache_plan", cache_plan::cache_plan);
 }

@@ -1,25 +1,20 @@
 //! Shadow maps that keep the parts where nothing moved: the drawing half of [`SunShadows`](crate::SunShadows).
 
-mod culling;
 mod passes;
-mod updates;
-
-use shadowfit::culling::caster_volumes;
-use shadowfit::glam::DVec3;
-use shadowfit::selection::MapOrder;
-use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 
 #[cfg(feature = "rays")]
-use crate::cache::StaleMap;
-use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
-use crate::maps::shadow_map::stored_casters;
+use shadowfit::cache::StaleMap;
+use shadowfit::cache::{CacheFrame, CacheSettings, InView, MapCache};
+use shadowfit::glam::DVec3;
+use shadowfit::{Aabb, FittedMap};
+
 use crate::maps::static_layers::Layers;
 use crate::{
-    Culling, MAX_MAPS, MapTexture, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule,
+    Casters, Culling, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame,
+    UpdateSchedule,
 };
 
 pub use passes::{ShadowPass, ShadowPiece};
-pub use updates::{MapUpdate, UpdateContent};
 
 /// The shadow maps of one light, and the parts of them that are kept from frame to frame.
 #[derive(Debug)]
@@ -37,17 +32,9 @@ pub(crate) struct CachedMaps {
     map: ShadowMap,
     layers: Layers,
     cache: MapCache,
-    plan: FramePlan,
-    /// The maps that are read in this frame.
-    maps: Vec<FittedMap>,
-    /// Their casters that can shadow something in view, where the passes depend on that; otherwise all that they can
-    /// store.
-    volumes: Vec<CasterVolume>,
-    /// Origin of the boxes in the plan, in world space, in metres.
-    origin: DVec3,
     /// How often each map was drawn.
     #[cfg(feature = "rays")]
-    drawn: [u64; MAX_MAPS],
+    drawn: [u64; crate::MAX_MAPS],
     /// From where the look-up reads them.
     view: Option<MapView>,
     /// What maps that wait show wrongly.
@@ -91,12 +78,8 @@ impl CachedMaps {
             layers: Layers::new(device, &map),
             map,
             cache: MapCache::default(),
-            plan: FramePlan::default(),
-            maps: Vec::new(),
-            volumes: Vec::new(),
-            origin: DVec3::ZERO,
             #[cfg(feature = "rays")]
-            drawn: [0; MAX_MAPS],
+            drawn: [0; crate::MAX_MAPS],
             view: None,
             #[cfg(feature = "rays")]
             stale: Vec::new(),
@@ -116,7 +99,7 @@ impl CachedMaps {
 
     /// The maps that are read in this frame. A map that waits is the one that was drawn last.
     pub(crate) fn maps(&self) -> &[FittedMap] {
-        &self.maps
+        &self.cache.plan().maps
     }
 
     /// From where the look-up reads them; `None` before the first frame, and while the light gives nothing.
@@ -126,7 +109,7 @@ impl CachedMaps {
 
     /// How often each map was drawn: a number that changes with what it holds.
     #[cfg(feature = "rays")]
-    pub(crate) fn drawn(&self) -> &[u64; MAX_MAPS] {
+    pub(crate) fn drawn(&self) -> &[u64; crate::MAX_MAPS] {
         &self.drawn
     }
 
@@ -144,7 +127,7 @@ impl CachedMaps {
 
     /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
     pub(crate) fn invalidate_all(&mut self) {
-        self.cache.reset();
+        self.cache.invalidate_all();
     }
 
     /// Whether the light gives nothing.
@@ -154,9 +137,7 @@ impl CachedMaps {
 
     /// Makes all factors 0 until the next [`Self::update`]. What the layers hold stays.
     pub(crate) fn turn_off(&mut self, queue: &wgpu::Queue) {
-        self.skip();
-        self.maps.clear();
-        self.volumes.clear();
+        self.cache.turn_off();
         self.view = None;
         self.map.turn_off(queue);
         self.is_off = true;
@@ -175,104 +156,68 @@ impl CachedMaps {
         self.skip();
         let view = frame.map_view();
         crate::maps::view::check(self.map.descriptor(), &view, fitted)?;
-        // 1. Which of them are drawn now, and which are read as they are.
+        // 1. The passes.
         self.cache.settings = self.cache_settings();
-        self.cache.schedule = self.schedule;
         let cached = CacheFrame {
-            fitted,
-            casters: &frame.casters,
+            maps: fitted,
+            casters: frame.casters,
             standing: frame.standing,
-            coarsest: MapOrder::new(self.map.descriptor().selection, fitted.iter().map(|map| &map.projection))
-                .iter()
-                .last(),
             direction: frame.direction,
-            origin: frame.origin,
+            reader: view.reader(),
+            in_view: InView::Views(frame.views),
         };
-        self.cache.take(&cached);
-        let is_due = self.due(frame, &view).map_err(ShadowMapError::View)?;
-        let choice = self.cache.choose(&cached, is_due);
-        if self.cache.is_split() && self.layers.split(&self.device, &self.map).is_err() {
+        self.cache.update(&cached).map_err(ShadowMapError::View)?;
+        if self.cache.has_static_layers() && self.layers.split(&self.device, &self.map).is_err() {
             // Without memory for separate layers, static casters are drawn together with moving ones.
             (self.caching, self.cache) = (false, MapCache::default());
             return self.update(queue, frame, fitted);
         }
         #[cfg(feature = "rays")]
-        self.cache.find_stale(&choice, &cached, &mut self.stale);
-        // 2. The casters of each, and the passes.
-        self.origin = frame.origin;
-        self.maps.clone_from(&choice.maps);
-        let by_view = self.cache.needs_volumes(&choice);
-        self.find_volumes(frame, &view, by_view).map_err(ShadowMapError::View)?;
-        let volumes = if by_view { &self.volumes[..] } else { &[] };
-        self.cache.plan(&choice, &cached, volumes, &mut self.plan);
+        self.cache.find_stale(&frame.casters, &mut self.stale);
         #[cfg(feature = "rays")]
-        self.plan.passes.iter().for_each(|pass| self.drawn[pass.map] += 1);
-        // 3. The uniforms of the shaders.
-        for (index, map) in self.maps.iter_mut().enumerate() {
-            map.wrap = self.cache.wrap(index);
-        }
+        self.cache.plan().passes.iter().for_each(|pass| self.drawn[pass.map] += 1);
+        // 2. The uniforms of the shaders.
         self.write_uniforms(queue, &view)?;
         self.is_off = false;
-        self.layers.prepare(&self.device, queue, &self.plan);
+        self.layers.prepare(&self.device, queue, self.cache.plan());
         Ok(())
-    }
-
-    /// Which maps must be drawn now, whatever the schedule: those that show a static caster that is gone, in view.
-    fn due(&self, frame: &SunFrame<'_>, view: &MapView) -> Result<[bool; MAX_MAPS], FitError> {
-        let mut is_due = [false; MAX_MAPS];
-        if self.schedule == UpdateSchedule::EveryFrame {
-            return Ok(is_due);
-        }
-        for (index, drawn) in self.cache.outdated() {
-            // As if it were the only map: which others are read beside it is not known yet.
-            let mut volume = [CasterVolume::everywhere(drawn.projection.origin)];
-            caster_volumes(
-                core::slice::from_ref(drawn),
-                &self.map.descriptor().reading(),
-                &view.reader(),
-                frame.views,
-                &mut volume,
-            )?;
-            is_due[index] = self.cache.shows_gone(index, &volume[0]);
-        }
-        Ok(is_due)
     }
 
     fn write_uniforms(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
         self.view = Some(*view);
-        if self.is_present {
-            self.map.prepare(queue, view, &self.maps)
-        } else {
-            self.map.prepare_casters(queue, view, &self.maps)
-        }
+        let maps = &self.cache.plan().maps;
+        if self.is_present { self.map.prepare(queue, view, maps) } else { self.map.prepare_casters(queue, view, maps) }
     }
 
     /// Lets the look-up mix another set of maps into these, after [`Self::update`] of both. `share`: that of these.
     pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, view: &MapView, share: f32) {
-        self.map.fade_from(queue, (&before.map, &before.maps), view, share);
+        self.map.fade_from(queue, (&before.map, before.maps()), view, share);
     }
 
-    /// Finds the casters of each map, relative to its origin: those that can shadow something in view, or all that it
-    /// can store.
-    fn find_volumes(&mut self, frame: &SunFrame<'_>, view: &MapView, by_view: bool) -> Result<(), FitError> {
-        let descriptor = self.map.descriptor();
-        let clamps = descriptor.depth_clamp;
-        self.volumes.clear();
-        if by_view && self.culling == Culling::Off {
-            self.volumes.extend(self.maps.iter().map(|map| CasterVolume::everywhere(map.projection.origin)));
-            return Ok(());
-        }
-        let uncut = self.culling == Culling::Off || clamps;
-        self.volumes.extend(self.maps.iter().map(|map| stored_casters(&map.projection, uncut)));
-        if by_view && self.culling == Culling::Swept {
-            caster_volumes(&self.maps, &descriptor.reading(), &view.reader(), frame.views, &mut self.volumes)?;
-            if !clamps {
-                for (volume, map) in self.volumes.iter_mut().zip(&self.maps) {
-                    *volume = volume.cut_at_near_plane(&map.projection);
-                }
-            }
-        }
-        Ok(())
+    /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
+    pub(crate) fn updates(&self) -> Vec<MapUpdate> {
+        self.cache.updates()
+    }
+
+    /// Whether the static casters of a map, by its number, are kept for later frames.
+    pub(crate) fn is_cached(&self, map: usize) -> bool {
+        self.cache.is_kept(map)
+    }
+
+    /// Which maps hold each caster, by its number; see [`MapCache::holders`].
+    pub(crate) fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
+        self.cache.holders(casters)
+    }
+
+    /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
+    /// whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be drawn
+    /// after this. A light that is off gives nothing from anywhere.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
+    pub(crate) fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+        if self.is_off { Ok(()) } else { self.write_uniforms(queue, view) }
     }
 
     fn cache_settings(&self) -> CacheSettings {
@@ -281,8 +226,9 @@ impl CachedMaps {
             // Colours are drawn with a depth buffer that is not stored.
             caching: self.caching && descriptor.format.is_depth(),
             culling: self.culling,
+            schedule: self.schedule,
             depth_clamp: descriptor.depth_clamp,
-            by_coverage: descriptor.selection.is_by_coverage(),
+            reading: descriptor.reading(),
             layer: descriptor.resolution.into(),
         }
     }

@@ -84,7 +84,6 @@
 // holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `resolve` makes its
 // edges exact.
 mod bindings;
-mod cache;
 mod cached_maps;
 mod caught;
 pub mod demand;
@@ -97,19 +96,12 @@ pub mod resolve;
 mod sun;
 mod wgsl;
 
-#[cfg(any(test, fuzzing))]
-#[doc(hidden)]
-pub mod fuzzed {
-    //! What fuzzing feeds; no other build has it.
-    pub use crate::cache::fuzzed::cache_plan;
-}
-
-pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
-pub use cached_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
+pub use cached_maps::{ShadowPass, ShadowPiece};
 pub use descriptor::{MapTextureError, RESOLUTIONS, ShadowMapDescriptor, ShadowMapError};
 pub use maps::{
     CasterUniform, FadingUniform, MapTexture, MapUniform, MapView, ReceiverUniform, ShadowMap, layers_wgsl,
 };
+pub use shadowfit::cache::{Casters, Culling, MapUpdate, PassContent, UpdateContent, UpdateSchedule};
 pub use shadowfit::settings::MAX_MAPS;
 pub use sun::{SunFrame, SunShadows, SunShadowsDescriptor, SunShadowsError, SunSteps};
 pub use wgsl::{CullingPiece, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};

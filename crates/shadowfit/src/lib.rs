@@ -239,6 +239,8 @@ mod keep {
     pub(crate) mod texels;
 }
 
+#[cfg(feature = "alloc")]
+pub mod cache;
 pub mod diagnostics;
 pub mod proof;
 pub mod spot;

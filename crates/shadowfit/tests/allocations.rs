@@ -2,6 +2,7 @@
 
 use allocation_counter::measure;
 use shadowfit::bias::Reach;
+use shadowfit::cache::{CacheFrame, CacheSettings, Casters, Culling, MapCache, UpdateSchedule};
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
 use shadowfit::fit_scene;
@@ -161,6 +162,39 @@ fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
                 without_allocation(preset.name, || fit(&mut fitter));
             }
         }
+    }
+}
+
+/// A walk past static casters in a list and in a tree, and a few that move, once the first frames have grown the buffers.
+#[test]
+fn no_plan_of_cached_maps_allocates_in_steady_frames() {
+    let (technique, listed) = (Technique::default(), objects());
+    let tree = BoxTree::of(Boxes::world(&listed[..800])).expect("good boxes");
+    let mut boxes = listed[800..].to_vec();
+    let moves: Vec<bool> = (0..boxes.len()).map(|number| number % 50 == 0).collect();
+    for (culling, schedule) in [
+        (Culling::Swept, UpdateSchedule::EveryFrame),
+        (Culling::WholeMap, UpdateSchedule::Texels(100_000)),
+        (Culling::Swept, UpdateSchedule::Every([1, 2, 3, 4, 1, 1, 1, 1])),
+    ] {
+        let mut cache = MapCache::new(CacheSettings { culling, schedule, ..CacheSettings::of(&technique) });
+        let (mut fitter, mut eye, mut drawn) = (ShadowFitter::new(&technique), camera(), 0);
+        for frame in 0..120 {
+            eye.eye += DVec3::new(0.02, 0.0, -0.03);
+            let up = if frame % 2 == 0 { 0.1 } else { -0.1 };
+            boxes.iter_mut().zip(&moves).filter(|(_, moves)| **moves).for_each(|(aabb, _)| aabb.max.y += up);
+            let (views, casters) = ([eye.frustum().expect("a good camera")], Boxes::world(&boxes));
+            let input = FitInput { casters: Some(casters), standing: Some(&tree), ..FitInput::new(&views, DIRECTION) };
+            let maps = *fitter.fit(&input).expect("maps");
+            let casters = Casters { boxes: casters, moves: &moves, keys: &[] };
+            let frame_of = CacheFrame { standing: Some(&tree), ..CacheFrame::new(&maps, casters, &views, DIRECTION) };
+            if frame < 60 {
+                cache.update(&frame_of).expect("a plan");
+            } else {
+                drawn += without_allocation("a plan", || cache.update(&frame_of)).expect("a plan").passes.len();
+            }
+        }
+        assert!(drawn > 20, "{drawn} passes");
     }
 }
 

@@ -27,6 +27,7 @@ mod path {
 }
 
 mod bytes;
+mod cache_plan;
 mod finite;
 mod fit_input;
 mod gltf_import;
@@ -34,12 +35,12 @@ mod saved_json;
 mod settings_toml;
 mod technique_toml;
 
+pub use cache_plan::cache_plan;
 pub use fit_input::fit_input;
 pub use gltf_import::gltf_import;
 pub use saved_json::saved_json;
 pub use shadowfit_truth::fuzzed::fit_file;
 pub use shadowfit_viewer::fuzzed::script;
-pub use shadowfit_wgpu::fuzzed::cache_plan;
 pub use technique_toml::technique_toml;
 
 /// Settings, and all that the viewer saves.

@@ -1,7 +1,9 @@
 //! The passes of a frame, for the engine to draw.
 
+use shadowfit::cache::{FramePlan, PassContent, PassPlan, PieceVolumes};
+
 use super::CachedMaps;
-use crate::cache::{FramePlan, PassContent, PassPlan};
+use crate::CullingPiece;
 use crate::maps::static_layers::Opening;
 
 /// A pass into a map. A map that is kept unchanged has none.
@@ -50,9 +52,30 @@ impl<'a> ShadowPass<'a> {
 
     /// Its parts.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
-        let (plan, pass) = (&self.maps.plan, self.pass);
+        let (plan, pass) = (self.maps.cache.plan(), self.pass);
         let first = self.first_piece;
         pass.pieces.clone().map(move |piece| ShadowPiece { number: first + piece, ..shadow_piece(plan, pass, piece) })
+    }
+}
+
+impl<'a> ShadowPass<'a> {
+    /// The pass's pieces for shaders that find their casters.
+    pub(crate) fn culling_pieces(&self) -> impl Iterator<Item = CullingPiece> + use<'a> {
+        let (cache, pass) = (&self.maps.cache, self.pass);
+        let parts = cache.plan().pieces_of(pass).iter().map(|piece| piece.part.window);
+        self.pieces().zip(parts).map(move |(piece, part)| {
+            let PieceVolumes { casters, moving } = cache.piece_volumes(pass.map, pass.content, part);
+            let all = CullingPiece::new([casters].into_iter().chain(moving), cache.plan().origin);
+            CullingPiece {
+                viewport: piece.viewport,
+                scissor: piece.scissor,
+                map: piece.map as u32,
+                fixed: (pass.content != PassContent::Moving).into(),
+                moving: (pass.content != PassContent::Static).into(),
+                fixed_planes: casters.count,
+                ..all
+            }
+        })
     }
 }
 
@@ -78,8 +101,8 @@ impl ShadowPass<'_> {
         group: u32,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'encoder> {
-        let CachedMaps { map, plan, layers, .. } = self.maps;
-        layers.begin(encoder, Opening { map, plan, group }, self.pass, timestamps)
+        let CachedMaps { map, cache, layers, .. } = self.maps;
+        layers.begin(encoder, Opening { map, plan: cache.plan(), group }, self.pass, timestamps)
     }
 }
 
@@ -91,8 +114,8 @@ fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> Shad
         map: pass.map,
         viewport: [first.x as f32, first.y as f32, pass.size.x as f32, pass.size.y as f32],
         scissor: [stored.min.x, stored.min.y, stored.size.x, stored.size.y],
-        casters: &plan.casters[piece.casters.clone()],
-        standing: &plan.standing[piece.standing.clone()],
+        casters: plan.casters_of(piece),
+        standing: plan.standing_of(piece),
     }
 }
 
@@ -109,21 +132,21 @@ impl ShadowPiece<'_> {
 impl CachedMaps {
     /// Leaves the frame without passes.
     pub(crate) fn skip(&mut self) {
-        self.plan.clear();
+        self.cache.skip();
     }
 
     /// Number of passes of this frame.
     pub(crate) fn pass_count(&self) -> usize {
-        self.plan.passes.len()
+        self.cache.plan().passes.len()
     }
 
     /// Number of the passes' pieces.
     pub(crate) fn piece_count(&self) -> usize {
-        self.plan.pieces.len()
+        self.cache.plan().pieces.len()
     }
 
     /// One of the passes, in the order in which they must be drawn. `first_piece`: number of the first piece of all.
     pub(crate) fn pass(&self, index: usize, first_piece: usize) -> ShadowPass<'_> {
-        ShadowPass { maps: self, pass: &self.plan.passes[index], first_piece }
+        ShadowPass { maps: self, pass: &self.cache.plan().passes[index], first_piece }
     }
 }

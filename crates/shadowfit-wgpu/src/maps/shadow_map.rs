@@ -439,12 +439,7 @@ pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, part: &StoredRect, size:
 
 /// The casters that a map can store.
 pub(crate) fn stored_casters(fit: &LightProjection, depth_clamp: bool) -> CasterVolume {
-    CasterVolume::of_map(fit, caster_policy(depth_clamp))
-}
-
-/// Which casters before the near plane maps store: all, or none.
-pub(crate) fn caster_policy(depth_clamp: bool) -> CasterPolicy {
-    if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None }
+    CasterVolume::of_map(fit, if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None })
 }
 
 /// The layers of a set of maps, from one of the array on.

@@ -3,11 +3,11 @@
 //! WebGPU copies depth textures as a whole only, so parts are cleared and restored by drawing: a triangle within a
 //! scissor rectangle, or the outlines of boxes.
 
+use shadowfit::cache::{FramePlan, Layer, PassPlan};
 use shadowfit::scroll::TexelRect;
 use shadowfit::{Aabb, DepthConvention};
 
 use crate::bindings;
-use crate::cache::{FramePlan, Layer, PassPlan};
 use crate::caught::caught;
 use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
 

@@ -8,6 +8,7 @@ mod batched_culling;
 mod bias;
 #[cfg(feature = "bytemuck")]
 mod bytemuck;
+mod cache;
 mod caster;
 mod caster_depth;
 mod clusters;

@@ -5,7 +5,10 @@
 //! sum of its coordinates and its key: what is the same has nearly the same mark, and few others have. Both lists are
 //! sorted by their marks, and gone through side by side.
 
-use super::casters::WorldBox;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::world_box::WorldBox;
 
 /// A caster, as it is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

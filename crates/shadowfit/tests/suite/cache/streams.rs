@@ -1,10 +1,13 @@
 //! What a change of the casters redraws: texels and casters of a plan, in a town of 10,000 boxes.
 
-use shadowfit::glam::Vec3;
-use shadowfit::{Boxes, FittedMaps};
+use shadowfit::cache::{CacheFrame, CacheSettings, Casters, InView, MapCache, PassContent, UpdateSchedule};
+use shadowfit::culling::Reader;
+use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::scroll::TexelRect;
+use shadowfit::settings::MAX_MAPS;
+use shadowfit::{Aabb, BoxTree, Boxes, FittedMap, FittedMaps};
 
 use super::fixtures::{SIDE, fitted};
-use super::*;
 
 const LIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 
@@ -26,7 +29,6 @@ fn town() -> Vec<Aabb> {
 struct Drawn {
     cache: MapCache,
     maps: FittedMaps,
-    plan: FramePlan,
 }
 
 /// What a frame drew of a map.
@@ -42,9 +44,8 @@ struct Redrawn {
 impl Drawn {
     fn new(boxes: &[Aabb], keys: &[u64]) -> Self {
         let maps = fitted(LIGHT, 150.0, boxes);
-        let layer = UVec2::splat(SIDE);
-        let settings = CacheSettings { caching: true, by_coverage: true, layer, ..Default::default() };
-        let mut drawn = Self { cache: MapCache { settings, ..MapCache::default() }, maps, plan: FramePlan::default() };
+        let settings = CacheSettings { layer: UVec2::splat(SIDE), ..CacheSettings::default() };
+        let mut drawn = Self { cache: MapCache::new(settings), maps };
         drawn.draw(boxes, &[], keys);
         drawn
     }
@@ -55,23 +56,19 @@ impl Drawn {
 
     fn frame(&mut self, casters: &Casters<'_>, standing: Option<&BoxTree>) -> Vec<Redrawn> {
         let frame = CacheFrame {
-            fitted: &self.maps,
-            casters,
+            maps: &self.maps,
+            casters: *casters,
             standing,
-            coarsest: Some(self.maps.len() - 1),
             direction: LIGHT,
-            origin: DVec3::ZERO,
+            reader: Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z),
+            in_view: InView::Volumes(&[]),
         };
-        self.cache.take(&frame);
-        let everywhere = CasterVolume::everywhere(DVec3::ZERO);
-        let is_due = core::array::from_fn(|map| self.cache.shows_gone(map, &everywhere));
-        let choice = self.cache.choose(&frame, is_due);
-        self.cache.plan(&choice, &frame, &[], &mut self.plan);
+        let plan = self.cache.update(&frame).expect("a plan");
         let mut redrawn = vec![Redrawn::default(); self.maps.len()];
-        for pass in &self.plan.passes {
+        for pass in &plan.passes {
             let map = &mut redrawn[pass.map];
-            map.mended += self.plan.rects[pass.mended.clone()].iter().map(TexelRect::area).sum::<u64>();
-            for piece in self.plan.pieces[pass.pieces.clone()].iter().filter(|_| pass.content != PassContent::Moving) {
+            map.mended += plan.rects[pass.mended.clone()].iter().map(TexelRect::area).sum::<u64>();
+            for piece in plan.pieces_of(pass).iter().filter(|_| pass.content != PassContent::Moving) {
                 map.texels += piece.part.stored.area();
                 map.casters += piece.casters.len() + piece.standing.len();
                 map.rects += 1;
@@ -226,7 +223,7 @@ fn what_is_removed_in_view_is_never_late() {
     let boxes = town();
     for schedule in [UpdateSchedule::Texels(1), UpdateSchedule::Every([100; MAX_MAPS])] {
         let mut drawn = Drawn::new(&boxes, &[]);
-        drawn.cache.schedule = schedule;
+        drawn.cache.settings.schedule = schedule;
         let near = 78 * ROW + 50;
         // What comes may be late; what goes, or moves away, is not.
         let mut list = boxes.clone();

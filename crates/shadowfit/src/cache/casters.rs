@@ -1,9 +1,10 @@
 //! The casters of a frame, by number, and what changed since the frame before.
 
-use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Aabb, BoxRevision, BoxTree, Boxes};
+use alloc::vec::Vec;
 
 use super::identity::{Caster, pair, shift};
+use super::world_box::{WorldBox, rounding};
+use crate::{BoxRevision, BoxTree, Boxes};
 
 /// Everything that casts shadows, by number: the index of its box.
 ///
@@ -14,11 +15,11 @@ use super::identity::{Caster, pair, shift};
 /// | a static caster that | needs |
 /// |---|---|
 /// | comes, goes, or has another box | nothing: it is redrawn where it was and where it is |
-/// | has another shape in the same box | another key, or [`invalidate`](crate::SunShadows::invalidate) |
+/// | has another shape in the same box | another key, or [`invalidate`](super::MapCache::invalidate) |
 /// | has another number | nothing, and costs the least where most keep theirs |
 ///
 /// A box may stand for many casters that an engine culls by itself, such as those in a cell of the world: then it holds
-/// all of them, and [`invalidate`](crate::SunShadows::invalidate) tells where those that stand still changed within it.
+/// all of them, and [`invalidate`](super::MapCache::invalidate) tells where those that stand still changed within it.
 /// Casters that move have boxes of their own, which may hold the same place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
@@ -46,56 +47,6 @@ impl<'a> Casters<'a> {
     }
 }
 
-/// A box in world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WorldBox {
-    pub(crate) min: DVec3,
-    pub(crate) max: DVec3,
-}
-
-/// Rounding of a box's f32 coordinates, as a share of them, by which it may differ where its origin does.
-const ROUNDING: f32 = 1.0 / 4_194_304.0;
-
-impl WorldBox {
-    pub(super) const EMPTY: Self = Self { min: DVec3::MAX, max: DVec3::MIN };
-
-    pub(super) fn new(aabb: &Aabb, origin: DVec3) -> Self {
-        // Also false for what is not a number.
-        if !aabb.min.cmple(aabb.max).all() {
-            return Self::EMPTY;
-        }
-        Self { min: origin + aabb.min.as_dvec3(), max: origin + aabb.max.as_dvec3() }
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        !self.min.cmple(self.max).all()
-    }
-
-    /// The box relative to an origin.
-    pub(crate) fn relative_to(&self, origin: DVec3) -> Aabb {
-        if self.is_empty() {
-            return Aabb::EMPTY;
-        }
-        Aabb::new((self.min - origin).as_vec3(), (self.max - origin).as_vec3())
-    }
-
-    /// The least box around both, none of which is empty.
-    pub(super) fn union(&self, other: &Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    /// Whether it equals another one up to the rounding of that one's coordinates.
-    pub(super) fn is_same(&self, other: &Self, rounding: f64) -> bool {
-        let near = |a: DVec3, b: DVec3| a == b || (a - b).abs().max_element() <= rounding;
-        near(self.min, other.min) && near(self.max, other.max)
-    }
-}
-
-/// Metres by which a box may differ from the same one relative to another origin.
-fn rounding(aabb: &Aabb) -> f64 {
-    f64::from(aabb.min.abs().max(aabb.max.abs()).max_element() * ROUNDING)
-}
-
 /// Where static casters changed in a frame, in world space. What has another box is in both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Changes {
@@ -107,21 +58,21 @@ pub(super) struct Changes {
 
 /// The casters of the last frame.
 #[derive(Debug, Default)]
-pub(crate) struct KnownCasters {
+pub(super) struct KnownCasters {
     /// Where each static caster stood when it was drawn; empty for those that move.
     drawn: Vec<WorldBox>,
     /// The keys of those that had one, from the first caster on.
     keys: Vec<u64>,
     /// Those that move, by number.
-    pub(crate) moving: Vec<u32>,
+    pub(super) moving: Vec<u32>,
     /// The state of the standing ones.
     standing: Option<BoxRevision>,
 }
 
 impl KnownCasters {
-    /// Whether a caster stands still, and casts.
-    pub(crate) fn is_fixed(&self, number: u32) -> bool {
-        !self.drawn[number as usize].is_empty()
+    /// Returns whether a caster is static and not empty.
+    pub(super) fn is_fixed(&self, number: u32) -> bool {
+        self.drawn.get(number as usize).is_some_and(|aabb| !aabb.is_empty())
     }
 
     /// Takes the casters of a frame, and finds where static ones changed.
@@ -270,30 +221,14 @@ impl Differences {
     }
 }
 
-/// Sorts casters by where they begin as seen from the light, the nearest first, and then by number. `to_light` is the
-/// unit direction toward the light.
-pub(super) fn sort(numbers: &mut [u32], to_light: Vec3, order: &mut Vec<u64>, aabb: impl Fn(u32) -> Aabb) {
-    order.clear();
-    order.extend(numbers.iter().map(|number| {
-        // Descending floats as ascending integers.
-        let bits = height(&aabb(*number), to_light).to_bits();
-        let descending = if bits >> 31 == 0 { !bits & 0x7fff_ffff } else { bits };
-        u64::from(descending) << 32 | u64::from(*number)
-    }));
-    order.sort_unstable();
-    for (number, sorted) in numbers.iter_mut().zip(order) {
-        *number = *sorted as u32;
-    }
-}
-
-/// Where a box begins as seen from the light, in metres along the direction toward it.
-fn height(aabb: &Aabb, to_light: Vec3) -> f32 {
-    aabb.max.dot(to_light.max(Vec3::ZERO)) + aabb.min.dot(to_light.min(Vec3::ZERO))
-}
-
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
+    use glam::{DVec3, Vec3};
+
     use super::*;
+    use crate::Aabb;
 
     fn cube(x: f32, y: f32) -> Aabb {
         Aabb::new(Vec3::new(x, y, 0.0), Vec3::new(x + 1.0, y + 1.0, 1.0))
@@ -418,16 +353,6 @@ mod tests {
             boxes.rotate_left(step as usize % 3);
             assert_eq!(take(eye, &boxes), Changes::default(), "{step}");
         }
-    }
-
-    #[test]
-    fn casters_are_sorted_nearest_to_the_light_first() {
-        let boxes = [cube(0.0, 4.0), cube(0.0, -3.0), cube(0.0, 9.0), cube(0.0, -1.0), cube(5.0, 4.0)];
-        let mut numbers = [4, 0, 1, 2, 3];
-        sort(&mut numbers, Vec3::Y, &mut Vec::new(), |number| boxes[number as usize]);
-        assert_eq!(numbers, [2, 0, 4, 3, 1]);
-        sort(&mut numbers, Vec3::NEG_Y, &mut Vec::new(), |number| boxes[number as usize]);
-        assert_eq!(numbers, [1, 3, 0, 4, 2]);
     }
 
     #[test]

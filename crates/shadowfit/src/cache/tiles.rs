@@ -11,12 +11,14 @@
 //!   └──────────────┘              └──┘
 //! ```
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::ops::Range;
 
-use shadowfit::glam::UVec2;
-use shadowfit::scroll::TexelRect;
+use glam::UVec2;
 
 use super::price::Price;
+use crate::scroll::TexelRect;
 
 /// Most tiles along a side: their bits are four words, and 16 KiB for a map.
 const MAX_TILES: u32 = 256;
@@ -87,7 +89,7 @@ impl ChangedTiles {
     /// Texels of all tiles that changed, of which no rectangles can have less.
     pub(super) fn texels(&self) -> u64 {
         let tiles: u32 = self.rows.iter().flatten().map(|word| word.count_ones()).sum();
-        u64::from(tiles) * u64::from(self.side * self.side)
+        u64::from(tiles) * u64::from(self.side).pow(2)
     }
 
     /// Rectangles around all that changed, in texels.

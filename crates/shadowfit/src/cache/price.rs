@@ -1,6 +1,6 @@
 //! What drawing a part of a map costs, so that rectangles are split and merged by it.
 
-use shadowfit::scroll::TexelRect;
+use crate::scroll::TexelRect;
 
 /// A rectangle's own cost, in texels: a clear, a viewport and a scissor rectangle, and those of its casters that lie in
 /// other rectangles too, such as the ground. An estimate, 3 µs, in texels of 0.29 ns: plans hardly depend on it.
@@ -59,7 +59,9 @@ impl Price {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::glam::UVec2;
+    use alloc::vec;
+
+    use glam::UVec2;
 
     use super::*;
 

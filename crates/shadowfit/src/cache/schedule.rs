@@ -1,6 +1,6 @@
 //! Which maps are drawn in a frame, and which wait.
 
-use shadowfit::settings::MAX_MAPS;
+use crate::settings::MAX_MAPS;
 
 /// When maps are drawn that may wait: those whose shadows would only be late.
 ///
@@ -21,19 +21,19 @@ pub enum UpdateSchedule {
 
 /// A map that has something to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Candidate {
-    pub(crate) map: usize,
+pub(super) struct Candidate {
+    pub(super) map: usize,
     /// Frames since it was drawn.
-    pub(crate) age: u64,
+    pub(super) age: u64,
     /// Texels that would be drawn.
-    pub(crate) texels: u64,
+    pub(super) texels: u64,
     /// Whether it must be drawn.
-    pub(crate) is_due: bool,
+    pub(super) is_due: bool,
 }
 
 impl UpdateSchedule {
     /// Whether each map is drawn in a frame of this number.
-    pub(crate) fn choose(self, frame: u64, candidates: &mut [Candidate]) -> [bool; MAX_MAPS] {
+    pub(super) fn choose(self, frame: u64, candidates: &mut [Candidate]) -> [bool; MAX_MAPS] {
         let mut drawn = [false; MAX_MAPS];
         let mut spent = 0;
         for due in candidates.iter().filter(|candidate| candidate.is_due) {
@@ -64,6 +64,8 @@ impl UpdateSchedule {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
 
     fn candidate(map: usize, age: u64, texels: u64) -> Candidate {

@@ -3,9 +3,11 @@
 use proptest::prelude::*;
 use proptest::sample::select;
 
-use super::fixtures::SIDE;
+use shadowfit::cache::{CacheSettings, Culling, UpdateSchedule};
+use shadowfit::glam::UVec2;
+
+use super::fixtures::{SIDE, settings};
 use super::model::{Event, SAMPLES, World};
-use super::*;
 
 fn place() -> impl Strategy<Value = [f64; 3]> {
     [-40.0..40.0, 0.2..4.0, -60.0..20.0]
@@ -42,15 +44,9 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
-fn settings() -> impl Strategy<Value = CacheSettings> {
+fn any_settings() -> impl Strategy<Value = CacheSettings> {
     let culling = select(vec![Culling::Swept, Culling::WholeMap, Culling::Off]);
-    (culling, 0..10_u32).prop_map(|(culling, caching)| CacheSettings {
-        caching: caching > 0,
-        culling,
-        depth_clamp: true,
-        by_coverage: true,
-        layer: UVec2::splat(SIDE),
-    })
+    (culling, 0..10_u32).prop_map(|(culling, caching)| settings(caching > 0, culling))
 }
 
 proptest! {
@@ -59,7 +55,7 @@ proptest! {
 
     #[test]
     fn maps_hold_what_maps_drawn_anew_hold_whatever_happened_before(
-        settings in settings(),
+        settings in any_settings(),
         jitter in [0..SIDE / SAMPLES, 0..SIDE / SAMPLES],
         events in proptest::collection::vec(event(), 100),
     ) {

@@ -7,18 +7,22 @@
 
 use std::sync::LazyLock;
 
-use shadowfit::Boxes;
-use shadowfit::glam::{Vec3, Vec4};
+use shadowfit::cache::{
+    CacheFrame, CacheSettings, Casters, Culling, FramePlan, InView, Layer, MapCache, MapReuse, PassPlan, UpdateSchedule,
+};
+use shadowfit::culling::Reader;
+use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3, Vec4};
+use shadowfit::scroll::TexelRect;
 use shadowfit::settings::CasterPolicy;
+use shadowfit::{Aabb, BoxTree, Boxes, CasterVolume, FittedMap};
 
 use super::fixtures::{SIDE, fitted};
-use super::*;
 
 /// The finest windows.
 const MAPS: usize = 3;
 
 /// Samples along a side of a map.
-pub(super) const SAMPLES: u32 = 16;
+pub(crate) const SAMPLES: u32 = 16;
 
 /// Where the world lies.
 const PLACE: DVec3 = DVec3::new(3000.0, 10.0, -2000.0);
@@ -75,7 +79,7 @@ struct Object {
 
 /// What happens before a frame. Objects are chosen by a number, counted round and round.
 #[derive(Clone, Debug)]
-pub(super) enum Event {
+pub(crate) enum Event {
     Nothing,
     Insert(usize, [f64; 3]),
     /// An equal one.
@@ -122,7 +126,7 @@ struct Sample {
 type Samples = Vec<Sample>;
 
 /// A world, its maps, and what they hold.
-pub(super) struct World {
+pub(crate) struct World {
     objects: Vec<Object>,
     tree: BoxTree,
     bits: u32,
@@ -136,7 +140,6 @@ pub(super) struct World {
     view: Option<[f32; 2]>,
     frame: u32,
     cache: MapCache,
-    plan: FramePlan,
     shown: [Samples; MAPS],
     fixed: [Samples; MAPS],
     /// Where in its square of texels each sample lies.
@@ -144,7 +147,7 @@ pub(super) struct World {
 }
 
 impl World {
-    pub(super) fn new(settings: CacheSettings, jitter: UVec2) -> Self {
+    pub(crate) fn new(settings: CacheSettings, jitter: UVec2) -> Self {
         let samples = || vec![Sample::default(); (SAMPLES * SAMPLES) as usize];
         let mut world = Self {
             objects: Vec::new(),
@@ -158,8 +161,7 @@ impl World {
             place: PLACE,
             view: None,
             frame: 0,
-            cache: MapCache { settings, ..MapCache::default() },
-            plan: FramePlan::default(),
+            cache: MapCache::new(settings),
             shown: core::array::from_fn(|_| samples()),
             fixed: core::array::from_fn(|_| samples()),
             jitter,
@@ -190,7 +192,7 @@ impl World {
     }
 
     #[expect(clippy::too_many_lines, reason = "a line or two for each event")]
-    pub(super) fn change(&mut self, event: &Event) {
+    pub(crate) fn change(&mut self, event: &Event) {
         let at = |place: &[f64; 3]| (DVec3::from_array(*place), DVec3::new(0.4 + place[1], place[1], 1.2));
         self.were_keyed = self.keyed;
         match event {
@@ -269,13 +271,13 @@ impl World {
                     object.stands = Some(self.tree.insert(Aabb::EMPTY).expect("a box"));
                 }
             }
-            Event::Schedule(schedule) => self.cache.schedule = *schedule,
+            Event::Schedule(schedule) => self.cache.settings.schedule = *schedule,
             Event::Light(light) => self.light = *light,
             Event::Distance(distance) => self.distance = *distance,
             Event::Pan([x, z]) => self.place += DVec3::new(*x, 0.01 * x, *z),
             Event::View(view) => self.view = *view,
             Event::Invalidate(number) => self.invalidate(self.number(*number)),
-            Event::InvalidateAll => self.cache.reset(),
+            Event::InvalidateAll => self.cache.invalidate_all(),
         }
         for object in self.objects.iter_mut().filter(|object| object.moves) {
             object.centre.y += if self.frame.is_multiple_of(2) { 0.3 } else { -0.3 };
@@ -318,7 +320,7 @@ impl World {
     /// # Errors
     ///
     /// What a map holds by mistake.
-    pub(super) fn draw(&mut self) -> Result<(), String> {
+    pub(crate) fn draw(&mut self) -> Result<(), String> {
         let maps: Vec<FittedMap> =
             FITTED[self.light][self.distance].iter().map(|map| panned(map, self.place - PLACE)).collect();
         // Boxes relative to a moving origin: they round anew in each frame.
@@ -329,34 +331,25 @@ impl World {
         let keys: Vec<u64> = keyed.map(|object| object.key).collect();
         let boxes = Boxes { origin: self.place, boxes: &boxes };
         let casters = Casters { boxes, moves: &moves, keys: &keys };
+        let in_view = [self.in_view(); MAPS];
         let frame = CacheFrame {
-            fitted: &maps,
-            casters: &casters,
+            maps: &maps,
+            casters,
             standing: (listed.len() < self.objects.len()).then_some(&self.tree),
-            coarsest: Some(MAPS - 1),
             direction: LIGHTS[self.light],
-            origin: self.place,
+            reader: Reader::from_eye(self.place, Vec3::NEG_Z),
+            in_view: InView::Volumes(&in_view),
         };
-        // The frame borrows the tree, which no step changes.
-        self.cache.take(&frame);
-        let everywhere = CasterVolume::everywhere(self.place);
-        let is_due = core::array::from_fn(|map| self.cache.shows_gone(map, &everywhere));
-        let choice = self.cache.choose(&frame, is_due);
-        let mut plan = core::mem::take(&mut self.plan);
-        let volumes = if self.cache.needs_volumes(&choice) { &[self.in_view(); MAPS][..] } else { &[] };
-        self.cache.plan(&choice, &frame, volumes, &mut plan);
+        let plan = self.cache.update(&frame).map_err(|error| error.to_string())?.clone();
         for pass in &plan.passes {
-            self.carry_out(&plan, pass, &choice.maps[pass.map], &listed);
+            self.carry_out(&plan, pass, &listed);
         }
-        self.plan = plan;
-        choice.maps.iter().enumerate().try_for_each(|(index, map)| {
-            let waits = choice.decisions[index] == Decision::Wait;
-            self.compare(index, map, waits)
-        })
+        (0..MAPS).try_for_each(|index| self.compare(index))
     }
 
     /// Draws a pass into the samples of its layer.
-    fn carry_out(&mut self, plan: &FramePlan, pass: &PassPlan, map: &FittedMap, listed: &[Object]) {
+    fn carry_out(&mut self, plan: &FramePlan, pass: &PassPlan, listed: &[Object]) {
+        let map = &plan.maps[pass.map];
         let samples = |part: TexelRect| samples_in(part, self.jitter);
         let [shown, fixed] = [&mut self.shown[pass.map], &mut self.fixed[pass.map]];
         if pass.layer == Layer::Shown {
@@ -364,11 +357,11 @@ impl World {
                 shown[index] = fixed[index];
             }
         }
-        let wrap = self.cache.wrap(pass.map);
         for aabb in &plan.boxes[pass.mended_boxes.clone()] {
             let rect = covered(map, aabb, self.place);
-            for part in
-                rect.stored(wrap, pass.size).filter(|part| plan.views[pass.views.clone()].contains(&part.viewport()))
+            for part in rect
+                .stored(map.wrap, pass.size)
+                .filter(|part| plan.views[pass.views.clone()].contains(&part.viewport()))
             {
                 samples(part.stored).for_each(|index| shown[index] = fixed[index]);
             }
@@ -381,11 +374,10 @@ impl World {
             samples(*rect).for_each(|index| layer[index] = Sample::default());
         }
         let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
-        for piece in &plan.pieces[pass.pieces.clone()] {
+        for piece in plan.pieces_of(pass) {
             let standing = |number: &u32| self.objects.iter().find(|object| object.stands == Some(*number));
-            let casters = plan.casters[piece.casters.clone()].iter().map(|number| &listed[*number as usize]);
-            let standing =
-                plan.standing[piece.standing.clone()].iter().map(|number| standing(number).expect("it stands"));
+            let casters = plan.casters_of(piece).iter().map(|number| &listed[*number as usize]);
+            let standing = plan.standing_of(piece).iter().map(|number| standing(number).expect("it stands"));
             for object in casters.chain(standing) {
                 let aabb = object.aabb(self.place);
                 // The GPU clips what lies outside the map, such as beyond its far plane.
@@ -402,10 +394,11 @@ impl World {
     }
 
     /// Compares what a map holds with what is there.
-    fn compare(&self, index: usize, map: &FittedMap, waits: bool) -> Result<(), String> {
-        let (size, wrap) = (map.projection.resolution, self.cache.wrap(index));
+    fn compare(&self, index: usize) -> Result<(), String> {
+        let (map, waits) = (&self.cache.plan().maps[index], self.cache.plan().reuse[index] == MapReuse::Waits);
+        let (size, wrap) = (map.projection.resolution, map.wrap);
         let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
-        let (in_view, is_kept) = (self.in_view(), self.cache.is_cached(index));
+        let (in_view, is_kept) = (self.in_view(), self.cache.is_kept(index));
         let mut expected = vec![Sample::default(); self.shown[index].len()];
         for object in &self.objects {
             let aabb = object.aabb(self.place);

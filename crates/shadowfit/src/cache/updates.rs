@@ -1,14 +1,17 @@
-//! Which rectangles of the maps a frame draws, and which maps hold a caster: for tools that show it.
+//! Rectangles of the maps that a frame draws, and maps that hold a caster: for tools that show them.
 
-use shadowfit::culling::cull;
-use shadowfit::glam::UVec2;
-use shadowfit::scroll::TexelRect;
-use shadowfit::{CasterVolume, FittedMap};
+use alloc::vec;
+use alloc::vec::Vec;
 
-use super::CachedMaps;
-use crate::cache::{Casters, Culling, PassContent, PassPlan};
-use crate::maps::shadow_map::stored_casters;
-use crate::{MapView, ShadowMapError};
+use glam::UVec2;
+
+use super::MapCache;
+use super::casters::Casters;
+use super::plan::{PassContent, PassPlan};
+use super::settings::Culling;
+use crate::culling::cull;
+use crate::scroll::TexelRect;
+use crate::{CasterVolume, FittedMap};
 
 /// A rectangle of a map that is drawn in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,20 +37,20 @@ pub enum UpdateContent {
     Moving,
 }
 
-impl CachedMaps {
-    /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
-    pub(crate) fn updates(&self) -> Vec<MapUpdate> {
+impl MapCache {
+    /// Returns the rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
+    pub fn updates(&self) -> Vec<MapUpdate> {
         let mut updates = Vec::new();
         for pass in &self.plan.passes {
-            let Some(fitted) = self.maps.get(pass.map) else { continue };
+            let Some(read) = self.plan.maps.get(pass.map) else { continue };
             let update = |content| move |rect| MapUpdate { map: pass.map, rect, content };
-            let pieces = self.plan.pieces[pass.pieces.clone()].iter().map(|piece| piece.part.window);
+            let pieces = self.plan.pieces_of(pass).iter().map(|piece| piece.part.window);
             match pass.content {
                 PassContent::All => updates.extend(pieces.map(update(UpdateContent::All))),
                 PassContent::Static => updates.extend(pieces.map(update(UpdateContent::Static))),
                 PassContent::Moving => {
-                    updates.extend(self.mended(pass, fitted).map(update(UpdateContent::Mended)));
-                    updates.extend(self.moving(pass.map, fitted).map(update(UpdateContent::Moving)));
+                    updates.extend(self.mended(pass, read).map(update(UpdateContent::Mended)));
+                    updates.extend(self.moving(pass.map, read).map(update(UpdateContent::Moving)));
                 }
             }
         }
@@ -56,53 +59,36 @@ impl CachedMaps {
     }
 
     /// Rectangles that are restored from the static casters' layer.
-    fn mended(&self, pass: &PassPlan, fitted: &FittedMap) -> impl Iterator<Item = TexelRect> {
+    fn mended(&self, pass: &PassPlan, read: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let stored = self.plan.rects[pass.mended.clone()].iter();
-        let rects = stored.map(|stored| looked_up(*stored, fitted.wrap, pass.size));
+        let rects = stored.map(|stored| looked_up(*stored, read.wrap, pass.size));
         let boxes = self.plan.boxes[pass.mended_boxes.clone()].iter();
-        rects.chain(boxes.map(|aabb| TexelRect::of_box(&fitted.projection, aabb, self.origin)))
+        rects.chain(boxes.map(|aabb| TexelRect::of_box(&read.projection, aabb, self.plan.origin)))
     }
 
     /// Rectangles around the moving casters that a map was drawn with.
-    fn moving(&self, map: usize, fitted: &FittedMap) -> impl Iterator<Item = TexelRect> {
-        let origin = fitted.projection.origin;
-        let boxes = self.cache.moving(map).iter();
-        boxes.map(move |moved| TexelRect::of_box(&fitted.projection, &moved.relative_to(origin), origin))
+    fn moving(&self, map: usize, read: &FittedMap) -> impl Iterator<Item = TexelRect> {
+        let origin = read.projection.origin;
+        let boxes = self.maps[map].moving.iter();
+        boxes.map(move |moved| TexelRect::of_box(&read.projection, &moved.relative_to(origin), origin))
     }
 
-    /// Whether the static casters of a map, by its number, are kept for later frames.
-    pub(crate) fn is_cached(&self, map: usize) -> bool {
-        self.cache.is_cached(map)
-    }
-
-    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
-    /// static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
-    pub(crate) fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
-        let clamps = self.map.descriptor().depth_clamp;
-        let in_view = &self.volumes;
-        let over = |(index, map): (usize, &FittedMap)| match self.culling {
+    /// Returns the maps that hold each caster of the list: bit i of the mask stands for map i. A map that is kept holds
+    /// all static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
+    pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
+        let in_view = &self.plan.in_view;
+        let over = |((index, map), in_view): ((usize, &FittedMap), &CasterVolume)| match self.settings.culling {
             Culling::Off => CasterVolume::everywhere(map.projection.origin),
-            _ if self.is_cached(index) => stored_casters(&map.projection, clamps),
-            _ => in_view[index],
+            _ if self.is_kept(index) => CasterVolume::of_map(&map.projection, self.settings.caster_policy()),
+            _ => *in_view,
         };
-        let over: Vec<CasterVolume> = self.maps.iter().enumerate().map(over).collect();
+        let over: Vec<CasterVolume> = self.plan.maps.iter().enumerate().zip(in_view).map(over).collect();
         let boxes = casters.boxes;
         let [mut moving, mut fixed] = [(); 2].map(|()| vec![0; boxes.boxes.len()]);
         cull(in_view, boxes.origin, boxes.boxes, &mut moving);
         cull(&over, boxes.origin, boxes.boxes, &mut fixed);
         let mask = |(number, (moving, fixed))| if casters.moves(number) { moving } else { fixed };
         moving.into_iter().zip(fixed).enumerate().map(mask).collect()
-    }
-
-    /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
-    /// whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be drawn
-    /// after this. A light that is off gives nothing from anywhere.
-    ///
-    /// # Errors
-    ///
-    /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
-    pub(crate) fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
-        if self.is_off { Ok(()) } else { self.write_uniforms(queue, view) }
     }
 }
 
@@ -114,6 +100,8 @@ fn looked_up(stored: TexelRect, wrap: UVec2, size: UVec2) -> TexelRect {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
 
     #[test]

@@ -1,13 +1,19 @@
-//! Maps for the tests of the cache.
+//! Maps for the tests of the cache, and for its fuzz target.
 
-use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::cache::{CacheSettings, Culling};
+use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
 
 /// Width and height of the maps, in texels.
-pub(super) const SIDE: u32 = 2048;
+pub(crate) const SIDE: u32 = 2048;
+
+/// Settings for the technique's maps, drawn with depth clamp.
+pub(crate) fn settings(caching: bool, culling: Culling) -> CacheSettings {
+    CacheSettings { caching, culling, depth_clamp: true, layer: UVec2::splat(SIDE), ..CacheSettings::default() }
+}
 
 /// Four windows of an eye at the world's origin that looks along -z, with shadows up to a distance in metres.
-pub(super) fn fitted(direction: Vec3, far: f32, boxes: &[Aabb]) -> FittedMaps {
+pub(crate) fn fitted(direction: Vec3, far: f32, boxes: &[Aabb]) -> FittedMaps {
     let camera = PerspectiveCamera {
         eye: DVec3::new(0.0, 2.0, 0.0),
         forward: Vec3::NEG_Z,

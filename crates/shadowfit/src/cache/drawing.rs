@@ -1,0 +1,388 @@
+//! From the decision about a map to its passes.
+
+use alloc::vec::Vec;
+use core::mem::take;
+use core::ops::Range;
+
+use glam::{DVec3, UVec2, Vec3};
+
+use super::casters::{Casters, KnownCasters};
+use super::kept::{Decision, KeptMap};
+use super::order::sort;
+use super::plan::{FramePlan, Layer, PassContent, PassPlan, PiecePlan};
+use super::settings::{CacheSettings, Culling};
+use super::world_box::WorldBox;
+use crate::culling::cull;
+use crate::scroll::{StoredRect, TexelRect};
+use crate::{Aabb, BoxTree, Boxes, CasterVolume, FittedMap};
+
+/// Volumes that casters are tested against at once: the bits of a mask.
+const VOLUMES: usize = 8;
+
+/// Texels by which the box of a caster that moved is widened before the layer is restored there: the rasteriser rounds
+/// by less.
+const MENDED_AROUND: f32 = 2.0;
+
+/// Rounding by which a shader may keep a caster in a box that the CPU culls, as a share of their coordinates: each
+/// allows for 16 · 2⁻²⁴ of them, and the coordinates of a box sum to half of those of a caster in it at least.
+const SHADER_ROUNDING: f32 = 64.0 / 16_777_216.0;
+
+/// Memory that is kept between frames.
+#[derive(Debug, Default)]
+pub(super) struct Buffers {
+    /// The parts in which a whole map is stored, and those that are redrawn of it.
+    whole: Vec<StoredRect>,
+    redrawn: Vec<StoredRect>,
+    /// A bit for each volume that a listed caster lies in.
+    masks: Vec<u8>,
+    /// Standing casters in some volumes, with the same bits.
+    standing_masks: Vec<(u32, u8)>,
+    /// Sort keys of casters.
+    order: Vec<u64>,
+    /// The boxes of moving casters, and their bits: first the view, then each part of the map.
+    moving_boxes: Vec<Aabb>,
+    moving_masks: Vec<u8>,
+    /// Static casters near some parts.
+    near: Vec<u32>,
+    near_boxes: Vec<Aabb>,
+}
+
+/// The passes of one map of a frame.
+pub(super) struct Drawing<'a> {
+    pub(super) index: usize,
+    /// The map that is read.
+    pub(super) fitted: &'a FittedMap,
+    pub(super) known: &'a KnownCasters,
+    pub(super) casters: &'a Casters<'a>,
+    pub(super) standing: Option<&'a BoxTree>,
+    /// Unit direction toward the light.
+    pub(super) to_light: Vec3,
+    /// Origin of positions in the shaders, in world space, in metres.
+    pub(super) origin: DVec3,
+    /// Casters that can shadow something in view; all casters where no pass needs them.
+    pub(super) in_view: CasterVolume,
+    pub(super) settings: &'a CacheSettings,
+    pub(super) plan: &'a mut FramePlan,
+    pub(super) buffers: &'a mut Buffers,
+}
+
+impl Drawing<'_> {
+    /// Adds the map's passes, and updates the content of its layers. `rects` are those that the decision redraws.
+    pub(super) fn plan(&mut self, map: &mut KeptMap, decision: &Decision, rects: &[TexelRect]) {
+        match decision {
+            Decision::Wait => return,
+            Decision::DrawAnew => {
+                (map.wrap, map.is_kept, map.is_split) = (UVec2::ZERO, false, false);
+                map.moving.clear();
+                self.casters_in_view();
+            }
+            Decision::Renew => {
+                (map.wrap, map.is_kept, map.is_split) = (UVec2::ZERO, true, false);
+                self.all_casters(map);
+            }
+            Decision::Keep { wrap, .. } => {
+                map.wrap = *wrap;
+                self.kept(map, rects);
+            }
+        }
+        map.drawn = Some(*self.fitted);
+        map.changed.clear();
+        map.gone.clear();
+    }
+
+    /// One pass with all casters that can shadow something in view.
+    fn casters_in_view(&mut self) {
+        let volume = self.in_view;
+        self.cull(&[volume]);
+        let (known, casters) = (self.known, self.casters);
+        let casts = |number: u32| known.is_fixed(number) || casters.moves(number as usize);
+        self.whole_map(PassContent::All, &volume, |number, mask| mask != 0 && casts(number));
+    }
+
+    /// One pass with all static casters over the map, and moving casters in view.
+    fn all_casters(&mut self, map: &mut KeptMap) {
+        let whole = StoredRect { window: self.whole(), stored: self.whole() };
+        let over = self.volume(whole.window);
+        self.cull(&[over, self.in_view]);
+        self.find_moving(&[whole], &mut map.moving);
+        for (number, mask) in self.known.moving.iter().zip(&self.buffers.moving_masks) {
+            self.buffers.masks[*number as usize] = *mask;
+        }
+        let (known, casters) = (self.known, self.casters);
+        let moves = |number: u32| casters.moves(number as usize);
+        let is_over =
+            |number: u32, mask: u8| (mask & 1 == 1 && known.is_fixed(number)) || (mask == 0b11 && moves(number));
+        let content = if map.moving.is_empty() { PassContent::Static } else { PassContent::All };
+        let drawn = self.whole_map(content, &over, is_over);
+        map.over = drawn - map.moving.len();
+    }
+
+    /// A pass that clears the shown layer and draws the casters of the list that are chosen by their numbers and masks,
+    /// and the standing ones in a volume. Returns the number of casters.
+    fn whole_map(&mut self, content: PassContent, standing: &CasterVolume, is_over: impl Fn(u32, u8) -> bool) -> usize {
+        let (piece, first) = (self.plan.pieces.len(), self.plan.casters.len());
+        let over = (0..).zip(&self.buffers.masks).filter(|(number, mask)| is_over(*number, **mask));
+        self.plan.casters.extend(over.map(|(number, _)| number));
+        self.find_standing(core::slice::from_ref(standing));
+        self.piece(StoredRect { window: self.whole(), stored: self.whole() }, first, 0);
+        self.pass(content, Layer::Shown, true, piece);
+        let piece = &self.plan.pieces[piece];
+        piece.casters.len() + piece.standing.len()
+    }
+
+    /// Adds a piece with the casters from this one on, and those standing ones that have a bit in their masks.
+    fn piece(&mut self, part: StoredRect, first: usize, bit: usize) {
+        let (plan, order) = (&mut *self.plan, &mut self.buffers.order);
+        let standing = plan.standing.len();
+        let is_over = |(_, mask): &&(u32, u8)| mask >> bit & 1 == 1;
+        plan.standing.extend(self.buffers.standing_masks.iter().filter(is_over).map(|(number, _)| *number));
+        let boxes = self.casters.boxes.boxes;
+        sort(&mut plan.casters[first..], self.to_light, order, |number| boxes[number as usize]);
+        if let Some(tree) = self.standing {
+            let aabb = |number| tree.get(number).unwrap_or(Aabb::EMPTY);
+            sort(&mut plan.standing[standing..], self.to_light, order, aabb);
+        }
+        let (casters, standing) = (first..plan.casters.len(), standing..plan.standing.len());
+        plan.pieces.push(PiecePlan { part, casters, standing });
+    }
+
+    /// Finds the standing casters in some volumes.
+    fn find_standing(&mut self, volumes: &[CasterVolume]) {
+        let masks = &mut self.buffers.standing_masks;
+        masks.clear();
+        if let Some(tree) = self.standing {
+            tree.cull(volumes, |number, mask| masks.push((number, mask)));
+        }
+    }
+
+    /// The passes of a map that is kept but for some rectangles: static casters, then what moves. The static ones have
+    /// a layer of their own from the first frame in which something moves over the map.
+    fn kept(&mut self, map: &mut KeptMap, rects: &[TexelRect]) {
+        let size = self.fitted.projection.resolution;
+        let (mut whole, mut redrawn) = (take(&mut self.buffers.whole), take(&mut self.buffers.redrawn));
+        whole.clear();
+        whole.extend(self.whole().stored(map.wrap, size));
+        redrawn.clear();
+        redrawn.extend(rects.iter().flat_map(|rect| rect.stored(map.wrap, size)));
+        self.kept_parts(map, &whole, &redrawn);
+        (self.buffers.whole, self.buffers.redrawn) = (whole, redrawn);
+    }
+
+    /// The same for the parts in which the map is stored, and those that are redrawn.
+    fn kept_parts(&mut self, map: &mut KeptMap, whole: &[StoredRect], redrawn: &[StoredRect]) {
+        let first_box = self.plan.boxes.len();
+        let moved = map.moving.iter().filter(|moved| !moved.is_empty());
+        let (origin, texel) = (self.origin, self.fitted.projection.texel_size.max_element());
+        self.plan.boxes.extend(moved.map(|moved| mended(moved, origin, texel)));
+        let mended_boxes = first_box..self.plan.boxes.len();
+        self.find_moving(whole, &mut map.moving);
+        if !map.is_split && mended_boxes.is_empty() && map.moving.is_empty() {
+            self.static_casters(redrawn, Layer::Shown, false);
+            return;
+        }
+        if map.is_split {
+            self.static_casters(redrawn, Layer::Static, false);
+        } else {
+            self.static_casters(whole, Layer::Static, true);
+            map.is_split = true;
+        }
+        self.moving_casters(whole, redrawn, mended_boxes);
+    }
+
+    /// A pass with the static casters of some parts, if there are any. It `clears` all of the layer, or the parts.
+    fn static_casters(&mut self, parts: &[StoredRect], layer: Layer, clears: bool) {
+        if parts.is_empty() {
+            return;
+        }
+        let (piece, first_rect) = (self.plan.pieces.len(), self.plan.rects.len());
+        self.cull_static(parts);
+        if !clears {
+            self.plan.rects.extend(parts.iter().map(|part| part.stored));
+        }
+        let last_rect = self.plan.rects.len();
+        self.pass(PassContent::Static, layer, clears, piece).cleared = first_rect..last_rect;
+    }
+
+    /// Adds pieces with the static casters over them.
+    fn cull_static(&mut self, parts: &[StoredRect]) {
+        // First those over any of the parts.
+        let around = parts.iter().map(|part| part.window).reduce(TexelRect::union).unwrap_or_default();
+        let Boxes { origin, boxes } = self.casters.boxes;
+        self.cull(&[self.volume(around)]);
+        let known = self.known;
+        let Buffers { masks, near, near_boxes, .. } = &mut *self.buffers;
+        let is_over = |(number, mask): &(u32, &u8)| **mask != 0 && known.is_fixed(*number);
+        near.clear();
+        near.extend((0..).zip(&*masks).filter(is_over).map(|(number, _)| number));
+        near_boxes.clear();
+        near_boxes.extend(near.iter().map(|number| boxes[*number as usize]));
+        for parts in parts.chunks(VOLUMES) {
+            let (volumes, count) = self.volumes(parts.iter().map(|part| self.volume(part.window)));
+            let Buffers { masks, near_boxes, .. } = &mut *self.buffers;
+            cull(&volumes[..count], origin, near_boxes, masks);
+            self.find_standing(&volumes[..count]);
+            for (bit, part) in parts.iter().enumerate() {
+                let first = self.plan.casters.len();
+                let Buffers { masks, near, .. } = &*self.buffers;
+                let is_over = |(_, mask): &(&u32, &u8)| **mask >> bit & 1 == 1;
+                self.plan.casters.extend(near.iter().zip(masks).filter(is_over).map(|(number, _)| *number));
+                self.piece(*part, first, bit);
+            }
+        }
+    }
+
+    /// Finds the moving casters in view over the map, and which of its parts each lies over.
+    fn find_moving(&mut self, parts: &[StoredRect], moving: &mut Vec<WorldBox>) {
+        let Boxes { origin, boxes } = self.casters.boxes;
+        let (volumes, count) =
+            self.volumes([self.in_view].into_iter().chain(parts.iter().map(|part| self.volume(part.window))));
+        let Buffers { moving_boxes, moving_masks, .. } = &mut *self.buffers;
+        moving.clear();
+        moving_boxes.clear();
+        let offset = (origin - self.origin).abs().element_sum() as f32;
+        let widened = |number: &u32| widened(&boxes[*number as usize], offset);
+        moving_boxes.extend(self.known.moving.iter().map(widened));
+        moving_masks.clear();
+        moving_masks.resize(moving_boxes.len(), 0);
+        cull(&volumes[..count], origin, moving_boxes, moving_masks);
+        for (aabb, mask) in moving_boxes.iter().zip(moving_masks) {
+            if *mask & 1 == 1 && *mask >> 1 != 0 {
+                moving.push(WorldBox::new(aabb, origin));
+            }
+        }
+    }
+
+    /// A pass that restores the shown layer and draws over it the moving casters that were found, if there is anything
+    /// to do. `redrawn`: where static casters were drawn in this frame; `boxes`: where others moved in an earlier one.
+    fn moving_casters(&mut self, parts: &[StoredRect], redrawn: &[StoredRect], boxes: Range<usize>) {
+        let (piece, first_rect, first_view) = (self.plan.pieces.len(), self.plan.rects.len(), self.plan.views.len());
+        self.plan.rects.extend(redrawn.iter().map(|part| part.stored));
+        if !boxes.is_empty() {
+            self.plan.views.extend(parts.iter().map(StoredRect::viewport));
+        }
+        self.buffers.standing_masks.clear();
+        for (index, part) in parts.iter().enumerate() {
+            let first = self.plan.casters.len();
+            let bits = 1 | 2 << index;
+            let masked = self.known.moving.iter().zip(&self.buffers.moving_masks);
+            let numbers = masked.filter(|(_, mask)| **mask & bits == bits);
+            self.plan.casters.extend(numbers.map(|(number, _)| *number));
+            if self.plan.casters.len() > first {
+                self.piece(*part, first, 0);
+            }
+        }
+        if redrawn.is_empty() && boxes.is_empty() && self.plan.pieces.len() == piece {
+            return;
+        }
+        let (last_rect, last_view) = (self.plan.rects.len(), self.plan.views.len());
+        let pass = self.pass(PassContent::Moving, Layer::Shown, false, piece);
+        pass.mended = first_rect..last_rect;
+        pass.mended_boxes = boxes;
+        pass.views = first_view..last_view;
+    }
+
+    /// Tests all casters of the list against some volumes.
+    fn cull(&mut self, volumes: &[CasterVolume]) {
+        let Boxes { origin, boxes } = self.casters.boxes;
+        self.buffers.masks.clear();
+        self.buffers.masks.resize(boxes.len(), 0);
+        cull(volumes, origin, boxes, &mut self.buffers.masks);
+    }
+
+    /// Returns up to [`VOLUMES`] volumes, and their number.
+    fn volumes(&self, volumes: impl Iterator<Item = CasterVolume>) -> ([CasterVolume; VOLUMES], usize) {
+        let (mut array, mut count) = ([CasterVolume::everywhere(self.origin); VOLUMES], 0);
+        for (slot, volume) in array.iter_mut().zip(volumes) {
+            *slot = volume;
+            count += 1;
+        }
+        (array, count)
+    }
+
+    /// All texels of the map.
+    fn whole(&self) -> TexelRect {
+        TexelRect::all(self.fitted.projection.resolution)
+    }
+
+    /// All casters over a part of the map.
+    fn volume(&self, part: TexelRect) -> CasterVolume {
+        if self.settings.culling == Culling::Off {
+            return CasterVolume::everywhere(self.fitted.projection.origin);
+        }
+        CasterVolume::of_part(&self.fitted.projection, self.settings.caster_policy(), part)
+    }
+
+    /// Adds a pass with the pieces from this one on.
+    fn pass(&mut self, content: PassContent, layer: Layer, clears: bool, first_piece: usize) -> &mut PassPlan {
+        let pass = PassPlan {
+            map: self.index,
+            content,
+            layer,
+            clears,
+            cleared: 0..0,
+            mended: 0..0,
+            mended_boxes: 0..0,
+            views: 0..0,
+            pieces: first_piece..self.plan.pieces.len(),
+            size: self.fitted.projection.resolution,
+        };
+        self.plan.passes.push(pass);
+        let last = self.plan.passes.len() - 1;
+        &mut self.plan.passes[last]
+    }
+}
+
+/// Returns a box of moving casters that holds everything a shader may draw of them, so that it is mended in the next
+/// frame. `offset` lies between its origin and that of the shader's boxes, in metres along all axes together.
+fn widened(aabb: &Aabb, offset: f32) -> Aabb {
+    if aabb.is_empty() {
+        return Aabb::EMPTY;
+    }
+    let by = ((aabb.min.abs() + aabb.max.abs()).element_sum() + offset) * SHADER_ROUNDING;
+    Aabb::new(aabb.min - by, aabb.max + by)
+}
+
+/// Returns the box within which a caster that moved may have been drawn, relative to the shaders' origin. `texel` is the
+/// width of a texel, in metres.
+fn mended(moved: &WorldBox, origin: DVec3, texel: f32) -> Aabb {
+    let aabb = moved.relative_to(origin);
+    let around = MENDED_AROUND * texel;
+    Aabb::new(aabb.min - around, aabb.max + around)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3, Vec4};
+
+    use super::*;
+
+    /// Numbers in 0..1 that fill the cube evenly.
+    fn evenly(index: u32, axis: i32) -> f32 {
+        (f64::from(index) * 1.220_744_084_605_759_5_f64.powi(-axis)).fract() as f32
+    }
+
+    #[test]
+    fn whatever_a_shader_keeps_of_a_box_of_casters_the_widened_box_keeps() {
+        let mut lost_without = 0;
+        for i in 1..20_000 {
+            let [x, y, z, a] = [1, 2, 3, 4].map(|axis| evenly(i, axis));
+            let normal = (Vec3::new(x, y, z) - 0.5).normalize_or(Vec3::Y);
+            // A caster in the farthest corner along the normal of a box whose other corner is at the origin.
+            let corner = Vec3::new(a, x, y) * 300.0 * normal.signum();
+            let group = Aabb::new(corner.min(Vec3::ZERO), corner.max(Vec3::ZERO));
+            let caster = Aabb::new(corner.min(corner * 0.99), corner.max(corner * 0.99));
+            // The plane lies beyond the corner by what both tests may round.
+            let reach = normal.as_dvec3().dot(corner.as_dvec3()) as f32;
+            let beyond = corner.abs().element_sum() * 2.0 * evenly(i, 5) * 16.0 / 16_777_216.0;
+            let mut volume = CasterVolume::everywhere(DVec3::ZERO);
+            (volume.planes[0], volume.count) = (Vec4::from((normal, -reach - beyond)), 1);
+            let touches = |aabb: &Aabb| volume.intersects_aabb(aabb.min, aabb.max);
+            if touches(&caster) {
+                assert!(touches(&widened(&group, 0.0)), "{i}");
+                lost_without += u32::from(!touches(&group));
+            }
+        }
+        assert!(lost_without > 100, "{lost_without} are lost without widening");
+        assert!(widened(&Aabb::EMPTY, 1.0).is_empty());
+    }
+}

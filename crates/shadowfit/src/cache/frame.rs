@@ -1,0 +1,46 @@
+//! The input of a frame.
+
+use glam::{DVec3, Vec3};
+
+use super::casters::Casters;
+use crate::culling::Reader;
+use crate::{BoxTree, CasterVolume, FittedMap, ViewFrustum};
+
+/// The part of the world in which shadows are visible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InView<'a> {
+    /// The views that show the shadows, as they were given to the fit. The cache computes the casters that can shadow
+    /// something in them.
+    Views(&'a [ViewFrustum]),
+    /// The casters of each map that can shadow something in view, for engines that know them better: by portals or
+    /// occlusion. A map without a volume takes all casters. Gone casters count as in view.
+    Volumes(&'a [CasterVolume]),
+}
+
+/// A frame, as [`MapCache::update`](super::MapCache::update) takes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CacheFrame<'a> {
+    /// Maps that were fitted to this frame. Those with an [anchor](FittedMap::anchor) can be kept; others are redrawn in
+    /// each frame. Their [`wrap`](FittedMap::wrap) is ignored, and so are maps past
+    /// [`MAX_MAPS`](crate::settings::MAX_MAPS).
+    pub maps: &'a [FittedMap],
+    /// Moving casters, and static ones that are not in [`Self::standing`].
+    pub casters: Casters<'a>,
+    /// Static casters in a tree. Keep one tree: another tree, or none, redraws all maps.
+    pub standing: Option<&'a BoxTree>,
+    /// Direction of travel of the maps' light, world axes, of any length.
+    pub direction: Vec3,
+    /// Origin of positions in the shaders, and the eye from which they count view depths.
+    pub reader: Reader,
+    /// The part of the world in which shadows are visible.
+    pub in_view: InView<'a>,
+}
+
+impl<'a> CacheFrame<'a> {
+    /// Returns a frame without a tree, whose shaders take positions relative to the first view's eye.
+    pub fn new(maps: &'a [FittedMap], casters: Casters<'a>, views: &'a [ViewFrustum], direction: Vec3) -> Self {
+        let (eye, forward) = views.first().map_or((DVec3::ZERO, Vec3::NEG_Z), |view| (view.origin, view.forward));
+        let reader = Reader::from_eye(eye, forward);
+        Self { maps, casters, standing: None, direction, reader, in_view: InView::Views(views) }
+    }
+}

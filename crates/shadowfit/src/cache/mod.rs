@@ -1,0 +1,301 @@
+//! Caching: the parts of the maps that can be kept from frame to frame, and the passes that draw the rest.
+//!
+//! A map on the world's grid moves by whole texels, so its static casters are drawn once. [`MapCache`] compares a frame's
+//! maps and casters with those that were drawn, and lists the passes, each with rectangles and casters. It needs no
+//! graphics API: an engine carries the passes out with its own, as `shadowfit-wgpu` does with wgpu.
+//!
+//! ```text
+//!   a frame's casters ──▶ 1. take: which of them changed, and where in each map?
+//!   and its maps      ──▶ 2. choose: kept, moved, or new? Which of them now?
+//!                     ──▶ 3. find the casters of each map that can shadow something in view
+//!                     ──▶ 4. plan: passes, pieces, casters
+//! ```
+//!
+//! Static casters are drawn into rectangles that came into a map, or in which one of them changed. Where casters move,
+//! the static ones have separate layers. The shown layer is restored from them where something moved in the frame
+//! before; then moving casters are drawn over it. A map that is drawn as a whole is drawn once, all casters together,
+//! into the shown layer; the static casters' own layer follows in the next frame that keeps the map.
+//!
+//! ```
+//! use shadowfit::cache::{CacheFrame, CacheSettings, Casters, MapCache};
+//! use shadowfit::glam::{DVec3, Vec3};
+//! use shadowfit::{Aabb, Boxes, FitError, FitInput, PerspectiveCamera, ShadowFitter, Technique};
+//!
+//! fn main() -> Result<(), FitError> {
+//!     let ground = Aabb::new(Vec3::new(-80.0, -0.1, -80.0), Vec3::new(80.0, 0.0, 80.0));
+//!     let house = Aabb::new(Vec3::new(-4.0, 0.0, -12.0), Vec3::new(4.0, 6.0, -6.0));
+//!     let objects = [ground, house];
+//!     let boxes = Boxes::world(&objects);
+//!     let sun = Vec3::new(0.3, -0.8, 0.2);
+//!     let technique = Technique::default();
+//!     let mut fitter = ShadowFitter::new(&technique);
+//!     let mut cache = MapCache::new(CacheSettings::of(&technique));
+//!
+//!     for frame in 0..3 {
+//!         let eye = DVec3::new(0.0, 1.7, 20.0 - 0.1 * f64::from(frame));
+//!         let (forward, up) = (Vec3::NEG_Z, Vec3::Y);
+//!         let camera = PerspectiveCamera { eye, forward, up, fov_y: 0.8, aspect: 16.0 / 9.0, near: 0.1, far: 200.0 };
+//!         let views = [camera.frustum()?];
+//!         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
+//!         let maps = fitter.fit(&input)?;
+//!         let plan = cache.update(&CacheFrame::new(maps, Casters::fixed(boxes), &views, sun))?;
+//!         for pass in &plan.passes {
+//!             println!("map {}: {:?} into {:?}, cleared: {}", pass.map, pass.content, pass.layer, pass.clears);
+//!             for piece in plan.pieces_of(pass) {
+//!                 let (viewport, scissor) = (piece.part.viewport(), piece.part.stored);
+//!                 println!("  draw {:?} at {viewport} within {scissor:?}", plan.casters_of(piece));
+//!             }
+//!         }
+//!         // Shaders read `plan.maps`: matrices, biases, and `wrap`, the texel offset.
+//!         # assert!(frame == 0 || plan.passes.iter().all(|pass| !pass.clears));
+//!     }
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # Carrying out a pass
+//!
+//! 1. Bind the pass's [layer](PassPlan::layer) of its map as depth attachment; clear it if [`PassPlan::clears`].
+//! 2. Write the far depth into the [cleared](PassPlan::cleared) rectangles.
+//! 3. Copy the [mended](PassPlan::mended) rectangles from the static casters' layer, and all texels that the
+//!    [mended boxes](PassPlan::mended_boxes) cover, in each of their [views](PassPlan::views).
+//! 4. For each [piece](FramePlan::pieces_of) set viewport and scissor rectangle, and draw its casters with the map's
+//!    [`clip_from_world`](crate::LightProjection::clip_from_world).
+//!
+//! # Memory
+//!
+//! Steady frames allocate nothing, also while the camera walks and casters move. Buffers grow with the number of casters.
+//! Changes of static casters allocate.
+
+mod casters;
+mod drawing;
+mod frame;
+mod identity;
+mod kept;
+mod order;
+mod plan;
+mod price;
+mod schedule;
+mod settings;
+mod stale;
+mod tiles;
+mod updates;
+mod volumes;
+mod world_box;
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use glam::DVec3;
+
+use crate::scroll::TexelRect;
+use crate::selection::MapOrder;
+use crate::settings::MAX_MAPS;
+use crate::{Aabb, CasterVolume, FitError, FittedMap};
+
+use casters::{Changes, KnownCasters};
+use drawing::{Buffers, Drawing};
+use kept::{Decision, KeptMap};
+use schedule::Candidate;
+
+pub use casters::Casters;
+pub use frame::{CacheFrame, InView};
+pub use plan::{FramePlan, Layer, MapReuse, PassContent, PassPlan, PiecePlan};
+pub use schedule::UpdateSchedule;
+pub use settings::{CacheSettings, Culling};
+pub use stale::StaleMap;
+pub use updates::{MapUpdate, UpdateContent};
+pub use volumes::PieceVolumes;
+pub use world_box::WorldBox;
+
+/// Remembers the content of the layers of one light's maps, and plans the passes of each frame.
+#[derive(Debug, Default)]
+pub struct MapCache {
+    /// Settings. They may change between any two frames.
+    pub settings: CacheSettings,
+    maps: [KeptMap; MAX_MAPS],
+    known: KnownCasters,
+    /// Number of the frame.
+    frame: u64,
+    /// Whether static casters have separate layers: from the first moving caster on.
+    has_static_layers: bool,
+    plan: FramePlan,
+    choice: Choice,
+    buffers: Buffers,
+}
+
+/// The maps that are read in a frame; some of them were drawn in an earlier one.
+#[derive(Debug, Default)]
+struct Choice {
+    decisions: Vec<Decision>,
+    maps: Vec<FittedMap>,
+    /// Rectangles that are redrawn, of all maps.
+    rects: Vec<TexelRect>,
+    /// The casters of each map that can shadow something in view.
+    in_view: Vec<CasterVolume>,
+    candidates: Vec<Candidate>,
+}
+
+impl MapCache {
+    /// Makes a cache for empty layers.
+    pub fn new(settings: CacheSettings) -> Self {
+        Self { settings, ..Self::default() }
+    }
+
+    /// Plans the passes of a frame. They count as drawn from the next call on.
+    ///
+    /// The first moving caster needs [separate layers](Self::has_static_layers) for the static ones.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`caster_volumes`](crate::culling::caster_volumes), for views that make no sense: [`FitError::NoView`]
+    /// without a view, where passes depend on it. There are no passes then, and the maps to read are those of the frame
+    /// before.
+    pub fn update(&mut self, frame: &CacheFrame<'_>) -> Result<&FramePlan, FitError> {
+        self.skip();
+        // 1. Where static casters changed.
+        self.take(frame);
+        // 2. Which maps are drawn now, and which are read as they are.
+        let is_due = self.due(frame)?;
+        self.choose(frame, is_due);
+        // 3. The casters of each.
+        let depends_on_view = self.depends_on_view();
+        let Choice { maps, in_view, .. } = &mut self.choice;
+        volumes::find(&self.settings, frame, maps, depends_on_view, in_view)?;
+        // 4. The passes.
+        self.write_plan(frame, depends_on_view);
+        Ok(&self.plan)
+    }
+
+    /// Returns the plan of the last [update](Self::update).
+    pub fn plan(&self) -> &FramePlan {
+        &self.plan
+    }
+
+    /// Leaves the frame without passes. The maps to read stay.
+    pub fn skip(&mut self) {
+        self.plan.clear_passes();
+    }
+
+    /// Leaves the frame without passes and without maps to read, such as for a light that gives nothing. What the layers
+    /// hold stays.
+    pub fn turn_off(&mut self) {
+        self.skip();
+        self.plan.maps.clear();
+        self.plan.reuse.clear();
+        self.plan.in_view.clear();
+    }
+
+    /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
+    pub fn invalidate_all(&mut self) {
+        self.maps.fill_with(KeptMap::default);
+    }
+
+    /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
+    /// metres, relative to an origin in world space. An empty box changes nothing.
+    pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
+        let changed = WorldBox::new(aabb, origin);
+        if !changed.is_empty() {
+            self.change(&Changes { gone: vec![changed], ..Changes::default() });
+        }
+    }
+
+    /// Returns whether static casters have separate layers, one for each map, as large as the shown one. They do from the
+    /// first moving caster on, while caching is on.
+    ///
+    /// Make the layers after the first [`Self::update`] that says so. If memory is lacking, turn
+    /// [caching](CacheSettings::caching) off, and update a new cache with the same frame.
+    pub fn has_static_layers(&self) -> bool {
+        self.has_static_layers
+    }
+
+    /// Returns whether a map's layer holds all static casters over it, so that later frames can keep it.
+    pub fn is_kept(&self, map: usize) -> bool {
+        self.maps.get(map).is_some_and(|map| map.is_kept)
+    }
+
+    /// Finds where static casters changed.
+    fn take(&mut self, frame: &CacheFrame<'_>) {
+        let changes = self.known.update(&frame.casters, frame.standing);
+        self.change(&changes);
+        self.has_static_layers |= self.settings.caching && !self.known.moving.is_empty();
+        self.frame += 1;
+    }
+
+    fn change(&mut self, changes: &Changes) {
+        for map in &mut self.maps {
+            map.change(changes);
+        }
+    }
+
+    /// Chooses which maps are drawn, and which are read as they are. `is_due`: which must not wait.
+    fn choose(&mut self, frame: &CacheFrame<'_>, is_due: [bool; MAX_MAPS]) {
+        let Choice { decisions, maps, rects, candidates, .. } = &mut self.choice;
+        decisions.clear();
+        maps.clear();
+        rects.clear();
+        candidates.clear();
+        let (selection, has_moving) = (self.settings.reading.selection, !self.known.moving.is_empty());
+        // By coverage it holds the points outside all others.
+        let coarsest = MapOrder::new(selection, frame.maps.iter().map(|map| &map.projection)).iter().last();
+        for (index, (map, fitted)) in self.maps.iter_mut().zip(frame.maps).enumerate() {
+            let decision = map.decide(fitted, &self.settings, frame.casters.boxes.boxes.len(), rects);
+            let texels = map.texels(&decision, decision.rects(rects), fitted) + u64::from(has_moving);
+            if texels > 0 {
+                let serves_others = selection.is_by_coverage() && coarsest != Some(index);
+                let is_due = is_due[index] || !map.may_wait(fitted, serves_others);
+                candidates.push(Candidate { map: index, age: self.frame - map.frame, texels, is_due });
+            }
+            map.fitted = Some(*fitted);
+            decisions.push(decision);
+        }
+        let is_drawn = self.settings.schedule.choose(self.frame, candidates);
+        for waiting in candidates.iter().filter(|candidate| !is_drawn[candidate.map]) {
+            decisions[waiting.map] = Decision::Wait;
+        }
+        let read = self.maps.iter().zip(frame.maps).zip(decisions);
+        maps.extend(read.map(|((map, fitted), decision)| map.shown(fitted, decision)));
+    }
+
+    /// Returns whether the passes depend on the views: static casters alone do not.
+    fn depends_on_view(&self) -> bool {
+        let has_moving = !self.known.moving.is_empty();
+        self.choice.decisions.iter().any(|decision| match decision {
+            Decision::Wait => false,
+            Decision::DrawAnew => true,
+            Decision::Keep { .. } | Decision::Renew => has_moving,
+        })
+    }
+
+    /// Writes the passes of the maps that were chosen.
+    fn write_plan(&mut self, frame: &CacheFrame<'_>, depends_on_view: bool) {
+        let Self { choice, plan, .. } = self;
+        core::mem::swap(&mut plan.maps, &mut choice.maps);
+        core::mem::swap(&mut plan.in_view, &mut choice.in_view);
+        plan.origin = frame.reader.origin;
+        plan.reuse.clear();
+        plan.reuse.extend(choice.decisions.iter().map(Decision::reuse));
+        for (index, decision) in choice.decisions.iter().enumerate() {
+            let map = &mut self.maps[index];
+            let fitted = plan.maps[index];
+            let in_view = plan.in_view[index];
+            let mut drawing = Drawing {
+                index,
+                fitted: &fitted,
+                known: &self.known,
+                casters: &frame.casters,
+                standing: frame.standing,
+                to_light: -frame.direction.normalize_or_zero(),
+                origin: frame.reader.origin,
+                in_view: if depends_on_view { in_view } else { CasterVolume::everywhere(fitted.projection.origin) },
+                settings: &self.settings,
+                plan: &mut *plan,
+                buffers: &mut self.buffers,
+            };
+            drawing.plan(map, decision, decision.rects(&choice.rects));
+            if *decision != Decision::Wait {
+                map.frame = self.frame;
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The passes of a frame, as data: which rectangles are drawn, with which casters.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use glam::{DVec3, IVec2, UVec2};
+
+use crate::scroll::{StoredRect, TexelRect};
+use crate::{Aabb, CasterVolume, FittedMap};
+
+/// One of a map's layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// The layer that shaders read.
+    Shown,
+    /// The layer of the static casters alone, from which the shown layer is restored. It is needed from the first moving
+    /// caster on; see [`MapCache::has_static_layers`](super::MapCache::has_static_layers).
+    Static,
+}
+
+/// Content of a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PassContent {
+    /// All casters, static and moving: no part of the map is kept.
+    All,
+    /// All static casters, where the map is new or one of them changed.
+    Static,
+    /// Moving casters, over the static ones.
+    Moving,
+}
+
+/// What a frame reuses of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapReuse {
+    /// All of it, with the matrices of the frame in which it was drawn: the [schedule](super::UpdateSchedule) draws it
+    /// later.
+    Waits,
+    /// All texels that were in it before, unless a static caster changed there. The texel at `t` was at `t + shift`
+    /// before, right and down.
+    Kept {
+        /// Movement of the map, in texels; zero for a map that stays in its place.
+        shift: IVec2,
+    },
+    /// Nothing. It is drawn with all static casters over it, for later frames to keep.
+    New,
+    /// Nothing. It is drawn for this frame alone, with fewer casters.
+    OneFrame,
+}
+
+/// A pass into one layer of a map. It begins by clearing and restoring parts of the layer, and then draws its pieces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassPlan {
+    /// Index of the map.
+    pub map: usize,
+    /// Casters that the pass draws.
+    pub content: PassContent,
+    /// Layer that it draws into.
+    pub layer: Layer,
+    /// Whether the whole layer is cleared first. Otherwise it is loaded.
+    pub clears: bool,
+    /// Rectangles of the layer to clear first: a range of [`FramePlan::rects`].
+    pub cleared: Range<usize>,
+    /// Rectangles to copy first from the static casters' layer: a range of [`FramePlan::rects`].
+    pub mended: Range<usize>,
+    /// Boxes to restore first from the static casters' layer, in every texel that they cover on the map: a range of
+    /// [`FramePlan::boxes`].
+    pub mended_boxes: Range<usize>,
+    /// Left top corners of the viewports with which the boxes are drawn, each of [`Self::size`]: a range of
+    /// [`FramePlan::views`].
+    pub views: Range<usize>,
+    /// Parts to draw: a range of [`FramePlan::pieces`].
+    pub pieces: Range<usize>,
+    /// Width and height of the map, in texels.
+    pub size: UVec2,
+}
+
+/// A part of a pass that is drawn with one viewport and one scissor rectangle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PiecePlan {
+    /// The part as shaders look it up, and as it is stored: [`StoredRect::stored`] is the scissor rectangle, and
+    /// [`StoredRect::viewport`] the left top corner of the viewport, whose size is [`PassPlan::size`].
+    pub part: StoredRect,
+    /// Casters of the list to draw, nearest to the light first: a range of [`FramePlan::casters`].
+    pub casters: Range<usize>,
+    /// Casters of the tree to draw, nearest to the light first: a range of [`FramePlan::standing`].
+    pub standing: Range<usize>,
+}
+
+/// The passes of a frame, and the maps to read after them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FramePlan {
+    /// The maps to read, with the texel offset [`FittedMap::wrap`]. A map that waits is the one that was drawn last,
+    /// relative to the origin of the fitted one.
+    pub maps: Vec<FittedMap>,
+    /// What is reused of each map.
+    pub reuse: Vec<MapReuse>,
+    /// The casters of each map that can shadow something in view, where the passes depend on that; otherwise all that the
+    /// map can store. Each volume has an origin of its own.
+    pub in_view: Vec<CasterVolume>,
+    /// The passes, in the order in which they must be drawn. A map that is kept unchanged has none.
+    pub passes: Vec<PassPlan>,
+    /// Parts of the passes.
+    pub pieces: Vec<PiecePlan>,
+    /// Casters of the parts, by their indices in the list.
+    pub casters: Vec<u32>,
+    /// Casters of the parts, by their numbers in the tree.
+    pub standing: Vec<u32>,
+    /// Rectangles of layers, as they are stored.
+    pub rects: Vec<TexelRect>,
+    /// Boxes around casters that moved, in metres relative to [`Self::origin`].
+    pub boxes: Vec<Aabb>,
+    /// Left top corners of viewports, in texels; they may lie outside the layer.
+    pub views: Vec<IVec2>,
+    /// World position that [`Self::boxes`] are relative to, in metres: the origin of the frame's
+    /// [reader](super::CacheFrame::reader).
+    pub origin: DVec3,
+}
+
+impl FramePlan {
+    /// Returns the parts of a pass of this plan.
+    pub fn pieces_of(&self, pass: &PassPlan) -> &[PiecePlan] {
+        self.pieces.get(pass.pieces.clone()).unwrap_or_default()
+    }
+
+    /// Returns the casters of the list that a part of this plan draws.
+    pub fn casters_of(&self, piece: &PiecePlan) -> &[u32] {
+        self.casters.get(piece.casters.clone()).unwrap_or_default()
+    }
+
+    /// Returns the casters of the tree that a part of this plan draws.
+    pub fn standing_of(&self, piece: &PiecePlan) -> &[u32] {
+        self.standing.get(piece.standing.clone()).unwrap_or_default()
+    }
+
+    /// Removes all passes.
+    pub(super) fn clear_passes(&mut self) {
+        self.passes.clear();
+        self.pieces.clear();
+        self.casters.clear();
+        self.standing.clear();
+        self.rects.clear();
+        self.boxes.clear();
+        self.views.clear();
+    }
+}

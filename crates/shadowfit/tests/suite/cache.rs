@@ -1,0 +1,6 @@
+//! The cache of maps: its plans, carried out on a model and counted.
+
+mod fixtures;
+mod histories;
+mod model;
+mod streams;
