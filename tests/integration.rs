@@ -124,7 +124,14 @@ fn trimmed(text: &str) -> Vec<String> {
 
 #[test]
 fn every_block_of_code_in_the_integration_guide_stands_in_an_example() {
-    let examples = ["engine_integration", "engine_integration/exact", "fit_once", "gpu_casters/engine", "still_maps"];
+    let examples = [
+        "cached_walk",
+        "engine_integration",
+        "engine_integration/exact",
+        "fit_once",
+        "gpu_casters/engine",
+        "still_maps",
+    ];
     let examples = examples.map(|name| trimmed(&read(format!("examples/{name}.rs"))));
     let blocks = blocks(&read("docs/INTEGRATION.md"));
     assert!(blocks.len() >= 10, "the guide has {} blocks", blocks.len());

@@ -112,7 +112,8 @@
 //! | how many maps are enough | [`fewest_maps`] |
 //! | boxes that hug large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
 //! | thousands of boxes that stand, handed over once | [`BoxTree`], [`FitInput::standing`], feature `alloc` |
-//! | static casters drawn only where the map is new | [`scroll`] |
+//! | static casters drawn only where the map is new: the passes of each frame as data, for any graphics API | [`cache`], feature `alloc` |
+//! | the texels of a map that can be kept, for a cache of your own | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
 //! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`], [`spot`] |
 //! | a proof that no map has a hole | [`proof`] |
@@ -130,7 +131,8 @@
 //! - A light is its **direction of travel**, of a [`SpotLight`] along its axis. Where a source speaks
 //!   of the direction toward the light, `to_light = -direction`.
 //! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except what needs the
-//!   feature `alloc`; a [`ShadowFitter`] allocates while its scene grows, and not in steady frames.
+//!   feature `alloc`; a [`ShadowFitter`] and a [`MapCache`](cache::MapCache) allocate while their scene grows, and not in
+//!   steady frames.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
 //!   same input gives the same bits on every target.
 //!
@@ -139,7 +141,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | [`ShadowFitter`], [`Seen`], [`BoxTree`] and `Clusters`, for which an allocator is enough |
+//! | `alloc` | [`ShadowFitter`], [`Seen`], [`BoxTree`], `Clusters` and [`cache`], for which an allocator is enough |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |

@@ -8,9 +8,9 @@ use crate::{BoxRevision, BoxTree, Boxes};
 
 /// Everything that casts shadows, by number: the index of its box.
 ///
-/// A static caster that is kept is known by its key and its box, whatever its number is: lists may come in any order,
-/// sorted, culled, with casters put in or taken out anywhere. What is redrawn is where a caster came, went, or has
-/// another box or another key. Equal casters are told apart by nothing, so that only their count matters.
+/// Static casters are identified by their boxes and keys, not by their numbers. Lists may come in any order, sorted or
+/// culled, with casters inserted or removed anywhere. The cache redraws the places where a caster came, went, or has
+/// another box or another key. Identical casters are interchangeable: only their count matters.
 ///
 /// | a static caster that | needs |
 /// |---|---|
@@ -18,9 +18,9 @@ use crate::{BoxRevision, BoxTree, Boxes};
 /// | has another shape in the same box | another key, or [`invalidate`](super::MapCache::invalidate) |
 /// | has another number | nothing, and costs the least where most keep theirs |
 ///
-/// A box may stand for many casters that an engine culls by itself, such as those in a cell of the world: then it holds
-/// all of them, and [`invalidate`](super::MapCache::invalidate) tells where those that stand still changed within it.
-/// Casters that move have boxes of their own, which may hold the same place.
+/// A box may hold many casters that an engine culls by itself, such as all casters in a cell of the world. Then call
+/// [`invalidate`](super::MapCache::invalidate) with the places where static casters changed within it. Give moving
+/// casters separate boxes, which may overlap it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
     /// A box around each caster. Empty boxes cast nothing.

@@ -1,16 +1,16 @@
-//! From the decision about a map to its passes.
+//! The passes of one map.
 
 use alloc::vec::Vec;
 use core::mem::take;
 use core::ops::Range;
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec3, Vec3};
 
 use super::casters::{Casters, KnownCasters};
-use super::kept::{Decision, KeptMap};
 use super::order::sort;
 use super::plan::{FramePlan, Layer, PassContent, PassPlan, PiecePlan};
 use super::settings::{CacheSettings, Culling};
+use super::state::{Layers, MapState, Transition};
 use super::world_box::WorldBox;
 use crate::culling::cull;
 use crate::scroll::{StoredRect, TexelRect};
@@ -67,30 +67,31 @@ pub(super) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Adds the map's passes, and updates the content of its layers. `rects` are those that the decision redraws.
-    pub(super) fn plan(&mut self, map: &mut KeptMap, decision: &Decision, rects: &[TexelRect]) {
-        match decision {
-            Decision::Wait => return,
-            Decision::DrawAnew => {
-                (map.wrap, map.is_kept, map.is_split) = (UVec2::ZERO, false, false);
-                map.moving.clear();
+    /// Adds the map's passes, and carries out a transition of its layers, which redraws these rectangles.
+    pub(super) fn plan(&mut self, state: &mut MapState, transition: &Transition, rects: &[TexelRect]) {
+        let was_split = state.layers.is_split();
+        match transition {
+            Transition::Wait => {}
+            Transition::DrawOnce => {
+                let mut drawn = state.layers.redraw(self.fitted);
+                drawn.moving.clear();
                 self.casters_in_view();
+                state.layers = Layers::OneFrame(drawn);
             }
-            Decision::Renew => {
-                (map.wrap, map.is_kept, map.is_split) = (UVec2::ZERO, true, false);
-                self.all_casters(map);
+            Transition::Renew => {
+                let mut drawn = state.layers.redraw(self.fitted);
+                state.over = self.all_casters(&mut drawn.moving);
+                state.layers = Layers::Kept(drawn);
             }
-            Decision::Keep { wrap, .. } => {
-                map.wrap = *wrap;
-                self.kept(map, rects);
+            Transition::Update { .. } => {
+                let mut drawn = state.layers.redraw(self.fitted);
+                let is_split = self.update(&mut drawn.moving, was_split, rects);
+                state.layers = if is_split { Layers::Split(drawn) } else { Layers::Kept(drawn) };
             }
         }
-        map.drawn = Some(*self.fitted);
-        map.changed.clear();
-        map.gone.clear();
     }
 
-    /// One pass with all casters that can shadow something in view.
+    /// Adds one pass with all casters that can shadow something in view.
     fn casters_in_view(&mut self) {
         let volume = self.in_view;
         self.cull(&[volume]);
@@ -99,12 +100,13 @@ impl Drawing<'_> {
         self.whole_map(PassContent::All, &volume, |number, mask| mask != 0 && casts(number));
     }
 
-    /// One pass with all static casters over the map, and moving casters in view.
-    fn all_casters(&mut self, map: &mut KeptMap) {
+    /// Adds one pass with all static casters over the map, and the moving casters in view. Returns the number of static
+    /// ones.
+    fn all_casters(&mut self, moving: &mut Vec<WorldBox>) -> usize {
         let whole = StoredRect { window: self.whole(), stored: self.whole() };
         let over = self.volume(whole.window);
         self.cull(&[over, self.in_view]);
-        self.find_moving(&[whole], &mut map.moving);
+        self.find_moving(&[whole], moving);
         for (number, mask) in self.known.moving.iter().zip(&self.buffers.moving_masks) {
             self.buffers.masks[*number as usize] = *mask;
         }
@@ -112,13 +114,12 @@ impl Drawing<'_> {
         let moves = |number: u32| casters.moves(number as usize);
         let is_over =
             |number: u32, mask: u8| (mask & 1 == 1 && known.is_fixed(number)) || (mask == 0b11 && moves(number));
-        let content = if map.moving.is_empty() { PassContent::Static } else { PassContent::All };
-        let drawn = self.whole_map(content, &over, is_over);
-        map.over = drawn - map.moving.len();
+        let content = if moving.is_empty() { PassContent::Static } else { PassContent::All };
+        self.whole_map(content, &over, is_over) - moving.len()
     }
 
-    /// A pass that clears the shown layer and draws the casters of the list that are chosen by their numbers and masks,
-    /// and the standing ones in a volume. Returns the number of casters.
+    /// Adds a pass that clears the shown layer. It draws the casters of the list that `is_over` chooses by number and mask,
+    /// and the casters of the tree in a volume. Returns their number.
     fn whole_map(&mut self, content: PassContent, standing: &CasterVolume, is_over: impl Fn(u32, u8) -> bool) -> usize {
         let (piece, first) = (self.plan.pieces.len(), self.plan.casters.len());
         let over = (0..).zip(&self.buffers.masks).filter(|(number, mask)| is_over(*number, **mask));
@@ -130,7 +131,7 @@ impl Drawing<'_> {
         piece.casters.len() + piece.standing.len()
     }
 
-    /// Adds a piece with the casters from this one on, and those standing ones that have a bit in their masks.
+    /// Adds a piece with the planned casters from this one on, and the casters of the tree that have a bit in their masks.
     fn piece(&mut self, part: StoredRect, first: usize, bit: usize) {
         let (plan, order) = (&mut *self.plan, &mut self.buffers.order);
         let standing = plan.standing.len();
@@ -155,41 +156,36 @@ impl Drawing<'_> {
         }
     }
 
-    /// The passes of a map that is kept but for some rectangles: static casters, then what moves. The static ones have
-    /// a layer of their own from the first frame in which something moves over the map.
-    fn kept(&mut self, map: &mut KeptMap, rects: &[TexelRect]) {
-        let size = self.fitted.projection.resolution;
+    /// Adds the passes that redraw rectangles of a kept map: static casters, then moving ones. `moving` are the moving
+    /// casters that the shown layer holds. Returns whether static casters have a separate layer from now on, which the
+    /// first caster that moves over the map causes.
+    fn update(&mut self, moving: &mut Vec<WorldBox>, was_split: bool, rects: &[TexelRect]) -> bool {
+        let FittedMap { projection, wrap, .. } = self.fitted;
         let (mut whole, mut redrawn) = (take(&mut self.buffers.whole), take(&mut self.buffers.redrawn));
         whole.clear();
-        whole.extend(self.whole().stored(map.wrap, size));
+        whole.extend(self.whole().stored(*wrap, projection.resolution));
         redrawn.clear();
-        redrawn.extend(rects.iter().flat_map(|rect| rect.stored(map.wrap, size)));
-        self.kept_parts(map, &whole, &redrawn);
-        (self.buffers.whole, self.buffers.redrawn) = (whole, redrawn);
-    }
-
-    /// The same for the parts in which the map is stored, and those that are redrawn.
-    fn kept_parts(&mut self, map: &mut KeptMap, whole: &[StoredRect], redrawn: &[StoredRect]) {
+        redrawn.extend(rects.iter().flat_map(|rect| rect.stored(*wrap, projection.resolution)));
         let first_box = self.plan.boxes.len();
-        let moved = map.moving.iter().filter(|moved| !moved.is_empty());
-        let (origin, texel) = (self.origin, self.fitted.projection.texel_size.max_element());
+        let (origin, texel) = (self.origin, projection.texel_size.max_element());
+        let moved = moving.iter().filter(|moved| !moved.is_empty());
         self.plan.boxes.extend(moved.map(|moved| mended(moved, origin, texel)));
         let mended_boxes = first_box..self.plan.boxes.len();
-        self.find_moving(whole, &mut map.moving);
-        if !map.is_split && mended_boxes.is_empty() && map.moving.is_empty() {
-            self.static_casters(redrawn, Layer::Shown, false);
-            return;
+        self.find_moving(&whole, moving);
+        let is_split = was_split || !mended_boxes.is_empty() || !moving.is_empty();
+        match (was_split, is_split) {
+            (_, false) => self.static_casters(&redrawn, Layer::Shown, false),
+            (true, _) => self.static_casters(&redrawn, Layer::Static, false),
+            (false, true) => self.static_casters(&whole, Layer::Static, true),
         }
-        if map.is_split {
-            self.static_casters(redrawn, Layer::Static, false);
-        } else {
-            self.static_casters(whole, Layer::Static, true);
-            map.is_split = true;
+        if is_split {
+            self.moving_casters(&whole, &redrawn, mended_boxes);
         }
-        self.moving_casters(whole, redrawn, mended_boxes);
+        (self.buffers.whole, self.buffers.redrawn) = (whole, redrawn);
+        is_split
     }
 
-    /// A pass with the static casters of some parts, if there are any. It `clears` all of the layer, or the parts.
+    /// Adds a pass with the static casters of some parts, unless there are none. It `clears` the whole layer, or the parts.
     fn static_casters(&mut self, parts: &[StoredRect], layer: Layer, clears: bool) {
         if parts.is_empty() {
             return;
@@ -203,9 +199,9 @@ impl Drawing<'_> {
         self.pass(PassContent::Static, layer, clears, piece).cleared = first_rect..last_rect;
     }
 
-    /// Adds pieces with the static casters over them.
+    /// Adds a piece for each part, with the static casters over it.
     fn cull_static(&mut self, parts: &[StoredRect]) {
-        // First those over any of the parts.
+        // First the casters over any of the parts.
         let around = parts.iter().map(|part| part.window).reduce(TexelRect::union).unwrap_or_default();
         let Boxes { origin, boxes } = self.casters.boxes;
         self.cull(&[self.volume(around)]);
@@ -252,8 +248,9 @@ impl Drawing<'_> {
         }
     }
 
-    /// A pass that restores the shown layer and draws over it the moving casters that were found, if there is anything
-    /// to do. `redrawn`: where static casters were drawn in this frame; `boxes`: where others moved in an earlier one.
+    /// Adds a pass that restores the shown layer and draws the moving casters that were found, unless there is nothing to
+    /// do. `redrawn` are the parts in which this frame draws static casters, `boxes` the places where an earlier frame
+    /// drew moving ones.
     fn moving_casters(&mut self, parts: &[StoredRect], redrawn: &[StoredRect], boxes: Range<usize>) {
         let (piece, first_rect, first_view) = (self.plan.pieces.len(), self.plan.rects.len(), self.plan.views.len());
         self.plan.rects.extend(redrawn.iter().map(|part| part.stored));

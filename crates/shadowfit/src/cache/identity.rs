@@ -1,38 +1,57 @@
-//! Which casters of two lists are the same: those with the same key and the same box.
+//! Identity of static casters: which casters of two frames' lists are the same, although no caster has an identifier.
 //!
-//! Lists are compared number by number, with a look ahead where something was put in or taken out. What is left is
-//! paired wherever it is. Boxes are the same up to rounding, so they can be neither hashed nor compared as text. Each has a *mark*, a weighted
-//! sum of its coordinates and its key: what is the same has nearly the same mark, and few others have. Both lists are
-//! sorted by their marks, and gone through side by side.
+//! Two casters are the same if their boxes are equal, and their keys where both have one. Boxes are equal up to rounding,
+//! which differs with their origin, so they can be neither hashed nor compared bit by bit. Lists are compared in three
+//! steps, each for the casters that the step before it left:
+//!
+//! 1. Number by number, which finds all casters of a list that did not change.
+//! 2. With a look ahead of [`AHEAD`] casters, where some were inserted or removed.
+//! 3. By *sort keys*, for lists in another order. A sort key is a weighted sum of a box's coordinates and of the caster's
+//!    key. Equal casters have nearly equal sort keys, and few other casters do. Both lists are sorted, and walked side by
+//!    side.
+//!
+//! An example, with unit cubes that begin at x = 0 (A), 5 (B), 9 (C) and 20 m (D):
+//!
+//! ```text
+//!   last frame    A  B  C
+//!   this frame    C  A  D
+//!   1. and 2.     A is not C, but C follows two casters later in the last frame's list: A and B count as gone,
+//!                 C is the same. The rest of this frame's list, A and D, counts as come.
+//!   3.            gone: A 1.57, B 9.80      come: A 1.57, D 34.48
+//!                 Both A have the same sort key and equal boxes: they are a pair.
+//!   result        gone: B      come: D      Two places are redrawn. A and C are kept with other numbers.
+//! ```
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use super::world_box::WorldBox;
 
-/// A caster, as it is looked for.
+/// A caster of one of the lists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Caster {
     pub(super) key: Option<u64>,
     pub(super) aabb: WorldBox,
-    /// Metres by which the same box may differ.
+    /// Metres by which an equal box may differ.
     pub(super) rounding: f64,
     pub(super) number: usize,
 }
 
 impl Caster {
-    /// Whether one of the frame before is the same as one of this frame: its box is, and its key, where both have one.
+    /// Returns whether this caster of the last frame is the same as one of this frame.
     pub(super) fn is_same(&self, now: &Self) -> bool {
         let has_same_key = self.key.zip(now.key).is_none_or(|(before, now)| before == now);
         has_same_key && self.aabb.is_same(&now.aabb, now.rounding)
     }
 }
 
-/// Casters that are looked ahead for where two lists differ.
+/// Casters to look ahead where two lists differ. More of them find longer insertions, and cost more in lists that are in
+/// another order.
 const AHEAD: usize = 8;
 
-/// How many casters were taken out of a list, or put in, before it goes on as it did; `None` where neither is found, or
-/// where one only took another one's place. The functions give the casters of both lists from where they differ.
+/// Returns how many casters were removed from a list and inserted into it, before it goes on as it did. `None` where
+/// neither is found, or where a caster only took the place of another one. The functions return the casters of both lists
+/// from where they differ.
 pub(super) fn shift(
     before: impl Fn(usize) -> Option<Caster>,
     now: impl Fn(usize) -> Option<Caster>,
@@ -48,66 +67,70 @@ pub(super) fn shift(
     taken_out.chain(put_in).find(|ahead| is_same(*ahead))
 }
 
-/// Weights of a mark. No sums of a few of them are equal, so that neither grids of boxes nor boxes in a row share marks.
+/// Weights of the coordinates in a sort key: fractions of square roots. No sums of a few of them are equal, so that
+/// neither grids of boxes nor boxes in a row share sort keys.
 const WEIGHTS: [f64; 6] = [1.0, 0.732_050_807, 0.236_067_977, 0.645_751_311, 0.316_624_790, 0.605_551_275];
 
 /// Sum of the weights, rounded up.
 const WEIGHT: f64 = 4.0;
 
-/// Rounding of a mark in f64, as a share of the coordinates.
-const MARK_ROUNDING: f64 = 1e-14;
+/// Rounding of a sort key in f64, as a share of the coordinates.
+const SORT_KEY_ROUNDING: f64 = 1e-14;
 
-/// Metres that lie between the marks of casters with different keys, about: far more than a world, and few enough for
-/// the marks to be exact to a hundredth of a millimetre.
+/// Distance between the sort keys of casters with different keys, about, in metres: far more than a world, and few enough
+/// for sort keys to be exact to a hundredth of a millimetre.
 const KEY_RANGE: f64 = 1e9;
 
-/// Takes the pairs of the same caster out of both lists. `found` gets the number that each had in the second list, and
-/// its box in the first one.
+/// Removes the pairs of the same caster from both lists. `found` gets the number of each in the second list, and its box
+/// in the first one.
 ///
 /// Two casters with keys are the same if their keys and boxes are; where one has none, their boxes decide.
 pub(super) fn pair(before: &mut Vec<Caster>, now: &mut Vec<Caster>, mut found: impl FnMut(usize, WorldBox)) {
     let mut pair_of = |of_before: KeyOf, of_now: KeyOf| {
         if !before.is_empty() && !now.is_empty() {
-            pair_by_key(before, now, [of_before, of_now], &mut found);
+            pair_by_key(before, now, of_before, of_now, &mut found);
         }
     };
     pair_of(Some, Some);
-    // Keys that only one of the two has.
-    let (known, unknown): (KeyOf, KeyOf) = (|key| key.map(|_| None), |key| key.is_none().then_some(None));
-    pair_of(known, unknown);
-    pair_of(unknown, known);
+    // One of the two has a key.
+    let (keyed, unkeyed): (KeyOf, KeyOf) = (|key| key.map(|_| None), |key| key.is_none().then_some(None));
+    pair_of(keyed, unkeyed);
+    pair_of(unkeyed, keyed);
 }
 
-/// The key by which a caster is looked for, if it is.
+/// From a caster's key to the key that its sort key contains; the outer `None` leaves the caster out.
 type KeyOf = fn(Option<u64>) -> Option<Option<u64>>;
 
+/// Pairs those casters of both lists that the functions do not leave out.
 fn pair_by_key(
     before: &mut Vec<Caster>,
     now: &mut Vec<Caster>,
-    [of_before, of_now]: [KeyOf; 2],
+    of_before: KeyOf,
+    of_now: KeyOf,
     found: &mut impl FnMut(usize, WorldBox),
 ) {
     let (sorted, wanted) = (entries(before, of_before), entries(now, of_now));
     if sorted.is_empty() || wanted.is_empty() {
         return;
     }
-    let reach = now.iter().map(reach).fold(0.0, f64::max);
+    let tolerance = now.iter().map(tolerance).fold(0.0, f64::max);
     let (mut taken_before, mut taken_now) = (vec![false; before.len()], vec![false; now.len()]);
-    let (mut first, mut free) = (0, Free::new(sorted.len()));
+    let (mut first, mut untaken) = (0, NextUntaken::new(sorted.len()));
     for entry in &wanted {
         let caster = &now[entry.index as usize];
-        let is_low = |low: &Entry| low.mark < entry.mark - reach;
+        let is_low = |low: &Entry| low.sort_key < entry.sort_key - tolerance;
         first += sorted[first..].iter().take_while(|low| is_low(low)).count();
-        let mut at = free.from(first);
-        while let Some(candidate) = sorted.get(at).filter(|candidate| candidate.mark <= entry.mark + reach) {
+        let mut at = untaken.at_or_after(first);
+        while let Some(candidate) = sorted.get(at).filter(|candidate| candidate.sort_key <= entry.sort_key + tolerance)
+        {
             let same = &before[candidate.index as usize];
             if of_before(same.key) == of_now(caster.key) && same.aabb.is_same(&caster.aabb, caster.rounding) {
                 (taken_before[candidate.index as usize], taken_now[entry.index as usize]) = (true, true);
-                free.take(at);
+                untaken.take(at);
                 found(caster.number, same.aabb);
                 break;
             }
-            at = free.from(at + 1);
+            at = untaken.at_or_after(at + 1);
         }
     }
     keep_untaken(before, &taken_before);
@@ -119,22 +142,23 @@ fn keep_untaken(list: &mut Vec<Caster>, is_taken: &[bool]) {
     list.retain(|_| is_taken.next() == Some(&false));
 }
 
-/// A caster of a list, by its mark.
+/// A caster of a list, by its sort key.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    mark: f64,
+    sort_key: f64,
     index: u32,
 }
 
-/// The casters that are looked for, in the order of their marks.
+/// Returns the casters that `key_of` does not leave out, in the order of their sort keys.
 fn entries(list: &[Caster], key_of: KeyOf) -> Vec<Entry> {
-    let entry = |(index, caster): (u32, &Caster)| Some(Entry { mark: mark(caster, key_of(caster.key)?), index });
+    let entry =
+        |(index, caster): (u32, &Caster)| Some(Entry { sort_key: sort_key(caster, key_of(caster.key)?), index });
     let mut entries: Vec<Entry> = (0..).zip(list).filter_map(entry).collect();
-    entries.sort_unstable_by(|a, b| a.mark.total_cmp(&b.mark).then(a.index.cmp(&b.index)));
+    entries.sort_unstable_by(|a, b| a.sort_key.total_cmp(&b.sort_key).then(a.index.cmp(&b.index)));
     entries
 }
 
-fn mark(caster: &Caster, key: Option<u64>) -> f64 {
+fn sort_key(caster: &Caster, key: Option<u64>) -> f64 {
     let coordinates = caster.aabb.min.to_array().into_iter().chain(caster.aabb.max.to_array());
     let of_box: f64 = coordinates.zip(WEIGHTS).map(|(coordinate, weight)| coordinate * weight).sum();
     // The fraction of the golden ratio spreads keys in a row far from each other.
@@ -142,30 +166,30 @@ fn mark(caster: &Caster, key: Option<u64>) -> f64 {
     of_box + of_key as f64 * (KEY_RANGE / f64::from(1 << 24))
 }
 
-/// How far apart the marks of the same casters may be.
-fn reach(caster: &Caster) -> f64 {
+/// Returns the greatest difference between the sort keys of the same casters.
+fn tolerance(caster: &Caster) -> f64 {
     let size = caster.aabb.min.abs().max(caster.aabb.max.abs()).max_element();
-    WEIGHT * (caster.rounding + (size + KEY_RANGE) * MARK_ROUNDING)
+    WEIGHT * (caster.rounding + (size + KEY_RANGE) * SORT_KEY_ROUNDING)
 }
 
-/// Which entries are not taken yet.
-struct Free {
-    /// For each the first at or after it that is not taken, as far as that is known.
+/// For each entry the next one that is not taken: a forest whose roots are the untaken entries, with path compression.
+struct NextUntaken {
+    /// An untaken entry names itself; a taken one names a later entry, at most the next untaken one.
     next: Vec<u32>,
 }
 
-impl Free {
+impl NextUntaken {
     fn new(count: usize) -> Self {
         Self { next: (0..=count as u32).collect() }
     }
 
-    /// The first entry at or after this one that is not taken.
-    fn from(&mut self, from: usize) -> usize {
-        let mut end = from.min(self.next.len() - 1);
+    /// Returns the first untaken entry at or after this one; the number of entries where there is none.
+    fn at_or_after(&mut self, entry: usize) -> usize {
+        let mut end = entry.min(self.next.len() - 1);
         while self.next[end] as usize != end {
             end = self.next[end] as usize;
         }
-        let mut at = from;
+        let mut at = entry;
         while at < end {
             at = core::mem::replace(&mut self.next[at], end as u32) as usize;
         }

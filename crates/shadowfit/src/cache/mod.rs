@@ -71,13 +71,13 @@ mod casters;
 mod drawing;
 mod frame;
 mod identity;
-mod kept;
 mod order;
 mod plan;
 mod price;
 mod schedule;
 mod settings;
 mod stale;
+mod state;
 mod tiles;
 mod updates;
 mod volumes;
@@ -95,8 +95,8 @@ use crate::{Aabb, CasterVolume, FitError, FittedMap};
 
 use casters::{Changes, KnownCasters};
 use drawing::{Buffers, Drawing};
-use kept::{Decision, KeptMap};
 use schedule::Candidate;
+use state::{MapState, Transition};
 
 pub use casters::Casters;
 pub use frame::{CacheFrame, InView};
@@ -113,7 +113,7 @@ pub use world_box::WorldBox;
 pub struct MapCache {
     /// Settings. They may change between any two frames.
     pub settings: CacheSettings,
-    maps: [KeptMap; MAX_MAPS],
+    maps: [MapState; MAX_MAPS],
     known: KnownCasters,
     /// Number of the frame.
     frame: u64,
@@ -127,7 +127,7 @@ pub struct MapCache {
 /// The maps that are read in a frame; some of them were drawn in an earlier one.
 #[derive(Debug, Default)]
 struct Choice {
-    decisions: Vec<Decision>,
+    transitions: Vec<Transition>,
     maps: Vec<FittedMap>,
     /// Rectangles that are redrawn, of all maps.
     rects: Vec<TexelRect>,
@@ -188,7 +188,7 @@ impl MapCache {
 
     /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
     pub fn invalidate_all(&mut self) {
-        self.maps.fill_with(KeptMap::default);
+        self.maps.fill_with(MapState::default);
     }
 
     /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
@@ -211,7 +211,7 @@ impl MapCache {
 
     /// Returns whether a map's layer holds all static casters over it, so that later frames can keep it.
     pub fn is_kept(&self, map: usize) -> bool {
-        self.maps.get(map).is_some_and(|map| map.is_kept)
+        self.maps.get(map).is_some_and(|map| map.layers.is_kept())
     }
 
     /// Finds where static casters changed.
@@ -224,14 +224,14 @@ impl MapCache {
 
     fn change(&mut self, changes: &Changes) {
         for map in &mut self.maps {
-            map.change(changes);
+            map.layers.change(changes);
         }
     }
 
     /// Chooses which maps are drawn, and which are read as they are. `is_due`: which must not wait.
     fn choose(&mut self, frame: &CacheFrame<'_>, is_due: [bool; MAX_MAPS]) {
-        let Choice { decisions, maps, rects, candidates, .. } = &mut self.choice;
-        decisions.clear();
+        let Choice { transitions, maps, rects, candidates, .. } = &mut self.choice;
+        transitions.clear();
         maps.clear();
         rects.clear();
         candidates.clear();
@@ -239,31 +239,31 @@ impl MapCache {
         // By coverage it holds the points outside all others.
         let coarsest = MapOrder::new(selection, frame.maps.iter().map(|map| &map.projection)).iter().last();
         for (index, (map, fitted)) in self.maps.iter_mut().zip(frame.maps).enumerate() {
-            let decision = map.decide(fitted, &self.settings, frame.casters.boxes.boxes.len(), rects);
-            let texels = map.texels(&decision, decision.rects(rects), fitted) + u64::from(has_moving);
+            let transition = map.decide(fitted, &self.settings, frame.casters.boxes.boxes.len(), rects);
+            let texels = map.texels(&transition, transition.rects(rects), fitted) + u64::from(has_moving);
             if texels > 0 {
                 let serves_others = selection.is_by_coverage() && coarsest != Some(index);
                 let is_due = is_due[index] || !map.may_wait(fitted, serves_others);
                 candidates.push(Candidate { map: index, age: self.frame - map.frame, texels, is_due });
             }
             map.fitted = Some(*fitted);
-            decisions.push(decision);
+            transitions.push(transition);
         }
         let is_drawn = self.settings.schedule.choose(self.frame, candidates);
         for waiting in candidates.iter().filter(|candidate| !is_drawn[candidate.map]) {
-            decisions[waiting.map] = Decision::Wait;
+            transitions[waiting.map] = Transition::Wait;
         }
-        let read = self.maps.iter().zip(frame.maps).zip(decisions);
-        maps.extend(read.map(|((map, fitted), decision)| map.shown(fitted, decision)));
+        let read = self.maps.iter().zip(frame.maps).zip(transitions);
+        maps.extend(read.map(|((map, fitted), transition)| map.shown(fitted, transition)));
     }
 
     /// Returns whether the passes depend on the views: static casters alone do not.
     fn depends_on_view(&self) -> bool {
         let has_moving = !self.known.moving.is_empty();
-        self.choice.decisions.iter().any(|decision| match decision {
-            Decision::Wait => false,
-            Decision::DrawAnew => true,
-            Decision::Keep { .. } | Decision::Renew => has_moving,
+        self.choice.transitions.iter().any(|transition| match transition {
+            Transition::Wait => false,
+            Transition::DrawOnce => true,
+            Transition::Update { .. } | Transition::Renew => has_moving,
         })
     }
 
@@ -274,8 +274,8 @@ impl MapCache {
         core::mem::swap(&mut plan.in_view, &mut choice.in_view);
         plan.origin = frame.reader.origin;
         plan.reuse.clear();
-        plan.reuse.extend(choice.decisions.iter().map(Decision::reuse));
-        for (index, decision) in choice.decisions.iter().enumerate() {
+        plan.reuse.extend(choice.transitions.iter().map(Transition::reuse));
+        for (index, transition) in choice.transitions.iter().enumerate() {
             let map = &mut self.maps[index];
             let fitted = plan.maps[index];
             let in_view = plan.in_view[index];
@@ -292,8 +292,8 @@ impl MapCache {
                 plan: &mut *plan,
                 buffers: &mut self.buffers,
             };
-            drawing.plan(map, decision, decision.rects(&choice.rects));
-            if *decision != Decision::Wait {
+            drawing.plan(map, transition, transition.rects(&choice.rects));
+            if *transition != Transition::Wait {
                 map.frame = self.frame;
             }
         }

@@ -24,15 +24,15 @@ impl MapCache {
         stale.clear();
         let moves = !self.known.moving.is_empty();
         for (index, reuse) in self.plan.reuse.iter().enumerate() {
-            let map = &self.maps[index];
-            let is_changed = map.changed.texels() > 0;
-            if *reuse != MapReuse::Waits || !(is_changed || moves || !map.moving.is_empty()) {
+            let Some(drawn) = self.maps[index].layers.drawn().filter(|_| *reuse == MapReuse::Waits) else { continue };
+            let is_changed = drawn.changed.texels() > 0;
+            if !(is_changed || moves || !drawn.moving.is_empty()) {
                 continue;
             }
             let boxes = casters.boxes;
             let moving = self.known.moving.iter().filter_map(|number| boxes.boxes.get(*number as usize));
             let now = moving.map(|aabb| WorldBox::new(aabb, boxes.origin));
-            let both = map.moving.iter().copied().chain(now).filter(|aabb| !aabb.is_empty());
+            let both = drawn.moving.iter().copied().chain(now).filter(|aabb| !aabb.is_empty());
             stale.push(StaleMap { map: index, boxes: (!is_changed).then(|| both.collect()) });
         }
     }

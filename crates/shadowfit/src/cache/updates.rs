@@ -69,8 +69,11 @@ impl MapCache {
     /// Rectangles around the moving casters that a map was drawn with.
     fn moving(&self, map: usize, read: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let origin = read.projection.origin;
-        let boxes = self.maps[map].moving.iter();
-        boxes.map(move |moved| TexelRect::of_box(&read.projection, &moved.relative_to(origin), origin))
+        let drawn = self.maps.get(map).and_then(|state| state.layers.drawn());
+        drawn
+            .into_iter()
+            .flat_map(|drawn| &drawn.moving)
+            .map(move |moved| TexelRect::of_box(&read.projection, &moved.relative_to(origin), origin))
     }
 
     /// Returns the maps that hold each caster of the list: bit i of the mask stands for map i. A map that is kept holds

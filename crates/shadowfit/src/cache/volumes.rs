@@ -47,19 +47,20 @@ impl MapCache {
         if self.settings.schedule == UpdateSchedule::EveryFrame {
             return Ok(is_due);
         }
-        for (map, is_due) in self.maps.iter().zip(&mut is_due).filter(|(map, _)| !map.gone.is_empty()) {
-            let Some(drawn) = &map.drawn else { continue };
+        for (state, is_due) in self.maps.iter().zip(&mut is_due) {
+            let Some(drawn) = state.layers.drawn().filter(|drawn| !drawn.gone.is_empty()) else { continue };
+            let origin = drawn.map.projection.origin;
             let volume = match frame.in_view {
                 // As if it were the only map: which others are read beside it is not known yet.
                 InView::Views(views) => {
-                    let mut volume = [CasterVolume::everywhere(drawn.projection.origin)];
+                    let mut volume = [CasterVolume::everywhere(origin)];
                     let reading = &self.settings.reading;
-                    caster_volumes(core::slice::from_ref(drawn), reading, &frame.reader, views, &mut volume)?;
+                    caster_volumes(core::slice::from_ref(&drawn.map), reading, &frame.reader, views, &mut volume)?;
                     volume[0]
                 }
-                InView::Volumes(_) => CasterVolume::everywhere(drawn.projection.origin),
+                InView::Volumes(_) => CasterVolume::everywhere(origin),
             };
-            let mut gone = map.gone.iter().map(|gone| gone.relative_to(volume.origin));
+            let mut gone = drawn.gone.iter().map(|gone| gone.relative_to(volume.origin));
             *is_due = gone.any(|gone| volume.intersects_aabb(gone.min, gone.max));
         }
         Ok(is_due)

@@ -1,0 +1,264 @@
+//! The content of a map's layers, and what a frame makes of it.
+
+use alloc::vec::Vec;
+use core::mem::take;
+use core::ops::Range;
+
+use glam::{IVec2, UVec2};
+
+use super::casters::Changes;
+use super::plan::MapReuse;
+use super::price::Price;
+use super::settings::CacheSettings;
+use super::tiles::ChangedTiles;
+use super::world_box::WorldBox;
+use crate::FittedMap;
+use crate::scroll::{Scroll, TexelRect};
+
+/// A map that was new in this many frames in a row counts as one that cannot be kept: it is then drawn with the casters
+/// of one frame alone, which are fewer.
+const NEVER_KEPT: u8 = 2;
+
+/// Gone casters that a map remembers; the last one is a box around all others.
+const MAX_GONE: usize = 64;
+
+/// The content of a map's layers.
+///
+/// | from | to | by |
+/// |---|---|---|
+/// | any | [`Self::OneFrame`] | [`Transition::DrawOnce`] |
+/// | any | [`Self::Kept`] | [`Transition::Renew`] |
+/// | [`Self::Kept`] | [`Self::Kept`], or [`Self::Split`] from the first moving caster on | [`Transition::Update`] |
+/// | [`Self::Split`] | [`Self::Split`] | [`Transition::Update`] |
+/// | any | [`Self::Nothing`] | a change that may have touched everything, or an invalidation of all |
+#[derive(Debug, Default)]
+pub(super) enum Layers {
+    /// Nothing that can be shown.
+    #[default]
+    Nothing,
+    /// The casters of the frame in which it was drawn; later frames may need others.
+    OneFrame(Drawn),
+    /// The shown layer holds all static casters over the map.
+    Kept(Drawn),
+    /// The static casters' own layer holds them, too.
+    Split(Drawn),
+}
+
+/// A map as it was drawn, and what has changed since.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    /// The map, with its texel offset.
+    pub(super) map: FittedMap,
+    /// Places where static casters changed, in texels of this map.
+    pub(super) changed: ChangedTiles,
+    /// Static casters that it shows and that are gone.
+    pub(super) gone: Vec<WorldBox>,
+    /// Moving casters that the shown layer holds over static ones.
+    pub(super) moving: Vec<WorldBox>,
+}
+
+/// One map from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct MapState {
+    pub(super) layers: Layers,
+    /// The map that was fitted last.
+    pub(super) fitted: Option<FittedMap>,
+    /// Frame in which it was drawn.
+    pub(super) frame: u64,
+    /// Number of frames in a row in which it was new.
+    renewals: u8,
+    /// Static casters over it when all of them were drawn last: an estimate of the price of its texels.
+    pub(super) over: usize,
+}
+
+/// What a frame does with the layers of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Transition {
+    /// Reads them as they are.
+    Wait,
+    /// Draws static casters into some rectangles, a range of those of all maps, and then moving ones:
+    /// to [`Layers::Kept`] or [`Layers::Split`].
+    Update { wrap: UVec2, shift: IVec2, rects: Range<usize> },
+    /// Draws all static casters together with the moving ones: to [`Layers::Kept`].
+    Renew,
+    /// Draws the casters of this frame: to [`Layers::OneFrame`].
+    DrawOnce,
+}
+
+impl Transition {
+    /// Returns it as the plan has it.
+    pub(super) fn reuse(&self) -> MapReuse {
+        match *self {
+            Self::Wait => MapReuse::Waits,
+            Self::Update { shift, .. } => MapReuse::Kept { shift },
+            Self::Renew => MapReuse::New,
+            Self::DrawOnce => MapReuse::OneFrame,
+        }
+    }
+
+    /// Returns the rectangles that it redraws, of those of all maps.
+    pub(super) fn rects<'a>(&self, rects: &'a [TexelRect]) -> &'a [TexelRect] {
+        match self {
+            Self::Update { rects: range, .. } => &rects[range.clone()],
+            _ => &[],
+        }
+    }
+}
+
+impl Layers {
+    /// Returns the map as it was drawn.
+    pub(super) fn drawn(&self) -> Option<&Drawn> {
+        match self {
+            Self::Nothing => None,
+            Self::OneFrame(drawn) | Self::Kept(drawn) | Self::Split(drawn) => Some(drawn),
+        }
+    }
+
+    /// Takes the map as it was drawn out of the layers, for a map that is drawn now. Moving casters stay.
+    pub(super) fn redraw(&mut self, map: &FittedMap) -> Drawn {
+        match take(self) {
+            Self::Nothing => {
+                Drawn { map: *map, changed: ChangedTiles::default(), gone: Vec::new(), moving: Vec::new() }
+            }
+            Self::OneFrame(mut drawn) | Self::Kept(mut drawn) | Self::Split(mut drawn) => {
+                drawn.map = *map;
+                drawn.changed.clear();
+                drawn.gone.clear();
+                drawn
+            }
+        }
+    }
+
+    /// Returns whether the shown layer holds all static casters over the map.
+    pub(super) fn is_kept(&self) -> bool {
+        matches!(self, Self::Kept(_) | Self::Split(_))
+    }
+
+    /// Returns whether the static casters have a layer of their own that holds them.
+    pub(super) fn is_split(&self) -> bool {
+        matches!(self, Self::Split(_))
+    }
+
+    /// Remembers where static casters changed.
+    pub(super) fn change(&mut self, changes: &Changes) {
+        match self {
+            Self::OneFrame(_) | Self::Kept(_) | Self::Split(_) if changes.is_all => *self = Self::Nothing,
+            Self::OneFrame(drawn) | Self::Kept(drawn) | Self::Split(drawn) => drawn.change(changes),
+            Self::Nothing => {}
+        }
+    }
+}
+
+impl Drawn {
+    fn change(&mut self, changes: &Changes) {
+        let (projection, size) = (&self.map.projection, self.map.projection.resolution);
+        let rect = |changed: &WorldBox| {
+            TexelRect::of_box(projection, &changed.relative_to(projection.origin), projection.origin)
+        };
+        for come in &changes.come {
+            self.changed.add(rect(come), size);
+        }
+        for gone in &changes.gone {
+            let rect = rect(gone);
+            self.changed.add(rect, size);
+            if rect.is_empty() {
+                continue;
+            }
+            match self.gone.get_mut(MAX_GONE - 1) {
+                Some(last) => *last = last.union(gone),
+                None => self.gone.push(*gone),
+            }
+        }
+    }
+}
+
+impl MapState {
+    /// Returns what is drawn of a map that is fitted now, with so many casters in the list. Adds the transition's
+    /// rectangles to `rects`.
+    pub(super) fn decide(
+        &mut self,
+        now: &FittedMap,
+        settings: &CacheSettings,
+        casters: usize,
+        rects: &mut Vec<TexelRect>,
+    ) -> Transition {
+        let is_same_grid = self.fitted.is_some_and(|before| !Scroll::between(&before, now).is_new);
+        let update = self.update(now, settings, casters, rects);
+        self.renewals = if is_same_grid && update.is_some() { 0 } else { self.renewals.saturating_add(1) };
+        if !settings.caching || now.anchor.is_none() || now.projection.is_empty || self.renewals > NEVER_KEPT {
+            return Transition::DrawOnce;
+        }
+        update.filter(|_| self.layers.is_kept()).unwrap_or(Transition::Renew)
+    }
+
+    /// Returns what is drawn of a map if the rest of it is kept; `None` if that costs no less than all of it.
+    fn update(
+        &self,
+        now: &FittedMap,
+        settings: &CacheSettings,
+        casters: usize,
+        rects: &mut Vec<TexelRect>,
+    ) -> Option<Transition> {
+        let Drawn { map, changed, .. } = self.layers.drawn()?;
+        let (scroll, size) = (Scroll::between(map, now), now.projection.resolution);
+        let is_moved = scroll.shift != IVec2::ZERO;
+        if scroll.is_redraw() || (is_moved && size != settings.layer) {
+            return None;
+        }
+        let price = Price::new(casters, self.over, whole(now), self.layers.is_split());
+        if !price.may_be_worth(changed.texels(), whole(now)) {
+            return None;
+        }
+        let first = rects.len();
+        let changed = changed.rects(&price).into_iter().map(|rect| moved(rect, scroll.shift, size));
+        rects.extend(scroll.exposed().chain(changed).filter(|rect| !rect.is_empty()));
+        let is_worth = price.is_worth(&rects[first..], whole(now));
+        let (wrap, rects) = (scroll.wrap(map.wrap, size), first..rects.len());
+        is_worth.then_some(Transition::Update { wrap, shift: scroll.shift, rects })
+    }
+
+    /// Returns whether points may read the map as it was drawn, without losing a shadow. `serves_others`: whether another
+    /// map holds the points outside it.
+    pub(super) fn may_wait(&self, now: &FittedMap, serves_others: bool) -> bool {
+        let (Layers::Kept(Drawn { map, .. }) | Layers::Split(Drawn { map, .. })) = &self.layers else { return false };
+        let Some((old, anchor)) = map.anchor.zip(now.anchor) else { return false };
+        let holds_depth = old.depth[0] <= anchor.depth[0] && old.depth[1] >= anchor.depth[1];
+        let is_same_light =
+            map.projection.direction == now.projection.direction && map.projection.depth == now.projection.depth;
+        let is_in_place = old == anchor && Scroll::between(map, now).shift == IVec2::ZERO;
+        let is_empty = map.projection.is_empty && !now.projection.is_empty;
+        is_same_light && holds_depth && !is_empty && (serves_others || is_in_place)
+    }
+
+    /// Returns the number of texels in which a transition draws static casters. `rects` are those that it redraws.
+    pub(super) fn texels(&self, transition: &Transition, rects: &[TexelRect], now: &FittedMap) -> u64 {
+        match (transition, &self.layers) {
+            (Transition::Wait, _) => 0,
+            // Their own layer is made.
+            (Transition::Update { .. }, Layers::Kept(drawn)) if !drawn.moving.is_empty() => whole(now),
+            (Transition::Update { .. }, _) => rects.iter().map(TexelRect::area).sum(),
+            (Transition::Renew | Transition::DrawOnce, _) => whole(now),
+        }
+    }
+
+    /// Returns the map that is read: the fitted one, or the one that was drawn, with its texel offset.
+    pub(super) fn shown(&self, fitted: &FittedMap, transition: &Transition) -> FittedMap {
+        match (self.layers.drawn(), transition) {
+            (Some(drawn), Transition::Wait) => drawn.map.relative_to(fitted.projection.origin),
+            (_, Transition::Update { wrap, .. }) => FittedMap { wrap: *wrap, ..*fitted },
+            _ => FittedMap { wrap: UVec2::ZERO, ..*fitted },
+        }
+    }
+}
+
+/// Returns the number of texels of a map.
+fn whole(map: &FittedMap) -> u64 {
+    TexelRect::all(map.projection.resolution).area()
+}
+
+/// Returns where a rectangle of a map lies in the same map after a shift.
+fn moved(rect: TexelRect, shift: IVec2, size: UVec2) -> TexelRect {
+    let [min, end] = [rect.min, rect.min + rect.size]
+        .map(|corner| (corner.as_ivec2() - shift).clamp(IVec2::ZERO, size.as_ivec2()).as_uvec2());
+    TexelRect { min, size: end - min }
+}
