@@ -1,4 +1,4 @@
-//! What an engine passes to a fit: the views, the light and the boxes of a frame, and memory to work in.
+//! Input of a fit: the views, the light and the boxes of a frame, and memory to work in.
 
 use glam::{DVec2, Vec3};
 

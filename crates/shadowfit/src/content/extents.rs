@@ -26,7 +26,8 @@ impl Content<'_> {
     pub(crate) fn farthest(&self) -> Option<f64> {
         let mut squared = None;
         for view in self.views {
-            let mut farthest = FarthestFromEye { from_eye: self.origin - view.origin, squared };
+            let range = Range { near: f32::NEG_INFINITY, far: f32::INFINITY };
+            let mut farthest = Farthest::new(self.origin - view.origin, range, squared);
             self.visit(Query::Receivers, &mut farthest);
             squared = farthest.squared;
         }
@@ -36,12 +37,11 @@ impl Content<'_> {
     /// Returns the greatest distance from the origin of a corner of the lit receivers in a range of view depths, in
     /// metres, and at least `least`.
     pub(crate) fn farthest_seen(&self, range: Range, least: f64) -> f64 {
-        let (near, far) = (f64::from(range.near), f64::from(range.far));
-        let mut farthest = FarthestSeen { near, far, squared: least * least };
+        let mut farthest = Farthest::new(DVec3::ZERO, range, Some(least * least));
         if self.knows_receivers() {
             self.whole_views().for_each(|part| self.visit(Query::Lit(&part), &mut farthest));
         }
-        libm::sqrt(farthest.squared)
+        farthest.squared.map_or(least, libm::sqrt)
     }
 
     /// Returns the bounds of all receivers across the light, in view or not, along the light's axes. `None` if no
@@ -60,12 +60,6 @@ impl Content<'_> {
         self.visit(Query::Casters, &mut union);
         union.0
     }
-}
-
-/// Returns the squared distance of a box's farthest corner from the origin.
-fn farthest_corner_squared(min: DVec3, max: DVec3) -> f64 {
-    let corner = min.abs().max(max.abs());
-    corner.dot(corner)
 }
 
 /// View depths of the parts of boxes that lie in a view.
@@ -97,49 +91,44 @@ impl Visit for SeenDepths<'_> {
     }
 }
 
-/// Squared distance of the farthest corner of any box from an eye.
-struct FarthestFromEye {
-    /// From the eye to the fit's origin, which boxes are relative to.
-    from_eye: DVec3,
+/// The farthest corner of boxes in a range of view depths.
+struct Farthest {
+    /// From the point that distances are measured from to the fit's origin.
+    offset: DVec3,
+    depths: Depths,
+    /// Square of its distance so far.
     squared: Option<f64>,
 }
 
-impl FarthestFromEye {
-    fn of(&self, bounds: &Bounds) -> f64 {
-        farthest_corner_squared(bounds.min + self.from_eye, bounds.max + self.from_eye)
+impl Farthest {
+    fn new(offset: DVec3, range: Range, squared: Option<f64>) -> Self {
+        Self { offset, depths: Depths { near: f64::from(range.near), far: f64::from(range.far) }, squared }
+    }
+
+    /// Returns whether bounds reach into the range.
+    fn is_in(&self, bounds: &Bounds) -> bool {
+        bounds.depths.near <= self.depths.far && bounds.depths.far >= self.depths.near
+    }
+
+    /// Returns the squared distance of the farthest corner of bounds.
+    fn squared_of(&self, bounds: &Bounds) -> f64 {
+        let corner = (bounds.min + self.offset).abs().max((bounds.max + self.offset).abs());
+        corner.dot(corner)
     }
 }
 
-impl Visit for FarthestFromEye {
-    fn wants(&self, bounds: &Bounds) -> bool {
-        self.squared.is_none_or(|squared| self.of(bounds) * ROUNDED_UP >= squared)
-    }
-
-    fn take(&mut self, Found { bounds, .. }: &Found) {
-        self.squared = Some(self.of(bounds).max(self.squared.unwrap_or(0.0)));
-    }
-}
-
-/// Factor by which the bounds of boxes are counted as farther away, so that rounding hides no box in them.
+/// Enlargement of the distance of bounds, so that rounding hides no box in them.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
-/// Squared distance from the origin of the farthest corner of boxes in a range of view depths.
-struct FarthestSeen {
-    near: f64,
-    far: f64,
-    squared: f64,
-}
-
-impl Visit for FarthestSeen {
+impl Visit for Farthest {
     fn wants(&self, bounds: &Bounds) -> bool {
-        bounds.depths.near <= self.far
-            && bounds.depths.far >= self.near
-            && farthest_corner_squared(bounds.min, bounds.max) > self.squared
+        let may_be_farther = |squared| self.squared_of(bounds) * ROUNDED_UP >= squared;
+        self.is_in(bounds) && self.squared.is_none_or(may_be_farther)
     }
 
     fn take(&mut self, Found { bounds, .. }: &Found) {
-        if self.wants(bounds) {
-            self.squared = farthest_corner_squared(bounds.min, bounds.max);
+        if self.is_in(bounds) {
+            self.squared = Some(self.squared_of(bounds).max(self.squared.unwrap_or(0.0)));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::{Aabb, Boxes};
+use crate::base::{Aabb, Boxes, moved};
 
 /// Boxes in a run: few enough that runs stay small, enough that their tests cost little. 8 and 32 are both
 /// slower with 1,024 clusters of real scenes.
@@ -34,6 +34,18 @@ impl<'a> Groups<'a> {
             bounds.copy_from_slice(&[min.truncate(), DVec2::new(min.z, max.x), DVec2::new(max.y, max.z)]);
         }
         Self { boxes: boxes.boxes, bounds: storage, offset: boxes.origin - origin }
+    }
+
+    /// Returns whether a box of the list is not empty.
+    #[inline]
+    pub(crate) fn has_box(&self, index: usize) -> bool {
+        !self.boxes[index].is_empty()
+    }
+
+    /// Returns the least and the greatest corner of a box of the list, from the origin.
+    #[inline]
+    pub(crate) fn corners(&self, index: usize) -> (DVec3, DVec3) {
+        moved(&self.boxes[index], self.offset)
     }
 
     /// The runs: indices of their boxes, and the corners of the bounds of those that are not empty, from the

@@ -154,8 +154,8 @@ impl<'a> Content<'a> {
     #[inline]
     pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
         let listed = self.listed();
-        if let (Some(receivers), true) = (&self.receivers, index < listed) {
-            return Some(moved(&receivers.boxes[index], receivers.origin - self.origin));
+        if index < listed {
+            return Some(self.receiver_groups.corners(index));
         }
         let tree = self.standing?;
         tree.get((index - listed) as u32).map(|aabb| moved(&aabb, tree.origin() - self.origin))

@@ -16,7 +16,7 @@ pub(crate) struct ViewPart {
     /// Index of the view.
     pub(crate) index: usize,
     pub(crate) view: View,
-    /// View depths of its ends, within those of the view, in metres.
+    /// View depths of its ends, in metres. They lie within the view.
     pub(crate) near: f64,
     pub(crate) far: f64,
 }
@@ -27,16 +27,17 @@ impl ViewPart {
         self.view.slice(self.near, self.far)
     }
 
+    /// Returns whether a box with these view depths may reach into the part.
+    #[inline]
+    pub(super) fn reaches(&self, depths: Depths) -> bool {
+        depths.near <= self.far && depths.far >= self.near
+    }
+
     /// Returns the bounds of a box that may reach into the part.
     #[inline]
     pub(super) fn bounds(&self, min: DVec3, max: DVec3) -> Option<Bounds> {
-        self.view.depths(min, max).and_then(|depths| self.bounds_at(min, max, depths))
-    }
-
-    /// Returns the bounds of a box with known view depths, if it may reach into the part.
-    #[inline]
-    pub(super) fn bounds_at(&self, min: DVec3, max: DVec3, depths: Depths) -> Option<Bounds> {
-        (depths.near <= self.far && depths.far >= self.near).then_some(Bounds { min, max, depths })
+        let depths = self.view.depths(min, max).filter(|depths| self.reaches(*depths))?;
+        Some(Bounds { min, max, depths })
     }
 }
 
@@ -80,7 +81,7 @@ impl Content<'_> {
         Ok(minimal(&corners[..8 * count]))
     }
 
-    /// The first view, if its spheres are those of a symmetric frustum.
+    /// The first view, if it is a symmetric frustum.
     fn symmetric(&self) -> Option<&SymmetricFrustum> {
         self.symmetric.get_or_init(|| SymmetricFrustum::new(&self.views[0].corners.map(Vec3::as_dvec3))).as_ref()
     }

@@ -10,7 +10,7 @@ use super::Content;
 use super::boxes::{Bounds, scattered};
 use super::groups::Groups;
 use super::views::ViewPart;
-use crate::base::{Aabb, Boxes, moved};
+use crate::base::{Aabb, moved};
 use crate::view::{Depths, Range, Slice};
 
 /// The boxes that are asked for.
@@ -22,9 +22,9 @@ pub(crate) enum Query<'q> {
     Receivers,
     /// The boxes of the tree alone, in view or not.
     Standing,
-    /// Receivers in a part of a view, those that face away from the light included.
+    /// Receivers in a part of a view. Boxes whose surfaces face away from the light are included.
     Visible(&'q ViewPart),
-    /// Receivers in a part of a view, except those that face away from the light.
+    /// Receivers in a part of a view, except boxes whose surfaces face away from the light.
     Lit(&'q ViewPart),
     /// The boxes of [`Self::Lit`]. Boxes of the list come with [large steps](scattered) between them, and without runs:
     /// for visitors whose result few boxes that lie apart nearly determine.
@@ -35,7 +35,7 @@ pub(crate) enum Query<'q> {
 #[derive(Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) bounds: Bounds,
-    /// Number of the box: its index in the list, or the length of the list plus its number in the tree.
+    /// Number of the box: its index in its list, or the number of listed receivers plus its number in the tree.
     pub(crate) index: usize,
 }
 
@@ -84,38 +84,38 @@ impl<V: VisitCorners> Visit for Clipping<'_, V> {
     }
 }
 
-impl<'a> Content<'a> {
-    /// Passes the boxes of a query to a visitor: first those of the list, then those of the tree.
+impl Content<'_> {
+    /// Passes the boxes of a query to a visitor, first from the list, then from the tree.
     #[inline]
     pub(crate) fn visit(&self, query: Query, visitor: &mut impl Visit) {
         let anywhere = |_: usize, min, max| Some(Bounds::anywhere(min, max));
+        let (receivers, casters) = (&self.receiver_groups, &self.caster_groups);
         match query {
             Query::Casters => {
-                self.visit_list(self.casters, &self.caster_groups, anywhere, visitor);
-                self.visit_tree(self.casters, visitor);
+                visit_list(casters, |i| casters.has_box(i), anywhere, visitor);
+                self.visit_tree(visitor);
             }
             Query::Receivers => {
-                self.visit_list(self.receivers, &self.receiver_groups, anywhere, visitor);
-                self.visit_tree(self.receivers, visitor);
+                visit_list(receivers, |i| receivers.has_box(i), anywhere, visitor);
+                self.visit_tree(visitor);
             }
-            Query::Standing => self.visit_tree(None, visitor),
+            Query::Standing => self.visit_tree(visitor),
             Query::Visible(part) => {
-                let in_part = |_: usize, min, max| part.bounds(min, max);
-                self.visit_list(self.receivers, &self.receiver_groups, in_part, visitor);
+                visit_list(receivers, |i| receivers.has_box(i), |_, min, max| part.bounds(min, max), visitor);
                 self.visit_tree_in(part, visitor);
             }
             Query::Lit(part) => {
-                let depths = self.depths_in(part.index);
-                let in_part = |i: usize, min, max| part.bounds_at(min, max, depths_of(depths[i]));
-                self.visit_list(self.receivers, &self.receiver_groups, in_part, visitor);
+                let depths = |i: usize| depths_of(self.depths_in(part.index)[i]);
+                let bounds = |i, min, max| Some(Bounds { min, max, depths: depths(i) });
+                visit_list(receivers, |i| part.reaches(depths(i)), bounds, visitor);
                 self.visit_tree_in(part, visitor);
             }
             Query::Scattered(part) => {
                 let depths = self.depths_in(part.index);
                 for index in scattered(depths.len()) {
-                    let bounds = |(min, max)| part.bounds_at(min, max, depths_of(depths[index]));
-                    if let Some(bounds) = self.receiver(index).and_then(bounds) {
-                        visitor.take(&Found { bounds, index });
+                    let depths = depths_of(depths[index]);
+                    if let Some((min, max)) = self.receiver(index).filter(|_| part.reaches(depths)) {
+                        visitor.take(&Found { bounds: Bounds { min, max, depths }, index });
                     }
                 }
                 self.visit_tree_in(part, visitor);
@@ -123,7 +123,7 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// Passes the corners of the lit receivers, clipped to what the views have between two view depths, to a visitor.
+    /// Clips the lit receivers to the views between two view depths. Passes the corners to a visitor.
     #[inline]
     pub(crate) fn visit_corners(&self, range: Range, corners: &mut impl VisitCorners) {
         for part in self.parts(range) {
@@ -132,35 +132,11 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// Passes the boxes of a list to a visitor: those for which `bounds` gives some, by their indices and corners.
+    /// Passes all boxes of the tree to a visitor.
     #[inline]
-    fn visit_list(
-        &self,
-        list: Option<Boxes<'a>>,
-        groups: &Groups<'a>,
-        bounds: impl Fn(usize, DVec3, DVec3) -> Option<Bounds>,
-        visitor: &mut impl Visit,
-    ) {
-        let Some(list) = list else { return };
-        let offset = list.origin - self.origin;
-        for (run, min, max) in groups.runs() {
-            if !visitor.wants(&Bounds::anywhere(min, max)) {
-                continue;
-            }
-            for index in run.filter(|index| !list.boxes[*index].is_empty()) {
-                let (min, max) = moved(&list.boxes[index], offset);
-                if let Some(bounds) = bounds(index, min, max) {
-                    visitor.take(&Found { bounds, index });
-                }
-            }
-        }
-    }
-
-    /// Passes all boxes of the tree to a visitor, numbered after those of a list.
-    #[inline]
-    fn visit_tree<V: Visit>(&self, list: Option<Boxes<'a>>, visitor: &mut V) {
+    fn visit_tree<V: Visit>(&self, visitor: &mut V) {
         let Some(tree) = self.standing else { return };
-        let (offset, listed) = (tree.origin() - self.origin, list.map_or(0, |list| list.boxes.len()));
+        let (offset, listed) = (tree.origin() - self.origin, self.listed());
         let bounds = |aabb: &Aabb| {
             let (min, max) = moved(aabb, offset);
             Bounds::anywhere(min, max)
@@ -171,7 +147,7 @@ impl<'a> Content<'a> {
         });
     }
 
-    /// Passes the boxes of the tree in a part of a view to a visitor, numbered after the listed receivers.
+    /// Passes the boxes of the tree in a part of a view to a visitor.
     #[inline]
     fn visit_tree_in<V: Visit>(&self, part: &ViewPart, visitor: &mut V) {
         let Some(tree) = self.standing else { return };
@@ -188,6 +164,27 @@ impl<'a> Content<'a> {
         tree.visit_nearest(visitor, distances, enter, |visitor, distances, number, aabb| {
             visitor.take(&Found { bounds: bounds(distances, aabb), index: listed + number as usize });
         });
+    }
+}
+
+/// Passes the boxes of a list to a visitor, except boxes whose index is not `is_in` or that have no `bounds`.
+#[inline]
+fn visit_list(
+    groups: &Groups,
+    is_in: impl Fn(usize) -> bool,
+    bounds: impl Fn(usize, DVec3, DVec3) -> Option<Bounds>,
+    visitor: &mut impl Visit,
+) {
+    for (run, min, max) in groups.runs() {
+        if !visitor.wants(&Bounds::anywhere(min, max)) {
+            continue;
+        }
+        for index in run.filter(|index| is_in(*index)) {
+            let (min, max) = groups.corners(index);
+            if let Some(bounds) = bounds(index, min, max) {
+                visitor.take(&Found { bounds, index });
+            }
+        }
     }
 }
 

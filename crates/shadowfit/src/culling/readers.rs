@@ -317,8 +317,7 @@ enum Held {
     Whole,
 }
 
-/// Finds how much a map holds of all that the views have from a view depth on, with `free` texels around it: nothing
-/// beyond `from`, all up to a greater depth, or all.
+/// Finds up to which view depth a map holds everything that the views have from `from` on, with `free` texels around it.
 fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> Held {
     let fit = map.projection.relative_to(reader.origin);
     let holds = |far: f32| holds_slice(&fit, reader, views, DepthSpan { near: from, far }, free);

@@ -50,7 +50,7 @@ pub(crate) struct FitRule {
     pub(crate) serves_all: bool,
 }
 
-/// How a map is read, as far as its fit depends on that.
+/// The properties of a map's look-up that its fit depends on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapUse {
     /// Free texels at the map's border, for the filter.
@@ -60,7 +60,7 @@ pub(crate) struct MapUse {
 }
 
 impl MapUse {
-    /// The use of a single map without a technique. Its border is that of the settings, or the reach of the default
+    /// The use of a single map without a technique. Its border comes from the settings, or from the reach of the default
     /// filter.
     pub(crate) const fn alone(settings: &FitSettings) -> Self {
         let border = match settings.map.border {

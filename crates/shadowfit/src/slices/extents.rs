@@ -133,7 +133,7 @@ impl Sizes {
     }
 }
 
-/// Collects what the map of each bin would hold of the receivers in a view.
+/// Collects the extents of the receivers in a view, bin by bin.
 struct Collector<'a> {
     extents: &'a mut [Dop; BINS],
     slabs: Slabs,

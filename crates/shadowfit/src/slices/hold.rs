@@ -62,7 +62,7 @@ pub(super) struct Holder<'a, 'b> {
 }
 
 impl Holder<'_, '_> {
-    /// Returns the map of this frame: the held one if it still covers what it must and is not too large.
+    /// Returns the map of this frame: the held one if it is still large enough and not too large.
     pub(super) fn hold(&self, held: Option<HeldMap>, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
         let rule = self.frame.rule;
         let is_of_light = |held: &HeldMap| held.is_of(&self.frame.light.axes(rule.form.roll), rule);
@@ -169,8 +169,8 @@ impl Holder<'_, '_> {
         Ok(map)
     }
 
-    /// Fits a slice around what the views will see some frames on, as many as the settings' growth allows. `None` if
-    /// nothing moves, or for lack of views: a map without room is still valid for this frame.
+    /// Fits a slice for the predicted views of the next frames, up to the settings' greatest growth. `None` if the camera
+    /// does not move, or for lack of views: a map without room is still valid for this frame.
     fn look_ahead(&self, fresh: &Volume, slice: Range, points: &mut [DVec2]) -> Result<Option<Volume>, FitError> {
         let view = &self.frame.input.views[0];
         let Some(motion) = self.motion.filter(|motion| !motion.is_still(view)) else { return Ok(None) };
@@ -193,7 +193,7 @@ impl Holder<'_, '_> {
         }
     }
 
-    /// A plain fit around what the views see and what they will see in some frames.
+    /// Fits a slice for the present views and for predicted ones.
     fn fit_ahead(
         &self,
         ahead: &[ViewFrustum],
@@ -216,7 +216,7 @@ impl Holder<'_, '_> {
 }
 
 /// Numbers of frames to look ahead, each a quarter less than the one before. All are tried in this order, since a map does
-/// not always grow with the number: what a turning camera sees comes back.
+/// not always grow with the number: a turning camera comes back to its first view.
 fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
     core::iter::successors(Some(horizon), |frames| Some(frames / 4 * 3 + frames % 4 * 3 / 4))
         .take_while(|frames| *frames > 0)
@@ -249,7 +249,7 @@ fn trial(rule: &FitRule) -> FitRule {
 /// What a map must cover in this frame, along its axes and relative to the origin.
 struct Needed {
     across: Rectangle,
-    /// Depths of what must be covered, along the light's z.
+    /// Depths that must be covered, along the light's z.
     far: f64,
     near: f64,
     /// The near plane, if casters count over the outline. Otherwise it depends on the place of the map.

@@ -53,7 +53,7 @@ struct Ray {
     around: Layer,
 }
 
-/// Adds what the views of a frame see of the boxes.
+/// Adds the demand of the boxes that the views of a frame see.
 pub(super) fn add(cells: &mut Cells, frame: &Frame, plane: &Plane) {
     let Frame { input, content, .. } = frame;
     for part in content.whole_views() {

@@ -43,7 +43,7 @@ impl Counted {
 
     /// Adds points to a cell.
     pub(super) fn add(&mut self, index: usize, weight: f32) {
-        // NaN is no weight either.
+        // False for NaN, too.
         let counts = weight > 0.0;
         if !counts {
             return;

@@ -47,8 +47,8 @@ pub(super) struct Lattice {
     pub(super) least: i32,
 }
 
-/// Eighths of an octave by which the texels of the last window may be too wide before it is made anew:
-/// about one and a half times.
+/// Greatest oversize of the last window's texels, in eighths of an octave: about one and a half times. A coarser window is
+/// replaced.
 const LAST_WASTE: i32 = 5;
 
 /// Share of the rest of the way to its best place that a window moves beyond the least move. With less it moves more
@@ -71,7 +71,7 @@ impl Lattice {
         DVec2::new(width, width * self.plane.shape)
     }
 
-    /// What a window holds between its borders.
+    /// Returns the rectangle of a window between its borders.
     pub(super) fn rect(&self, window: &Window) -> Rect {
         let texel = grid::eighths(window.steps);
         // One texel is lost to the shift onto the grid: half of it on either side.
@@ -110,7 +110,7 @@ impl Lattice {
         if holds(held) {
             return *held;
         }
-        // The least move, and some of what is left toward the middle.
+        // The least move, and a part of the rest of the way to the middle.
         let least = low(held).clamp((max - size).min(min), min);
         let middle = (min + max - size) * 0.5;
         let moved = self.at(steps, least + (middle - least) * MOVE_ON, libm::ceil);
