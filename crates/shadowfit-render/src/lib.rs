@@ -6,7 +6,6 @@
 //! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
 
 pub mod attachment;
-pub mod bindings;
 pub mod camera;
 mod casters;
 mod encoded;
@@ -59,6 +58,7 @@ pub use read_back::{ReadBack, ReadError, read_texture};
 pub use renderer::Renderer;
 pub use scene::GpuScene;
 pub use shadowfit_adapter::{AdapterChoice, AdapterError};
+pub use shadowfit_gpu::bindings;
 pub use shadowfit_rays::RayError;
 pub use shadowfit_wgpu::{Culling, MapUpdate, UpdateContent};
 pub use statistics::{MapStatistics, Statistics};

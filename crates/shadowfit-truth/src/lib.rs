@@ -56,7 +56,7 @@ pub use area::{AreaTally, area};
 pub use camera::{PixelCamera, PixelRay};
 pub use class::Class;
 pub use crawl::{Crawl, MapsBefore, crawl};
-pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
+pub use cut_out::{AlphaImage, CutMaterial, CutOut, CutOuts, Wrap};
 pub use displacement::MAX_DISPLACEMENT;
 pub use histogram::Histogram;
 pub use judge::{Judged, judge, judge_while};

@@ -77,10 +77,8 @@
 //! - [`CasterUniform`], [`ReceiverUniform`] and [`MapUniform`] are the uniforms of the WGSL, for engines that bind them
 //!   themselves.
 
-mod bindings;
 mod cache;
 mod cached_maps;
-mod caught;
 mod culling;
 pub mod demand;
 mod descriptor;
@@ -91,7 +89,6 @@ mod map;
 mod map_texture;
 mod map_view;
 mod pixels;
-mod read_back;
 #[cfg(feature = "rays")]
 pub mod resolve;
 mod shader;

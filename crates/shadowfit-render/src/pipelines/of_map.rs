@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use shadowfit_rays::make_at_once;
+use shadowfit_gpu::make_at_once;
 use shadowfit_scene::Casting;
 use shadowfit_wgpu::ShadowMap;
 

@@ -1,12 +1,15 @@
 //! Meshes that are skinned or morphed: passes that read their positions from the engine's vertex buffer, and fit their
 //! hierarchy to them.
 
-use crate::device::{WORKGROUP_THREADS, group, layout, storage};
+use shadowfit_gpu::bindings::{group, layout, storage};
+use shadowfit_gpu::{compute_pipeline, wgsl_module};
+
+use super::device::{LABEL, WORKGROUP_THREADS};
+use super::placed::Placed;
+use super::wgsl::refit_wgsl;
 use crate::error::{RayError, VertexBufferLack};
 use crate::mesh::RayMesh;
-use crate::placed::Placed;
 use crate::records::{RefitUniform, TriangleRecord};
-use crate::wgsl::refit_wgsl;
 
 /// Uniforms of dispatches begin at multiples of this, in bytes: the greatest alignment that WebGPU allows a device to
 /// ask for.
@@ -61,26 +64,9 @@ impl RefitPass {
             min_binding_size: None,
         };
         let types = [uniform, storage(true), storage(true), storage(false), storage(false)];
-        let layout = layout(device, wgpu::ShaderStages::COMPUTE, &types);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("shadowfit rays refit"),
-            source: wgpu::ShaderSource::Wgsl(refit_wgsl().into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("shadowfit rays refit"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = |entry| {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&pipeline_layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        };
+        let layout = layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &types);
+        let module = wgsl_module(device, "shadowfit rays refit", refit_wgsl());
+        let pipeline = |entry| compute_pipeline(device, entry, &[Some(&layout)], &module, entry);
         Self { triangles: pipeline("move_triangles"), level: pipeline("fit_level"), layout }
     }
 
@@ -140,7 +126,7 @@ impl Deforming {
         let bytes = bytemuck::cast_slice(&indices);
         let index_buffer = buffer(device, "refit indices", bytes.len() as u64, wgpu::BufferUsages::STORAGE);
         queue.write_buffer(&index_buffer, 0, bytes);
-        Self { vertices: mesh.vertices() as u64, indices: index_buffer, uniforms, steps, bound: None }
+        Self { vertices: mesh.vertices as u64, indices: index_buffer, uniforms, steps, bound: None }
     }
 
     /// Bytes of its own buffers.
@@ -171,7 +157,7 @@ impl Deforming {
             triangles.as_entire_binding(),
             nodes.as_entire_binding(),
         ];
-        let group = group(device, layout, &resources);
+        let group = group(device, LABEL, layout, &resources);
         self.bound = Some(Bound { buffers: [vertices, triangles, nodes].map(Clone::clone), window, group });
     }
 }

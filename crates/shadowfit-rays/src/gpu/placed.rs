@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use glam::Vec3;
 
-use crate::deform::Deforming;
+use super::deform::Deforming;
 use crate::hierarchy::WIDTH;
 use crate::mesh::RayMesh;
 use crate::records::{NO_ROOT, packed};
@@ -19,14 +19,6 @@ pub struct MeshId {
 impl MeshId {
     /// No mesh.
     pub(crate) const NONE: Self = Self { place: u32::MAX, generation: u32::MAX };
-}
-
-/// An image of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ImageId {
-    /// Where it begins among the words of all images.
-    pub(crate) first: u32,
-    pub(crate) generation: u32,
 }
 
 /// Where a mesh lies.

@@ -4,19 +4,20 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
+use shadowfit_gpu::bindings;
 
+use super::deform::{Deforming, RefitPass, VertexBuffer};
+use super::device::{BUFFERS, LABEL, caught, check};
+use super::instance::RayInstance;
+use super::placed::{MeshId, Meshes, Placed};
+use super::pool::{Pool, Records};
+use super::top::{Instance, TopLevel};
 use crate::STACK;
-use crate::cut_out::AlphaImage;
-use crate::deform::{Deforming, RefitPass, VertexBuffer};
-use crate::device::{BUFFERS, caught, check, group, layout, storage};
+use crate::cut_out::{AlphaImage, ImageId};
 use crate::error::RayError;
 use crate::hierarchy::WIDTH;
-use crate::instance::RayInstance;
 use crate::mesh::RayMesh;
-use crate::placed::{ImageId, MeshId, Meshes, Placed};
-use crate::pool::{Pool, Records};
 use crate::records::{CutOutRecord, InstanceRecord, NodeRecord, TriangleRecord};
-use crate::top::{Instance, TopLevel};
 
 /// The meshes of an engine and their instances of the frame, for shaders with [`rays_wgsl`](crate::rays_wgsl).
 ///
@@ -455,9 +456,10 @@ impl RayScene {
 
 /// Layout of [`RayScene::group`], for pipelines that are made before there is a scene.
 pub fn rays_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    layout(device, wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT, &[storage(true); BUFFERS])
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    bindings::layout(device, LABEL, stages, &[bindings::storage(true); BUFFERS])
 }
 
 fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffers: &[wgpu::Buffer; BUFFERS]) -> wgpu::BindGroup {
-    group(device, layout, &buffers.each_ref().map(wgpu::Buffer::as_entire_binding))
+    bindings::group(device, LABEL, layout, &buffers.each_ref().map(wgpu::Buffer::as_entire_binding))
 }
