@@ -5,6 +5,7 @@ mod device;
 mod instance;
 mod placed;
 mod pool;
+mod ranges;
 mod scene;
 mod top;
 mod wgsl;
