@@ -6,7 +6,6 @@
 use glam::Vec2;
 
 use crate::error::RayError;
-use crate::placed::ImageId;
 use crate::records::CutOutRecord;
 
 /// How an image continues beyond its edges along an axis.
@@ -20,6 +19,14 @@ pub enum Wrap {
     Clamp = 1,
     /// It is repeated, and every second copy is mirrored.
     Mirror = 2,
+}
+
+/// An image of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageId {
+    /// Where it begins among the words of all images.
+    pub(crate) first: u32,
+    pub(crate) generation: u32,
 }
 
 /// The alpha of an image, in bytes that the caller keeps.
@@ -47,7 +54,18 @@ impl<'a> AlphaImage<'a> {
         fits.then_some(Self { width, height, alpha }).ok_or(RayError::Image { width, height, bytes })
     }
 
+    /// Width and height, in texels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Alpha in rows from the top, 255 opaque.
+    pub fn alpha(&self) -> &'a [u8] {
+        self.alpha
+    }
+
     /// Width, height, and the alpha, four texels a word with the first one lowest.
+    #[cfg(feature = "gpu")]
     pub(crate) fn words(&self) -> Vec<u32> {
         let word = |texels: &[u8]| {
             let mut bytes = [0; 4];
@@ -58,11 +76,11 @@ impl<'a> AlphaImage<'a> {
     }
 }
 
-/// How the alpha of triangles with holes is found.
+/// How the alpha of triangles with holes is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CutMaterial {
-    /// Its image, from [`RayScene::add_image`](crate::RayScene::add_image); `None` is opaque.
-    pub image: Option<ImageId>,
+pub struct CutMaterial<Image = ImageId> {
+    /// Its image, for a scene on the GPU from `RayScene::add_image`; `None` is opaque.
+    pub image: Option<Image>,
     /// How the image continues across and down.
     pub wrap: [Wrap; 2],
     /// Whether the nearest texel is taken instead of interpolating between four.
@@ -73,7 +91,7 @@ pub struct CutMaterial {
     pub cutoff: f32,
 }
 
-impl Default for CutMaterial {
+impl<Image> Default for CutMaterial<Image> {
     /// No image, opaque; the cutoff 0.5 is glTF's default.
     fn default() -> Self {
         Self { image: None, wrap: Default::default(), nearest: false, base_alpha: 1.0, cutoff: 0.5 }
@@ -82,14 +100,24 @@ impl Default for CutMaterial {
 
 /// A triangle with holes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CutOut {
+pub struct CutOut<Image = ImageId> {
     /// Texture coordinates of the corners, 0..=1 over the image from its top left, with any texture transform already
     /// applied.
     pub uvs: [Vec2; 3],
     /// Alpha of the corners, 0..=1.
     pub alphas: [f32; 3],
     /// The rest, which triangles of a material share.
-    pub material: CutMaterial,
+    pub material: CutMaterial<Image>,
+}
+
+impl<Image> CutOut<Image> {
+    /// Returns the same cut-out with its image named another way. Without an image it has no holes of an image.
+    pub fn map_image<Other>(self, name: impl FnOnce(Image) -> Option<Other>) -> CutOut<Other> {
+        let Self { uvs, alphas, material } = self;
+        let CutMaterial { image, wrap, nearest, base_alpha, cutoff } = material;
+        let material = CutMaterial { image: image.and_then(name), wrap, nearest, base_alpha, cutoff };
+        CutOut { uvs, alphas, material }
+    }
 }
 
 impl CutOut {

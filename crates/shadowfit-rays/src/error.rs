@@ -113,6 +113,7 @@ pub enum RayError {
         most: Vec3,
     },
     /// A vertex buffer that cannot be read.
+    #[cfg(feature = "gpu")]
     #[error("the vertex buffer of a deforming mesh cannot be read: {0}")]
     Vertices(VertexBufferLack),
     /// The device refused to make a resource, for example because it is out of memory; with its own words.
@@ -124,6 +125,7 @@ pub enum RayError {
 }
 
 /// Why a vertex buffer cannot be read.
+#[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum VertexBufferLack {
     /// It was made without the usage `STORAGE`.

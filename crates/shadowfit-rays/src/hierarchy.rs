@@ -45,9 +45,9 @@ pub(crate) fn build<T: Boundable>(boxes: &[T], params: BvhBuildParams, max_stack
     (hierarchy, bvh.primitive_indices)
 }
 
-/// What `obvhs::bvh2::builder::build_bvh2` does, without the clock that it reads: browsers have no such one, and it ends
-/// the program there.
-fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
+/// Builds a binary hierarchy as `obvhs::bvh2::builder::build_bvh2` does, without the clock that it reads. Browsers lack that
+/// clock, and the program ends there.
+pub fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
     let indices = (0..boxes.len() as u32).collect();
     let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
         params.ploc_search_distance,

@@ -19,7 +19,7 @@ pub struct RayMesh {
     pub(crate) cut_outs: Vec<CutOutRecord>,
     /// Vertices of each triangle by its own index; empty where they follow each other.
     indices: Vec<[u32; 3]>,
-    vertices: usize,
+    pub(crate) vertices: usize,
 }
 
 /// Memory that a mesh needs, in bytes, its cut-outs not included.
@@ -174,11 +174,6 @@ impl RayMesh {
         let gpu = 3 * size_of::<TriangleRecord>() as u64 + NODES_KEPT_FOR_3 * kept;
         let of = |bytes: u64| triangles.saturating_mul(bytes);
         RayMemory { building: of(building), kept: of(gpu + 9 * index) / 3, gpu: of(gpu) / 3 }
-    }
-
-    /// Number of vertices.
-    pub(crate) fn vertices(&self) -> usize {
-        self.vertices
     }
 
     /// Vertices of a triangle by its own index.

@@ -5,6 +5,7 @@
 pub const NO_ROOT: u32 = u32::MAX;
 
 /// A node in a word, as shaders have it: a buffer of 4 GiB holds fewer than 2^27 nodes, triangles or instances.
+#[cfg(feature = "gpu")]
 pub(crate) fn packed(count: u32, first: u32) -> u32 {
     (count << 27) | first
 }

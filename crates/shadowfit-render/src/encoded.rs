@@ -2,9 +2,9 @@
 //! linear colours are encoded into once they are drawn.
 
 use crate::bindings;
+use crate::formats::ENCODED_FORMAT;
 use crate::maker::{Maker, Shape};
 use crate::shaders;
-use crate::target::ENCODED_FORMAT;
 
 /// Display values of a picture.
 #[derive(Debug)]

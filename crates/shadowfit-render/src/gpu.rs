@@ -1,11 +1,15 @@
 //! Opens a device of the chosen adapter.
 
+mod faults;
+
 use core::fmt;
 use std::sync::{Arc, Mutex};
 
 use shadowfit_adapter::{AdapterChoice, AdapterError};
 
-use crate::faults::{Faults, watched};
+use faults::{Faults, watched};
+
+pub use faults::{DeviceFault, hush_lost_devices};
 
 /// An opened device with all that is needed to draw.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use glam::DMat4;
 use shadowfit::{Camera, DepthConvention};
 
-use crate::target::DEPTH_FORMAT;
+use crate::formats::DEPTH_FORMAT;
 use crate::uniform::JudgedUniform;
 use crate::{Gpu, bindings};
 

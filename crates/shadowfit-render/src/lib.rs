@@ -6,11 +6,10 @@
 //! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
 
 pub mod attachment;
-pub mod bindings;
 pub mod camera;
 mod casters;
 mod encoded;
-mod faults;
+mod formats;
 mod frame;
 mod gpu;
 mod gpu_timer;
@@ -43,9 +42,8 @@ mod wait;
 
 pub use camera::{FlyCamera, FlyInput};
 pub use casters::{Cluster, clustered};
-pub use faults::{DeviceFault, hush_lost_devices};
 pub use frame::Frame;
-pub use gpu::{Gpu, GpuError, Wanted};
+pub use gpu::{DeviceFault, Gpu, GpuError, Wanted, hush_lost_devices};
 pub use gpu_timer::{GpuProfilerQuery, GpuTimer};
 pub use inset::Inset;
 pub use judged::{JudgedPicture, classes_texture};
@@ -59,6 +57,7 @@ pub use read_back::{ReadBack, ReadError, read_texture};
 pub use renderer::Renderer;
 pub use scene::GpuScene;
 pub use shadowfit_adapter::{AdapterChoice, AdapterError};
+pub use shadowfit_gpu::bindings;
 pub use shadowfit_rays::RayError;
 pub use shadowfit_wgpu::{Culling, MapUpdate, UpdateContent};
 pub use statistics::{MapStatistics, Statistics};

@@ -2,7 +2,7 @@
 
 use core::mem::offset_of;
 
-use crate::target::{COLOR_FORMAT, DEPTH_FORMAT};
+use crate::formats::{COLOR_FORMAT, DEPTH_FORMAT, STRIDES};
 use crate::uniform::InstanceData;
 use crate::wait::making;
 
@@ -157,9 +157,6 @@ pub struct Streams {
     /// Texture coordinates and colours; the origin and white where there are none.
     pub surface: bool,
 }
-
-/// Bytes of an element of each of the streams of vertices.
-pub(crate) const STRIDES: [usize; 4] = [12, 12, 16, 24];
 
 /// Number of the stream of instances, which comes after those of vertices.
 pub(crate) const INSTANCES: u32 = 4;

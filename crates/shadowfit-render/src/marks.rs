@@ -1,10 +1,11 @@
 //! Marks of wrong pixels over any view: a pass finds the nearest wrong pixel in each row, and a second one draws from
 //! these what lies within a few pixels of one.
 
+use crate::formats::COLOR_FORMAT;
 use crate::gpu::is_opengl;
 use crate::judged::{DEPTHS, JudgedInput};
 use crate::maker::{Maker, Shape};
-use crate::target::{COLOR_FORMAT, RenderTarget};
+use crate::target::RenderTarget;
 use crate::uniform::MarksUniform;
 use crate::{Gpu, bindings, shaders};
 

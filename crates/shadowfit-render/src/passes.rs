@@ -7,10 +7,10 @@
 //! [`bindings`](crate::bindings) and [`attachment`](crate::attachment) have the rest, [`shaders`](crate::shaders) the WGSL
 //! that pictures share.
 
+pub use crate::formats::{DEPTH_FORMAT, ENCODED_FORMAT};
 pub use crate::maker::{InstanceNumber, Maker, Shape, Streams, culled, depth, part_buffers};
 pub use crate::material::material_layout;
 pub use crate::part::PartKey;
 pub use crate::probe::PROBE_FORMAT;
 pub use crate::scene::Draw;
-pub use crate::target::{DEPTH_FORMAT, ENCODED_FORMAT};
 pub use crate::unrolled::Numbering;

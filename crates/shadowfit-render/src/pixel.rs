@@ -1,7 +1,6 @@
 //! The facts of one pixel on their way from the GPU, without waiting.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use shadowfit_gpu::{MapState, Mapping};
 
 use crate::Gpu;
 use crate::probe::ProbePixel;
@@ -60,17 +59,9 @@ pub struct PixelRead {
     /// Whether texels were found to be read.
     has_depths: bool,
     buffer: wgpu::Buffer,
-    state: Arc<AtomicU8>,
+    mapping: Mapping,
+    is_taken: bool,
 }
-
-/// The GPU is not done with it.
-const BUSY: u8 = 0;
-/// Can be read.
-const READABLE: u8 = 1;
-/// The device was lost.
-const FAILED: u8 = 2;
-/// Has been read.
-const TAKEN: u8 = 3;
 
 /// Format of the depths of a block of texels: the bits of floats, which not all devices can draw to.
 pub(crate) const BLOCK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
@@ -88,7 +79,7 @@ impl PixelRead {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        Self { query, has_depths, buffer, state: Arc::new(AtomicU8::new(BUSY)) }
+        Self { query, has_depths, buffer, mapping: Mapping::new(), is_taken: false }
     }
 
     pub(crate) fn buffer(&self) -> &wgpu::Buffer {
@@ -97,10 +88,7 @@ impl PixelRead {
 
     /// Has the buffer mapped, once what fills it is submitted.
     pub(crate) fn map(&self) {
-        let state = Arc::clone(&self.state);
-        self.buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            state.store(if result.is_ok() { READABLE } else { FAILED }, Ordering::Release);
-        });
+        self.mapping.map(&self.buffer);
     }
 
     /// The facts, once the GPU has found them: `None` before that, and after they were taken. Does not wait.
@@ -111,12 +99,12 @@ impl PixelRead {
     pub fn take(&mut self, gpu: &Gpu) -> Option<Result<PixelFacts, ReadError>> {
         let _unreported = gpu.without_reports();
         let polled = gpu.device.poll(wgpu::PollType::Poll);
-        let state = self.state.load(Ordering::Acquire);
-        if state == TAKEN || (state == BUSY && polled.is_ok()) {
+        let state = self.mapping.state();
+        if self.is_taken || (state == MapState::Busy && polled.is_ok()) {
             return None;
         }
-        self.state.store(TAKEN, Ordering::Release);
-        Some(if state == READABLE { self.facts() } else { Err(ReadError::Lost) })
+        self.is_taken = true;
+        Some(if state == MapState::Readable { self.facts() } else { Err(ReadError::Lost) })
     }
 
     fn facts(&self) -> Result<PixelFacts, ReadError> {

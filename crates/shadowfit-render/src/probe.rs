@@ -5,8 +5,8 @@ use core::fmt;
 
 use shadowfit_wgpu::ShadowMapError;
 
+use crate::formats::DEPTH_FORMAT;
 use crate::read_back::{ReadBack, ReadError};
-use crate::target::DEPTH_FORMAT;
 use crate::{Gpu, bindings};
 
 /// Format of the probe's target: the triangle's number plus one (0 is the sky), and the bits of the factor.

@@ -1,25 +1,17 @@
 //! The pixels of a texture on their way from the GPU.
 
 use core::fmt;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+
+use shadowfit_gpu::{MapState, Mapping, TexelCopy};
 
 use crate::Gpu;
 use crate::wait::waiting;
 
-/// States of the way.
-const BUSY: u8 = 0;
-const READABLE: u8 = 1;
-const FAILED: u8 = 2;
-
 /// Pixels that the GPU still copies.
 #[derive(Debug)]
 pub struct ReadBack {
-    buffer: wgpu::Buffer,
-    /// Bytes of a row, and of one with its padding.
-    row: u32,
-    padded: u32,
-    state: Arc<AtomicU8>,
+    copy: TexelCopy,
+    mapping: Mapping,
 }
 
 /// Why pixels could not be read back. There are no pixels then, not even black ones.
@@ -51,30 +43,13 @@ impl ReadBack {
     /// Begins to copy a texture of a `size` in pixels.
     pub fn new(gpu: &Gpu, texture: &wgpu::Texture, size: [u32; 2], bytes_per_pixel: u32) -> Self {
         let _unreported = gpu.without_reports();
-        let row = size[0] * bytes_per_pixel;
-        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size: u64::from(padded) * u64::from(size[1]),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let size = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
-            },
-            wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        );
+        let copy = TexelCopy::record(&gpu.device, &mut encoder, texture, size, bytes_per_pixel);
         gpu.submit([encoder.finish()]);
-        let state = Arc::new(AtomicU8::new(BUSY));
-        let told = Arc::clone(&state);
-        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            told.store(if result.is_ok() { READABLE } else { FAILED }, Ordering::Release);
-        });
-        Self { buffer, row, padded, state }
+        let mapping = Mapping::new();
+        mapping.map(copy.buffer());
+        Self { copy, mapping }
     }
 
     /// The pixels, rows from the top without padding, once they have arrived; `None` before that. Does not wait.
@@ -84,9 +59,9 @@ impl ReadBack {
     /// [`ReadError`] if the device was lost.
     pub fn take(&self, gpu: &Gpu) -> Option<Result<Vec<u8>, ReadError>> {
         let polled = gpu.device.poll(wgpu::PollType::Poll);
-        match self.state.load(Ordering::Acquire) {
-            BUSY if polled.is_ok() => None,
-            READABLE => Some(self.pixels()),
+        match self.mapping.state() {
+            MapState::Busy if polled.is_ok() => None,
+            MapState::Readable => Some(self.pixels()),
             _ => Some(Err(ReadError::Lost)),
         }
     }
@@ -98,9 +73,9 @@ impl ReadBack {
     /// [`ReadError`] if the device was lost or does not answer.
     pub fn wait(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
         waiting(|| gpu.device.poll(wgpu::PollType::wait_indefinitely())).map_err(|_| ReadError::Unfinished)?;
-        match self.state.load(Ordering::Acquire) {
-            BUSY => Err(ReadError::Unfinished),
-            READABLE => self.pixels(),
+        match self.mapping.state() {
+            MapState::Busy => Err(ReadError::Unfinished),
+            MapState::Readable => self.pixels(),
             _ => Err(ReadError::Lost),
         }
     }
@@ -124,9 +99,7 @@ impl ReadBack {
     }
 
     fn pixels(&self) -> Result<Vec<u8>, ReadError> {
-        let mapped = self.buffer.slice(..).get_mapped_range().map_err(|_| ReadError::Lost)?;
-        let rows = mapped.chunks(self.padded as usize).flat_map(|line| &line[..self.row as usize]);
-        Ok(rows.copied().collect())
+        self.copy.texels().map_err(|_| ReadError::Lost)
     }
 }
 

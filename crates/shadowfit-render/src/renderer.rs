@@ -26,7 +26,6 @@ use crate::vertex_buffer::VertexBuffer;
 use crate::{Gpu, Inset, Line, Quad, bindings};
 
 use edges::Edges;
-pub(crate) use edges::NORMAL_FORMAT;
 use known::KnownMaps;
 use plan::Plan;
 

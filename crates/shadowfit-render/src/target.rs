@@ -3,15 +3,9 @@
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
 use crate::encoded::Encoded;
+use crate::formats::{COLOR_FORMAT, DEPTH_FORMAT, ENCODED_FORMAT};
 use crate::gpu::is_opengl;
 use crate::read_back::{ReadBack, ReadError};
-
-/// Colour format of render targets, as the renderer writes it.
-pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// The same bytes without the sRGB decoding, for user interfaces that blend encoded colours.
-pub const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Depth format of the camera.
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Textures that a picture is drawn into.
 #[derive(Debug)]

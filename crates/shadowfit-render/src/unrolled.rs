@@ -2,7 +2,7 @@
 //! there parts are drawn without their indices, so that vertices 3 i to 3 i + 2 are those of triangle i.
 
 use crate::Gpu;
-use crate::maker::STRIDES;
+use crate::formats::STRIDES;
 use crate::upload::Upload;
 
 /// What a probe's triangles are numbered by.

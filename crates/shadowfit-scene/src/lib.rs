@@ -8,6 +8,7 @@ pub mod builtin;
 mod deform;
 mod error;
 mod import;
+mod limits;
 pub mod parts;
 mod plain;
 mod pose;

@@ -2,13 +2,9 @@
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
-use crate::import::MAX_COORDINATE;
+use crate::limits::{MAX_COORDINATE, MAX_MORPH_WEIGHT};
 use crate::sample::{Sample, sample};
 use crate::{Mesh, Node, Scene, Transform};
-
-/// Greatest weight of a morph target. With it, displacements that are as long as files may have them, moved by matrices
-/// as large as poses have them, stay far from the end of f32.
-pub(crate) const MAX_MORPH_WEIGHT: f32 = 1e6;
 
 /// One primitive drawn at one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

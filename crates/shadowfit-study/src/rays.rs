@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit_scene::{Casting, Deformed, Image, Instance, Pose, Primitive, Scene};
-use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
+use shadowfit_truth::{AlphaImage, CutMaterial, CutOut, CutOuts, Tracer, Wrap};
 
 /// The casters of a scene in one pose, the same as in the shadow pass. Surfaces that cast nothing are left out.
 #[derive(Clone, Debug)]
@@ -153,11 +153,13 @@ fn cut_out(scene: &Scene, primitive: &Primitive, corners: [u32; 3]) -> Option<Cu
     Some(CutOut {
         uvs: vertices.map(uv),
         alphas: vertices.map(|vertex| primitive.colors.get(vertex).copied().unwrap_or(Vec4::ONE).w),
-        base_alpha: material.base_color.w,
-        cutoff,
-        image: texture.map(|texture| texture.image as u32),
-        wrap: texture.map_or_else(Default::default, |texture| texture.wrap.map(wrap)),
-        nearest: texture.is_some_and(|texture| texture.nearest),
+        material: CutMaterial {
+            image: texture.map(|texture| texture.image as u32),
+            wrap: texture.map_or_else(Default::default, |texture| texture.wrap.map(wrap)),
+            nearest: texture.is_some_and(|texture| texture.nearest),
+            base_alpha: material.base_color.w,
+            cutoff,
+        },
     })
 }
 

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::class::counts_as_lit;
 use crate::judge::Judged;
 use crate::maps::PictureMaps;
+use crate::tally::Crawl;
 use crate::truth::Truth;
 
 /// The maps of the frame before, and what they show at the points of this frame.
@@ -24,19 +25,6 @@ pub struct MapsBefore<'a> {
     /// Share of the light that its maps let through at the points of this frame's pixels, 0..=1,
     /// rows from the top.
     pub factors: &'a [f32],
-}
-
-/// What two frames' maps make of the same points.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Crawl {
-    /// Compared pixels of the edge zone that have another verdict in the frame before.
-    pub different: u64,
-    /// How many were compared: where it is 0 nothing was measured.
-    pub compared: u64,
-    /// Sum of how much the factors differ, of all pixels that count and that the maps of both frames cover.
-    pub change: f64,
-    /// How many of these there are.
-    pub change_compared: u64,
 }
 
 /// Compares the verdicts of two frames' maps at the pixels that count, lie in the edge zone, and whose point the maps

@@ -7,23 +7,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+pub use shadowfit_rays::{CutMaterial, Wrap};
 
 /// Texel coordinates are clamped to ± this before they are wrapped: whole numbers of this size and
 /// their neighbours fit i32, and f32 has no fractions there.
 pub(crate) const MAX_TEXEL: f32 = 1_073_741_824.0;
-
-/// How an image continues beyond its edges along an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Wrap {
-    /// It is repeated.
-    #[default]
-    Repeat = 0,
-    /// The texels at its edge continue.
-    Clamp = 1,
-    /// It is repeated, and every second copy is mirrored.
-    Mirror = 2,
-}
 
 /// The alpha of an image, at least one texel. Clones share it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,9 +25,8 @@ impl AlphaImage {
     /// An image from its alpha in rows from the top, 255 opaque. `None` when `alpha` is empty or does
     /// not have `width * height` elements, or when a side is longer than 2^24 texels.
     pub fn new(width: u32, height: u32, alpha: Vec<u8>) -> Option<Self> {
-        let texels = (width as usize).checked_mul(height as usize)?;
-        let fits = texels > 0 && texels == alpha.len() && width.max(height) <= 1 << 24;
-        fits.then(|| Self { width, height, alpha: alpha.into() })
+        shadowfit_rays::AlphaImage::new(width, height, &alpha).ok()?;
+        Some(Self { width, height, alpha: alpha.into() })
     }
 
     /// Width and height, in texels.
@@ -57,25 +44,9 @@ impl AlphaImage {
     }
 }
 
-/// A triangle with holes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CutOut {
-    /// Texture coordinates of the corners, 0..=1 over the image from its top left, with any texture
-    /// transform already applied.
-    pub uvs: [Vec2; 3],
-    /// Alpha of the corners, 0..=1.
-    pub alphas: [f32; 3],
-    /// Alpha of the material, 0..=1.
-    pub base_alpha: f32,
-    /// Least alpha that is opaque.
-    pub cutoff: f32,
-    /// Index of the image in [`CutOuts::images`]; `None`, or an index beyond them, is opaque.
-    pub image: Option<u32>,
-    /// How the image continues across and down.
-    pub wrap: [Wrap; 2],
-    /// Whether the nearest texel is taken instead of interpolating between four.
-    pub nearest: bool,
-}
+/// A triangle with holes, whose image is an index in [`CutOuts::images`]. Without an image, or with an index beyond them, the
+/// image's alpha is 1.
+pub type CutOut = shadowfit_rays::CutOut<u32>;
 
 /// The triangles with holes of a scene, and their images.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -127,23 +98,24 @@ impl CutOuts {
         let [a, b, c] = cut_out.uvs;
         let uv = a * weights.x + b * weights.y + c * weights.z;
         let vertex_alpha = Vec3::from(cut_out.alphas).dot(weights);
-        let image = cut_out.image.and_then(|image| self.images.get(image as usize));
-        let image_alpha = image.map_or(1.0, |image| sample(image, cut_out, uv));
-        cut_out.base_alpha * vertex_alpha * image_alpha >= cut_out.cutoff
+        let material = &cut_out.material;
+        let image = material.image.and_then(|image| self.images.get(image as usize));
+        let image_alpha = image.map_or(1.0, |image| sample(image, material, uv));
+        material.base_alpha * vertex_alpha * image_alpha >= material.cutoff
     }
 }
 
 /// Alpha of an image at texture coordinates, 0..=1.
-fn sample(image: &AlphaImage, cut_out: &CutOut, uv: Vec2) -> f32 {
+fn sample(image: &AlphaImage, material: &CutMaterial<u32>, uv: Vec2) -> f32 {
     let size = image.size().map(u32::cast_signed);
     let limit = Vec2::splat(MAX_TEXEL);
     let position = (uv * Vec2::new(size[0] as f32, size[1] as f32) - 0.5).clamp(-limit, limit);
     let (corner, weight) = (position.floor(), position - position.floor());
     let alpha = |right: i32, down: i32| {
-        let x = wrapped(corner.x as i32 + right, size[0], cut_out.wrap[0]);
-        image.at(x, wrapped(corner.y as i32 + down, size[1], cut_out.wrap[1]))
+        let x = wrapped(corner.x as i32 + right, size[0], material.wrap[0]);
+        image.at(x, wrapped(corner.y as i32 + down, size[1], material.wrap[1]))
     };
-    if cut_out.nearest {
+    if material.nearest {
         return alpha((weight.x >= 0.5).into(), (weight.y >= 0.5).into());
     }
     let row = |down| alpha(0, down) * (1.0 - weight.x) + alpha(1, down) * weight.x;
@@ -170,9 +142,8 @@ mod tests {
     fn row(wrap: Wrap, nearest: bool) -> (AlphaImage, CutOut) {
         let image = AlphaImage::new(2, 1, vec![0, 255]).expect("two texels");
         let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y];
-        let cut_out =
-            CutOut { uvs, alphas: [1.0; 3], base_alpha: 1.0, cutoff: 0.5, image: Some(0), wrap: [wrap; 2], nearest };
-        (image, cut_out)
+        let material = CutMaterial { image: Some(0), wrap: [wrap; 2], nearest, ..CutMaterial::default() };
+        (image, CutOut { uvs, alphas: [1.0; 3], material })
     }
 
     #[test]
@@ -187,7 +158,7 @@ mod tests {
     fn alpha_is_interpolated_between_texel_centres_or_taken_from_the_nearest() {
         let at = |wrap, nearest, u| {
             let (image, cut_out) = row(wrap, nearest);
-            sample(&image, &cut_out, Vec2::new(u, 0.5))
+            sample(&image, &cut_out.material, Vec2::new(u, 0.5))
         };
         for (u, expected) in [(0.25, 0.0), (0.5, 0.5), (0.75, 1.0), (9.0, 1.0), (-9.0, 0.0)] {
             assert!((at(Wrap::Clamp, false, u) - expected).abs() < 1e-6, "{u}");
@@ -210,12 +181,12 @@ mod tests {
             CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_opaque(3, weights)
         };
         assert!(!is_opaque(|_| (), [0.2, 0.5]) && is_opaque(|_| (), [0.51, 0.4]));
-        assert!(!is_opaque(|cut_out| cut_out.base_alpha = 0.4, [0.8, 0.0]));
+        assert!(!is_opaque(|cut_out| cut_out.material.base_alpha = 0.4, [0.8, 0.0]));
         // Only the second corner is opaque.
         assert!(!is_opaque(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.49, 0.5]));
         assert!(is_opaque(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.8, 0.0]));
         // Without its image the triangle has no holes, and other triangles never had.
-        assert!(is_opaque(|cut_out| cut_out.image = Some(9), [0.1, 0.1]));
+        assert!(is_opaque(|cut_out| cut_out.material.image = Some(9), [0.1, 0.1]));
         assert!(CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_opaque(2, [0.1, 0.1]));
     }
 

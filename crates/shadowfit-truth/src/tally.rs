@@ -5,7 +5,6 @@
 
 use crate::area::AreaTally;
 use crate::class::Class;
-use crate::crawl::Crawl;
 use crate::histogram::Histogram;
 
 /// Sums over the pixels that count: those that face the light, within the shadow distance and the
@@ -49,6 +48,19 @@ pub struct PictureTally {
     pub traced_of: u64,
     /// Those of them that took rays.
     pub traced: u64,
+}
+
+/// Sums over the points that the maps of two frames are compared at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Crawl {
+    /// Compared pixels of the edge zone that have another verdict in the frame before.
+    pub different: u64,
+    /// Compared pixels of the edge zone. Where it is 0 nothing was measured.
+    pub compared: u64,
+    /// Sum of the differences of factors, of all pixels that count and that the maps of both frames cover.
+    pub change: f64,
+    /// Number of pixels in that sum.
+    pub change_compared: u64,
 }
 
 /// Numbers of pixels by class.

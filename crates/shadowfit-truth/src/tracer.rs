@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
-use obvhs::ploc::PlocBuilder;
+use obvhs::bvh2::Bvh2;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams, triangle::Triangle};
+use shadowfit_rays::build_bvh2;
 
 use crate::cut_out::CutOuts;
 use crate::memory::TracerMemory;
@@ -264,25 +264,6 @@ impl Boundable for Corners {
     fn aabb(&self) -> Aabb {
         self.triangle().aabb()
     }
-}
-
-/// What `obvhs::bvh2::builder::build_bvh2` does, without the clock that it reads: browsers have no such one, and it ends
-/// the program there.
-fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
-    let indices = (0..boxes.len() as u32).collect();
-    let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
-        params.ploc_search_distance,
-        boxes,
-        indices,
-        params.sort_precision,
-        params.search_depth_threshold,
-    );
-    let mut optimizer = ReinsertionOptimizer::default();
-    optimizer.run(&mut bvh, params.reinsertion_batch_ratio, None);
-    collapse(&mut bvh, params.max_prims_per_leaf.clamp(1, 255), params.collapse_traversal_cost);
-    let ratio = params.reinsertion_batch_ratio * params.post_collapse_reinsertion_batch_ratio_multiplier;
-    optimizer.run(&mut bvh, ratio, None);
-    bvh
 }
 
 fn build(triangles: &[Corners]) -> Option<Bvh2> {

@@ -83,14 +83,11 @@
 // Rooms, each of which uses those above it: `descriptor` says how maps are, `wgsl` writes the text of the look-ups, `maps`
 // holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `resolve` makes its
 // edges exact.
-mod bindings;
 mod cached_maps;
-mod caught;
 pub mod demand;
 mod descriptor;
 mod maps;
 mod pixels;
-mod read_back;
 #[cfg(feature = "rays")]
 pub mod resolve;
 mod sun;

@@ -43,7 +43,6 @@ mod error;
 mod group;
 mod noise;
 mod pass;
-mod pipeline;
 mod pyramid;
 mod result;
 mod shader;

@@ -36,9 +36,10 @@ const OWN_PROCESS: &str = "own_process";
 const PROGRAMS: [&str; 4] = ["growth", "peer_fit", "report", "viewer"];
 
 /// Packages of the quick tier. None of them links egui or winit.
-const QUICK_PACKAGES: [&str; 8] = [
+const QUICK_PACKAGES: [&str; 9] = [
     "shadowfit",
     "shadowfit-adapter",
+    "shadowfit-gpu",
     "shadowfit-params",
     "shadowfit-rays",
     "shadowfit-scene",

@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit_scene::{Casting, Image, Instance, Primitive};
-use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
+use shadowfit_truth::{AlphaImage, CutMaterial, CutOut, CutOuts, Tracer, Wrap};
 
 use crate::content::Content;
 
@@ -50,11 +50,13 @@ fn hole(content: &Content, primitive: &Primitive, corners: [u32; 3], cutoff: f32
     CutOut {
         uvs: vertices.map(uv),
         alphas: vertices.map(|vertex| Content::color(primitive, vertex).w),
-        base_alpha: material.base_color.w,
-        cutoff,
-        image: texture.map(|texture| texture.image as u32),
-        wrap: texture.map_or_else(Default::default, |texture| texture.wrap.map(wrap)),
-        nearest: texture.is_some_and(|texture| texture.nearest),
+        material: CutMaterial {
+            image: texture.map(|texture| texture.image as u32),
+            wrap: texture.map_or_else(Default::default, |texture| texture.wrap.map(wrap)),
+            nearest: texture.is_some_and(|texture| texture.nearest),
+            base_alpha: material.base_color.w,
+            cutoff,
+        },
     }
 }
 

@@ -1,7 +1,6 @@
 //! Rays on the GPU against brute force in `f64`, and what scenes and meshes promise.
 
 mod answers_gpu;
-mod at_once_gpu;
 mod brute_force;
 mod cut_outs_gpu;
 mod deforming_gpu;

@@ -2,18 +2,18 @@
 
 use std::collections::HashMap;
 
-use shadowfit_rays::make_at_once;
+use shadowfit_gpu::make_at_once;
 use shadowfit_scene::Casting;
 use shadowfit_wgpu::ShadowMap;
 
 use super::Layouts;
+use crate::formats::NORMAL_FORMAT;
 use crate::maker::{
     BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, caster_buffers, culled, depth, instances, part_buffers, strips,
 };
 use crate::part::{Part, PartKey};
 use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
-use crate::renderer::NORMAL_FORMAT;
 use crate::uniform::InsetVertex;
 use crate::unrolled::Numbering;
 use crate::wait::making;

@@ -10,15 +10,12 @@ use wgpu_profiler::GpuProfilerQuery;
 use super::{Plan, Renderer, lit_group};
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
+use crate::formats::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::frame::Frame;
 use crate::pipelines::Drawn;
 use crate::renderer::picture::set_part;
 use crate::scene::GpuScene;
-use crate::target::DEPTH_FORMAT;
 use crate::timer::Pass;
-
-/// Format of the normals: world axes, unit length.
-pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What resolves edges, and what it does so from.
 #[derive(Debug)]

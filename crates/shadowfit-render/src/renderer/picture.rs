@@ -4,10 +4,11 @@ use wgpu_profiler::GpuProfilerQuery;
 
 use super::{Plan, Renderer};
 use crate::attachment::{cleared, depth, drawn_over, kept_depth};
+use crate::formats::COLOR_FORMAT;
 use crate::pipelines::Drawn;
 use crate::probe::ProbeTargets;
 use crate::scene::{Draw, GpuScene};
-use crate::target::{COLOR_FORMAT, RenderTarget};
+use crate::target::RenderTarget;
 use crate::timer::Pass;
 use crate::{Gpu, bindings};
 

@@ -17,11 +17,8 @@ use super::notes::{Notes, Tally};
 use super::surface;
 use super::topology::{UsedVertices, triangle_list, without_triangles};
 use crate::error::Problem;
+use crate::limits::MAX_COORDINATE;
 use crate::{Geometry, MorphTarget, Primitive};
-
-/// Greatest coordinate accepted, in metres: transforms in f64 are exact to a millimetre up to here, and the product of
-/// three coordinates, as in a volume, is still finite in f32.
-pub(crate) const MAX_COORDINATE: f32 = 1e12;
 
 /// Indices in the memory of one element of the budget.
 const INDICES_PER_ELEMENT: usize = 4;

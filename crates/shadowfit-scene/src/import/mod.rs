@@ -44,7 +44,6 @@ use self::image::Images;
 pub use self::image::{DecodeImage, DecodedImage};
 use self::material::Materials;
 use self::mesh::Geometries;
-pub(crate) use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
 pub use self::size::SceneSize;

@@ -3,7 +3,7 @@
 use gltf::json::{Index, Root, Value, scene};
 
 use crate::error::{Problem, entry};
-use crate::pose::MAX_MORPH_WEIGHT;
+use crate::limits::MAX_MORPH_WEIGHT;
 use crate::{Node, Transform};
 
 /// Nodes that belong to the chosen scene.

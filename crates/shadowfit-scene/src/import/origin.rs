@@ -8,10 +8,10 @@ use glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::Aabb;
 
 use super::accessor::Reader;
-use super::mesh::MAX_COORDINATE;
 use super::nodes::Tree;
 use super::notes::Notes;
 use crate::error::Problem;
+use crate::limits::MAX_COORDINATE;
 use crate::{Geometry, Scene};
 
 /// Greatest coordinate of the middle of a scene that keeps the origin of its file, in metres. Up to twice as far, f32

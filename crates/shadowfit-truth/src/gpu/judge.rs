@@ -1,14 +1,14 @@
 //! The pass that judges a picture in three steps and sums it in a fourth, and the texture that it fills.
 
-use shadowfit_rays::make_at_once;
+use shadowfit_gpu::bindings::{UNIFORM, group, layout, plain_texture, storage, uniform_buffer, written_texture};
+use shadowfit_gpu::{TexelCopy, compute_pipeline, make_at_once, wgsl_module};
 
 use super::error::GpuTruthError;
 use super::input::GpuJudgeInput;
-use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
 use super::pixel::GpuPixel;
 use super::shader;
 use super::tally::GpuTally;
-use super::tally_pass::{TallyInput, TallyPass};
+use super::tally_pass::{TEXTURE, TallyInput, TallyPass};
 use super::tracer::{GpuTracer, slots_layout};
 use super::uniform::JudgeUniform;
 
@@ -20,15 +20,8 @@ const STORAGE_BUFFERS: u32 = 7;
 const WORKGROUP_THREADS: u32 = 256;
 /// Pixels a side of a workgroup's square.
 const SQUARE: u32 = 8;
-/// A texture's rows begin at multiples of this in a buffer, in bytes; wgpu requires it.
-const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
-
 /// The texture of classes, to be written.
-const CLASSES: wgpu::BindingType = wgpu::BindingType::StorageTexture {
-    access: wgpu::StorageTextureAccess::WriteOnly,
-    format: wgpu::TextureFormat::R32Uint,
-    view_dimension: wgpu::TextureViewDimension::D2,
-};
+const CLASSES: wgpu::BindingType = written_texture(wgpu::TextureFormat::R32Uint);
 
 /// Judges pictures on the GPU.
 #[derive(Debug)]
@@ -61,18 +54,16 @@ impl GpuJudge {
 
     /// Makes the pipelines. The device must have the limits of [`Self::runs_with`].
     pub fn new(device: &wgpu::Device) -> Self {
-        let layout = group_layout(device, "judged picture", [UNIFORM, TEXTURE, STORAGE, CLASSES]);
+        let types = [UNIFORM, TEXTURE, storage(false), CLASSES];
+        let layout = layout(device, "judged picture", wgpu::ShaderStages::COMPUTE, &types);
         let (scene, slots) = (shadowfit_rays::rays_layout(device), slots_layout(device));
         let passes = [("trace", shader::truth()), ("rows", shader::rows()), ("classify", shader::classes())];
         let layouts = [Some(&scene), Some(&layout), Some(&slots)];
-        let make = |(entry, wgsl): &(&str, String)| pipeline(device, &layouts, (entry, wgsl.clone()));
+        let make = |(entry, wgsl): &(&str, String)| {
+            compute_pipeline(device, entry, &layouts, &wgsl_module(device, entry, wgsl.clone()), entry)
+        };
         let pipelines = make_at_once(device, &passes, make);
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("judge"),
-            size: size_of::<JudgeUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let uniform = uniform_buffer::<JudgeUniform>(device, "judge");
         Self { layout, pipelines, uniform, target: None, tally: TallyPass::new(device), pictures: 0 }
     }
 
@@ -120,7 +111,7 @@ impl GpuJudge {
             target.pixels.as_entire_binding(),
             wgpu::BindingResource::TextureView(&target.view),
         ];
-        let group = group(device, "judged picture", &self.layout, resources);
+        let group = group(device, "judged picture", &self.layout, &resources);
         let squares = size.map(|side| side.div_ceil(SQUARE));
         self.pictures += 1;
         let is_summed = self.tally.has_room();
@@ -176,29 +167,14 @@ impl GpuJudge {
     /// When no picture was judged yet, or the device is lost or has no memory left.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<GpuPixel>, GpuTruthError> {
         let target = self.target.as_ref().ok_or(GpuTruthError::NotJudged)?;
-        let [width, height] = target.size;
-        let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("classes"),
-            size: u64::from(row) * u64::from(height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            target.classes.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-            target.classes.size(),
-        );
+        let copy = TexelCopy::record(device, &mut encoder, &target.classes, target.classes.size(), 4);
         queue.submit([encoder.finish()]);
         // Whether it was mapped is checked below.
-        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| ());
+        copy.buffer().slice(..).map_async(wgpu::MapMode::Read, |_| ());
         device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| GpuTruthError::Read)?;
-        let mapped = buffer.slice(..).get_mapped_range().map_err(|_| GpuTruthError::Read)?;
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&mapped);
-        let rows = words.chunks_exact(row as usize / 4);
-        Ok(rows.flat_map(|row| &row[..width as usize]).map(|bits| GpuPixel::from_bits(*bits)).collect())
+        let words = bytemuck::pod_collect_to_vec(&copy.texels().map_err(|_| GpuTruthError::Read)?);
+        Ok(words.into_iter().map(GpuPixel::from_bits).collect())
     }
 }
 
@@ -217,18 +193,9 @@ impl Target {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let classes = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("classes"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::R32Uint,
-            usage: wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let usage =
+            wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let classes = plain_texture(device, "classes", size, wgpu::TextureFormat::R32Uint, usage);
         let view = classes.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self { size, pixels, classes, view })
     }

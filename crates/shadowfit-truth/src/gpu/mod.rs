@@ -9,9 +9,7 @@
 mod error;
 mod input;
 mod judge;
-mod pipeline;
 mod pixel;
-mod read_back;
 pub mod shader;
 mod tally;
 mod tally_pass;

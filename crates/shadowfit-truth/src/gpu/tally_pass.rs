@@ -1,12 +1,17 @@
 //! The sums of a judged picture, and their way back to the CPU.
 
+use shadowfit_gpu::bindings::{UNIFORM, group, layout, storage, texture};
+use shadowfit_gpu::{ReadBackRing, compute_pipeline, wgsl_module};
+
 use super::error::GpuTruthError;
-use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
-use super::read_back::ReadBacks;
 use super::shader;
 use super::tally::GpuTally;
 use super::uniform::TallyRecord;
 
+/// A texture of whole numbers.
+pub(super) const TEXTURE: wgpu::BindingType = texture(wgpu::TextureSampleType::Uint, false);
+/// Buffers of sums that take turns: the GPU works on one picture while another waits in line and the CPU reads a third.
+const BUFFERS: usize = 3;
 /// Pixels a side of a workgroup's square.
 const SQUARE: u32 = 32;
 
@@ -16,7 +21,8 @@ pub(super) struct TallyPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
     sums: wgpu::Buffer,
-    read_backs: ReadBacks,
+    /// With the number of each picture.
+    read_backs: ReadBackRing<u64>,
 }
 
 /// What is read for the sums.
@@ -32,20 +38,23 @@ pub(super) struct TallyInput<'a> {
 
 impl TallyPass {
     pub(super) fn new(device: &wgpu::Device) -> Self {
-        let bindings = [UNIFORM, TEXTURE, STORAGE, TEXTURE, STORAGE, TEXTURE];
-        let layout = group_layout(device, "summed picture", bindings);
-        let pipeline = pipeline(device, &[None, Some(&layout)], ("sum", shader::tally()));
+        let bindings = [UNIFORM, TEXTURE, storage(false), TEXTURE, storage(false), TEXTURE];
+        let layout = layout(device, "summed picture", wgpu::ShaderStages::COMPUTE, &bindings);
+        let module = wgsl_module(device, "sum", shader::tally());
+        let pipeline = compute_pipeline(device, "sum", &[None, Some(&layout)], &module, "sum");
         let sums = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("tally"),
             size: size_of::<TallyRecord>() as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        Self { layout, pipeline, sums, read_backs: ReadBacks::new(device) }
+        let read_backs = ReadBackRing::new(device, "tally on its way back", sums.size(), BUFFERS);
+        Self { layout, pipeline, sums, read_backs }
     }
 
     /// Whether a buffer is free for the sums of a further picture.
     pub(super) fn has_room(&mut self) -> bool {
+        self.read_backs.free_overtaken();
         self.read_backs.free().is_some()
     }
 
@@ -65,22 +74,21 @@ impl TallyPass {
             wgpu::BindingResource::TextureView(input.seen_before),
         ];
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(1, &group(device, "summed picture", &self.layout, resources), &[]);
+        pass.set_bind_group(1, &group(device, "summed picture", &self.layout, &resources), &[]);
         let [x, y] = input.size.map(|side| side.div_ceil(SQUARE));
         pass.dispatch_workgroups(x, y, 1);
     }
 
     /// Records the way back of the sums of a picture, after the pass.
     pub(super) fn read_back(&mut self, encoder: &mut wgpu::CommandEncoder, picture: u64) {
-        if let Some(read_back) = self.read_backs.free() {
-            read_back.record(encoder, &self.sums, picture);
-        }
+        self.read_backs.record(encoder, &self.sums, picture);
     }
 
     /// The newest finished picture's sums, once.
     pub(super) fn take(&mut self, device: &wgpu::Device) -> Result<Option<GpuTally>, GpuTruthError> {
         // Only looks; whether anything is finished shows in the buffers.
         let _ = device.poll(wgpu::PollType::Poll);
-        Ok(self.read_backs.take()?.map(|(picture, record)| GpuTally::new(picture, &record)))
+        let taken = self.read_backs.take(bytemuck::pod_read_unaligned).map_err(|_| GpuTruthError::Read)?;
+        Ok(taken.map(|(picture, record)| GpuTally::new(picture, &record)))
     }
 }

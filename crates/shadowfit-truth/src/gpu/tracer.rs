@@ -2,11 +2,11 @@
 //! finds the triangles that a picture names.
 
 use glam::{Affine3A, DVec3, Vec3};
-use shadowfit_rays::{AlphaImage, CutMaterial, ImageId, MeshId, RayError, RayInstance, RayMesh, RayScene, Wrap};
+use shadowfit_gpu::bindings::{group, layout, storage};
+use shadowfit_rays::{ImageId, MeshId, RayError, RayInstance, RayMesh, RayScene};
 
 use super::error::GpuTruthError;
-use super::pipeline::{buffer, group, group_layout};
-use crate::cut_out::{self, CutOut};
+use crate::cut_out::AlphaImage;
 use crate::tracer::Tracer;
 
 /// Label of the places' buffer, bind group and layout.
@@ -18,7 +18,7 @@ pub struct GpuTracer {
     scene: RayScene,
     mesh: MeshId,
     /// Those of the cut-outs, and where they are in the scene.
-    images: (Vec<cut_out::AlphaImage>, Vec<ImageId>),
+    images: (Vec<AlphaImage>, Vec<ImageId>),
     /// Place in leaf order of each triangle by its own index.
     slots: wgpu::Buffer,
     slots_group: wgpu::BindGroup,
@@ -49,7 +49,7 @@ impl GpuTracer {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let slots_group = group(device, LABEL, &slots_layout(device), [slots.as_entire_binding()]);
+        let slots_group = group(device, LABEL, &slots_layout(device), &[slots.as_entire_binding()]);
         let images = (tracer.cut_outs().images().to_vec(), images);
         let made = Self { scene, mesh, images, slots, slots_group };
         made.upload_slots(queue, &shape);
@@ -105,14 +105,14 @@ impl GpuTracer {
 
 /// Layout of the bind group with the places of triangles.
 pub(crate) fn slots_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    group_layout(device, LABEL, [buffer(wgpu::BufferBindingType::Storage { read_only: true })])
+    layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &[storage(true)])
 }
 
 /// Uploads the images of cut-outs.
-fn upload_images(images: &[cut_out::AlphaImage], scene: &mut RayScene) -> Result<Vec<ImageId>, RayError> {
-    let mut upload = |image: &cut_out::AlphaImage| {
+fn upload_images(images: &[AlphaImage], scene: &mut RayScene) -> Result<Vec<ImageId>, RayError> {
+    let mut upload = |image: &AlphaImage| {
         let [width, height] = image.size();
-        scene.add_image(AlphaImage::new(width, height, image.alpha())?)
+        scene.add_image(shadowfit_rays::AlphaImage::new(width, height, image.alpha())?)
     };
     images.iter().map(&mut upload).collect()
 }
@@ -130,24 +130,8 @@ fn shape(tracer: &Tracer, origin: DVec3, images: &[ImageId]) -> Result<RayMesh, 
         return Ok(mesh);
     }
     let cut_out = |triangle| {
-        let index = cut_outs.index_of(triangle)?;
-        Some((triangle, converted(&cut_outs.cut_outs()[index as usize], images)))
+        let cut_out = cut_outs.cut_outs()[cut_outs.index_of(triangle)? as usize];
+        Some((triangle, cut_out.map_image(|image| images.get(image as usize).copied())))
     };
     Ok(mesh.with_cut_outs((0..tracer.len() as u32).filter_map(cut_out))?)
-}
-
-fn converted(cut_out: &CutOut, images: &[ImageId]) -> shadowfit_rays::CutOut {
-    let wrap = cut_out.wrap.map(|wrap| match wrap {
-        cut_out::Wrap::Repeat => Wrap::Repeat,
-        cut_out::Wrap::Clamp => Wrap::Clamp,
-        cut_out::Wrap::Mirror => Wrap::Mirror,
-    });
-    let material = CutMaterial {
-        image: cut_out.image.and_then(|image| images.get(image as usize).copied()),
-        wrap,
-        nearest: cut_out.nearest,
-        base_alpha: cut_out.base_alpha,
-        cutoff: cut_out.cutoff,
-    };
-    shadowfit_rays::CutOut { uvs: cut_out.uvs, alphas: cut_out.alphas, material }
 }

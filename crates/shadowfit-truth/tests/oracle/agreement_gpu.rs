@@ -8,8 +8,8 @@ use shadowfit_testing::{TestGpu, open_test_gpu, test_gpu};
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
-    AlphaImage, Class, CutOut, CutOuts, Judged, MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth,
-    TruthLight, TruthPoint, TruthSettings, Wrap, judge,
+    AlphaImage, Class, CutMaterial, CutOut, CutOuts, Judged, MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer,
+    Truth, TruthLight, TruthPoint, TruthSettings, Wrap, judge,
 };
 
 use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
@@ -358,11 +358,13 @@ fn cut_outs_are_judged_alike_whatever_their_wrapping_and_filtering() {
             let cut_out = CutOut {
                 uvs: corners.map(|corner| Vec2::new(corner.z * 1.3 - 0.2, 0.9 - corner.y * 1.7)),
                 alphas: [1.0, 0.9, 1.0],
-                base_alpha: 0.95,
-                cutoff: 0.4,
-                image: (index < 3).then_some(u32::from(index % 2)),
-                wrap: [wrap, Wrap::Repeat],
-                nearest,
+                material: CutMaterial {
+                    image: (index < 3).then_some(u32::from(index % 2)),
+                    wrap: [wrap, Wrap::Repeat],
+                    nearest,
+                    base_alpha: 0.95,
+                    cutoff: 0.4,
+                },
             };
             cut_outs.push((triangles.len() as u32, cut_out));
             triangles.push(corners);

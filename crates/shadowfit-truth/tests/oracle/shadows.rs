@@ -1,7 +1,9 @@
 //! Truth against shadows in closed form.
 
 use glam::{DVec3, Vec2, Vec3};
-use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Truth, TruthLight, TruthPoint, TruthSettings, Wrap};
+use shadowfit_truth::{
+    AlphaImage, CutMaterial, CutOut, CutOuts, Tracer, Truth, TruthLight, TruthPoint, TruthSettings, Wrap,
+};
 
 use super::scenes::{Triangles, cuboid, level, looking_at, looking_down, quad, sphere};
 
@@ -112,16 +114,9 @@ fn a_fence_of_cut_outs_casts_its_pickets_and_not_its_gaps() {
     let first = floor().len() as u32;
     let uv = |corner: Vec3| Vec2::new((corner.z + 4.0) * 2.0, 1.0 - corner.y * 0.5);
     let cut_outs = (first..).zip(&fence).map(|(triangle, corners)| {
-        let cut_out = CutOut {
-            uvs: corners.map(uv),
-            alphas: [1.0; 3],
-            base_alpha: 1.0,
-            cutoff: 0.5,
-            image: Some(0),
-            wrap: [Wrap::Repeat, Wrap::Clamp],
-            nearest: true,
-        };
-        (triangle, cut_out)
+        let wrap = [Wrap::Repeat, Wrap::Clamp];
+        let material = CutMaterial { image: Some(0), wrap, nearest: true, ..CutMaterial::default() };
+        (triangle, CutOut { uvs: corners.map(uv), alphas: [1.0; 3], material })
     });
     let image = AlphaImage::new(2, 1, vec![255, 0]).expect("two texels");
     let cut_outs = CutOuts::new(vec![image], cut_outs);

@@ -2,16 +2,19 @@
 
 use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, SIDE};
 use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
+use shadowfit_gpu::bindings::{UNIFORM, group, layout, storage, texture, uniform_buffer};
+use shadowfit_gpu::{ReadBackRing, catch_errors, compute_pipeline, wgsl_module};
 
 use super::error::{DemandPassError, Unsupported};
 use super::view::{DemandUniform, DemandView};
-use crate::bindings;
 use crate::pixels::lies_in;
-use crate::read_back::ReadBack;
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
 /// is being recorded.
 const FRAMES: usize = 4;
+
+/// Name of the pass's resources, for debuggers.
+const LABEL: &str = "shadowfit demand";
 
 /// Threads of a workgroup, as in the WGSL.
 const WORKGROUP_THREADS: u32 = 256;
@@ -29,17 +32,9 @@ pub struct DemandPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
     counts: wgpu::Buffer,
-    frames: Vec<Frame>,
-    recordings: u64,
-    /// Recordings up to the last [`Self::reset`].
-    forgotten: u64,
-}
-
-/// The resources of one picture on its way.
-#[derive(Debug)]
-struct Frame {
-    uniform: wgpu::Buffer,
-    read_back: ReadBack<SeenSpace>,
+    /// The uniform of each picture on its way.
+    uniforms: Vec<wgpu::Buffer>,
+    read_backs: ReadBackRing<SeenSpace>,
 }
 
 impl DemandPass {
@@ -52,27 +47,26 @@ impl DemandPass {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, DemandPassError> {
         supported(&device.limits(), device.adapter_info().backend).map_err(DemandPassError::Unsupported)?;
         caught(device, || {
-            let layout = layout(device, samples > 1);
-            let pipeline = pipeline(device, &layout, samples);
+            let depths = texture(wgpu::TextureSampleType::Depth, samples > 1);
+            let layout = layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &[UNIFORM, depths, storage(false)]);
+            let module = wgsl_module(device, LABEL, demand_wgsl(samples));
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-            let frame = || Frame {
-                uniform: buffer(
-                    device,
-                    size_of::<DemandUniform>(),
-                    wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                ),
-                read_back: ReadBack::new(device, COUNTS),
-            };
+            let size = (COUNTS * size_of::<u32>()) as u64;
+            let counts = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(LABEL),
+                size,
+                usage,
+                mapped_at_creation: false,
+            });
             Self {
                 device: device.clone(),
                 queue: queue.clone(),
                 samples,
+                pipeline: compute_pipeline(device, LABEL, &[Some(&layout)], &module, "count_demand"),
                 layout,
-                pipeline,
-                counts: buffer(device, COUNTS * size_of::<u32>(), usage),
-                frames: (0..FRAMES).map(|_| frame()).collect(),
-                recordings: 0,
-                forgotten: 0,
+                uniforms: (0..FRAMES).map(|_| uniform_buffer::<DemandUniform>(device, LABEL)).collect(),
+                read_backs: ReadBackRing::new(device, "shadowfit read back", size, FRAMES),
+                counts,
             }
         })
     }
@@ -108,27 +102,23 @@ impl DemandPass {
         }
         let space = view.space()?;
         let uniform = view.uniform(&space)?;
-        let Some(frame) = self.frames.iter_mut().find(|frame| frame.read_back.is_free()) else { return Ok(false) };
+        let Some(buffer) = self.read_backs.free().map(|index| &self.uniforms[index]) else { return Ok(false) };
         let group = caught(&self.device, || {
-            self.queue.write_buffer(&frame.uniform, 0, bytemuck::bytes_of(&uniform));
+            self.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&uniform));
             let depth = wgpu::BindingResource::TextureView(depth);
-            let resources = [frame.uniform.as_entire_binding(), depth, self.counts.as_entire_binding()];
-            bindings::group(&self.device, "shadowfit demand", &self.layout, (0, &resources))
+            let resources = [buffer.as_entire_binding(), depth, self.counts.as_entire_binding()];
+            group(&self.device, LABEL, &self.layout, &resources)
         })?;
         encoder.clear_buffer(&self.counts, 0, None);
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("shadowfit demand"),
-                timestamp_writes: timestamps,
-            });
+            let mut pass = encoder
+                .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(LABEL), timestamp_writes: timestamps });
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);
             let [x, y] = uniform.size.map(|side| side.div_ceil(uniform.step * SQUARE));
             pass.dispatch_workgroups(x, y, 1);
         }
-        self.recordings += 1;
-        frame.read_back.record(encoder, &self.counts, space, self.recordings);
-        Ok(true)
+        Ok(self.read_backs.record(encoder, &self.counts, space))
     }
 
     /// The newest picture that the GPU has finished, given once; `None` until there is one. Never waits.
@@ -137,7 +127,7 @@ impl DemandPass {
     ///
     /// [`DemandPassError::Lost`] if the device was lost.
     pub fn take(&mut self) -> Result<Option<Seen>, DemandPassError> {
-        // This only polls; the loop below finds out whether anything is finished.
+        // This only polls. Whether a picture is finished shows below.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.newest()
     }
@@ -156,19 +146,12 @@ impl DemandPass {
     /// Forgets the pictures that are on their way: for camera cuts, beside
     /// [`ShadowFitter::reset`](shadowfit::ShadowFitter::reset).
     pub fn reset(&mut self) {
-        self.forgotten = self.recordings;
+        self.read_backs.forget();
     }
 
     fn newest(&mut self) -> Result<Option<Seen>, DemandPassError> {
-        if self.frames.iter().filter(|frame| frame.read_back.has_failed()).count() > 0 {
-            return Err(DemandPassError::Lost);
-        }
-        let newest = ReadBack::newest(self.frames.iter_mut().map(|frame| &mut frame.read_back));
-        let Some(read_back) = newest else { return Ok(None) };
-        let is_wanted = read_back.number() > self.forgotten;
-        let (space, counts) = read_back.take().ok_or(DemandPassError::Lost)?;
-        let seen = Seen::from_counts(space, counts).ok_or(DemandPassError::Lost)?;
-        Ok(Some(seen).filter(|_| is_wanted))
+        let taken = self.read_backs.take(bytemuck::pod_collect_to_vec).map_err(|_| DemandPassError::Lost)?;
+        taken.map(|(space, counts)| Seen::from_counts(space, counts).ok_or(DemandPassError::Lost)).transpose()
     }
 
     /// Refuses a texture that cannot be bound.
@@ -213,43 +196,7 @@ pub(crate) fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result
 
 /// Does work whose errors would otherwise end the program, such as lack of memory.
 fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, DemandPassError> {
-    crate::caught::caught(device, work).map_err(|error| DemandPassError::Device(error.to_string()))
-}
-
-fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    let depths = bindings::depths(wgpu::TextureViewDimension::D2, multisampled);
-    let counts = bindings::buffer(wgpu::BufferBindingType::Storage { read_only: false });
-    let types = [bindings::UNIFORM, depths, counts];
-    bindings::layout(device, "shadowfit demand", wgpu::ShaderStages::COMPUTE, (0, &types))
-}
-
-fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32) -> wgpu::ComputePipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("shadowfit demand"),
-        source: wgpu::ShaderSource::Wgsl(demand_wgsl(samples).into()),
-    });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shadowfit demand"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("shadowfit demand"),
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("count_demand"),
-        compilation_options: Default::default(),
-        cache: None,
-    })
-}
-
-fn buffer(device: &wgpu::Device, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("shadowfit demand"),
-        size: bytes as u64,
-        usage,
-        mapped_at_creation: false,
-    })
+    catch_errors(device, work).map_err(|error| DemandPassError::Device(error.to_string()))
 }
 
 #[cfg(test)]

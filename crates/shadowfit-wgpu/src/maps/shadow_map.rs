@@ -6,12 +6,14 @@ use shadowfit::glam::UVec2;
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightProjection};
+use shadowfit_gpu::bindings::{
+    UNIFORM, group_entries, group_from, layout_entries, layout_from, texture_array, uniform_buffer,
+};
+use shadowfit_gpu::catch_errors;
 
 use super::texture::is_array;
 use super::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
 use super::view::check;
-use crate::bindings;
-use crate::caught::caught;
 use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
@@ -80,22 +82,25 @@ impl ShadowMap {
         descriptor: &ShadowMapDescriptor,
         textures: &Textures,
     ) -> Result<Self, ShadowMapError> {
-        caught(device, || Self::with_textures(device, descriptor, textures))
+        catch_errors(device, || Self::with_textures(device, descriptor, textures))
             .map_err(|error| ShadowMapError::Device(error.to_string()))
     }
 
     fn with_textures(device: &wgpu::Device, descriptor: &ShadowMapDescriptor, textures: &Textures) -> Self {
         let caster_layout = caster_layout(device, descriptor);
-        let types = (descriptor.first_binding, receiver_types(descriptor));
-        let receiver_layout = bindings::layout(device, "shadowfit receiver", RECEIVER_STAGES, types);
+        let (first, types) = (descriptor.first_binding, receiver_types(descriptor));
+        let receiver_layout = layout_from(device, "shadowfit receiver", first, RECEIVER_STAGES, types);
         let layers = layers(device, descriptor, &caster_layout, textures, 0);
         let view = textures.read.view(wgpu::TextureViewDimension::D2Array, 0, descriptor.layers());
-        let size = if descriptor.cross_fades { size_of::<FadingUniform>() } else { size_of::<ReceiverUniform>() };
-        let receiver_uniform = uniform_buffer(device, size);
+        let receiver_uniform = if descriptor.cross_fades {
+            uniform_buffer::<FadingUniform>(device, "shadowfit uniform")
+        } else {
+            uniform_buffer::<ReceiverUniform>(device, "shadowfit uniform")
+        };
         let sampler = comparison_sampler(device, descriptor);
         let resources = receiver_resources(&receiver_uniform, &view, &sampler);
-        let resources = (descriptor.first_binding, &resources[..types.1.len()]);
-        let receiver_group = bindings::group(device, "shadowfit receiver", &receiver_layout, resources);
+        let resources = &resources[..types.len()];
+        let receiver_group = group_from(device, "shadowfit receiver", first, &receiver_layout, resources);
         let has_clamp = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         Self {
             descriptor: *descriptor,
@@ -180,14 +185,14 @@ impl ShadowMap {
     /// | first + 1 | the maps, one layer each | array of depth textures, or of unfilterable float textures for colour formats |
     /// | first + 2 | how depths are compared; only for depth formats | comparison sampler |
     pub fn receiver_layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
-        bindings::layout_entries(RECEIVER_STAGES, (self.descriptor.first_binding, receiver_types(&self.descriptor)))
+        layout_entries(self.descriptor.first_binding, RECEIVER_STAGES, receiver_types(&self.descriptor))
     }
 
     /// The resources for [`Self::receiver_layout_entries`], for a bind group of the engine's own. They are the same in
     /// every frame, until the maps are recreated.
     pub fn receiver_entries(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
         let resources = receiver_resources(&self.receiver_uniform, &self.view, &self.sampler);
-        bindings::entries((self.descriptor.first_binding, &resources[..receiver_types(&self.descriptor).len()]))
+        group_entries(self.descriptor.first_binding, &resources[..receiver_types(&self.descriptor).len()])
     }
 
     /// Depth state of the engine's caster pipelines. No hardware bias: biases are applied in texels
@@ -321,8 +326,8 @@ impl ShadowMap {
     #[cfg(feature = "rays")]
     pub(crate) fn receiver_group_with(&self, device: &wgpu::Device, uniform: &wgpu::Buffer) -> wgpu::BindGroup {
         let resources = receiver_resources(uniform, &self.view, &self.sampler);
-        let resources = (self.descriptor.first_binding, &resources[..receiver_types(&self.descriptor).len()]);
-        bindings::group(device, "shadowfit resolve", &self.receiver_layout, resources)
+        let resources = &resources[..receiver_types(&self.descriptor).len()];
+        group_from(device, "shadowfit resolve", self.descriptor.first_binding, &self.receiver_layout, resources)
     }
 
     /// Mixes another set of maps into what the look-up reads, after [`Self::prepare`]. `share`: that of this set.
@@ -462,9 +467,10 @@ impl Layer {
         index: u32,
     ) -> Self {
         let view = |texture: &MapTexture, index| texture.view(wgpu::TextureViewDimension::D2, index, 1);
-        let caster_uniform = uniform_buffer(device, size_of::<CasterUniform>());
+        let caster_uniform = uniform_buffer::<CasterUniform>(device, "shadowfit uniform");
         let resources = [caster_uniform.as_entire_binding()];
-        let caster_group = bindings::group(device, "shadowfit caster", layout, (descriptor.first_binding, &resources));
+        let first = descriptor.first_binding;
+        let caster_group = group_from(device, "shadowfit caster", first, layout, &resources);
         // Depth buffers beside colours are not stored: both sets of maps draw with the same.
         let beside = textures.beside.as_ref().map(|texture| view(texture, index % descriptor.maps));
         let read = view(&textures.read, index);
@@ -502,7 +508,7 @@ impl Textures {
         let layers = descriptor.layers();
         let layers = layers + u32::from(!is_array(resolution, layers, device.adapter_info().backend));
         // Devices below WebGPU's level may lack more than these flags say.
-        caught(device, || Self {
+        catch_errors(device, || Self {
             read: handed_in.cloned().unwrap_or_else(|| made((descriptor.texture_format(), layers))),
             beside: (!format.is_depth()).then(|| made((descriptor.depth_format(), maps))),
             is_handed_in: handed_in.is_some(),
@@ -530,15 +536,6 @@ pub(crate) fn texture(
     device.create_texture(&wgpu::TextureDescriptor { format, usage: USAGES, ..of })
 }
 
-fn uniform_buffer(device: &wgpu::Device, size: usize) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("shadowfit uniform"),
-        size: size as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}
-
 fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Sampler {
     let filter = match descriptor.filter {
         FilterKind::Point => wgpu::FilterMode::Nearest,
@@ -560,8 +557,8 @@ fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -
 }
 
 fn caster_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
-    let types = [bindings::UNIFORM];
-    bindings::layout(device, "shadowfit caster", wgpu::ShaderStages::VERTEX, (descriptor.first_binding, &types))
+    let stages = wgpu::ShaderStages::VERTEX;
+    layout_from(device, "shadowfit caster", descriptor.first_binding, stages, &[UNIFORM])
 }
 
 /// Stages of the engine's pipelines that may look points up.
@@ -569,13 +566,10 @@ const RECEIVER_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.
 
 /// What the look-up's bindings are.
 fn receiver_types(descriptor: &ShadowMapDescriptor) -> &'static [wgpu::BindingType] {
-    const VIEW: wgpu::TextureViewDimension = wgpu::TextureViewDimension::D2Array;
-    const FLOATS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
-    const COLORS: wgpu::BindingType =
-        wgpu::BindingType::Texture { sample_type: FLOATS, view_dimension: VIEW, multisampled: false };
+    const COLORS: wgpu::BindingType = texture_array(wgpu::TextureSampleType::Float { filterable: false });
     const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
-    const OF_DEPTH: [wgpu::BindingType; 3] = [bindings::UNIFORM, bindings::depths(VIEW, false), SAMPLER];
-    const OF_COLOR: [wgpu::BindingType; 2] = [bindings::UNIFORM, COLORS];
+    const OF_DEPTH: [wgpu::BindingType; 3] = [UNIFORM, texture_array(wgpu::TextureSampleType::Depth), SAMPLER];
+    const OF_COLOR: [wgpu::BindingType; 2] = [UNIFORM, COLORS];
     if descriptor.format.is_depth() { &OF_DEPTH } else { &OF_COLOR }
 }
 

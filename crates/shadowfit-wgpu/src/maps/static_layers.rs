@@ -6,9 +6,9 @@
 use shadowfit::cache::{FramePlan, Layer, PassPlan};
 use shadowfit::scroll::TexelRect;
 use shadowfit::{Aabb, DepthConvention};
+use shadowfit_gpu::bindings::{group, layout, texture};
+use shadowfit_gpu::{catch_errors, wgsl_module};
 
-use crate::bindings;
-use crate::caught::caught;
 use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
 
 /// Draws into parts of depth maps.
@@ -45,25 +45,21 @@ const LABEL: &str = "shadowfit static casters";
 
 /// How shaders read the depths of static casters.
 const READ: [wgpu::BindingType; 2] = [
-    wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    },
+    texture(wgpu::TextureSampleType::Float { filterable: false }, false),
     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
 ];
 
 impl Layers {
     pub(crate) fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let [clear, _] = layers_wgsl(map.descriptor());
-        let module = module(device, clear);
+        let module = wgsl_module(device, "shadowfit layers", clear);
         Self { clear: pipeline(device, map, &Shape::new("shadowfit clear", &module, "vs_clear")), fixed: None }
     }
 
     /// Makes the layers of static casters, unless they exist.
     pub(crate) fn split(&mut self, device: &wgpu::Device, map: &ShadowMap) -> Result<(), wgpu::Error> {
         if self.fixed.is_none() {
-            self.fixed = Some(caught(device, || StaticLayers::new(device, map))?);
+            self.fixed = Some(catch_errors(device, || StaticLayers::new(device, map))?);
         }
         Ok(())
     }
@@ -135,17 +131,17 @@ impl StaticLayers {
     fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
         let descriptor = map.descriptor();
         let format = map.depth_stencil_state().format;
-        let layout = bindings::layout(device, LABEL, wgpu::ShaderStages::FRAGMENT, (0, &READ));
+        let layout = layout(device, LABEL, wgpu::ShaderStages::FRAGMENT, &READ);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some(LABEL), ..Default::default() });
         // A texture each: OpenGL's shaders read arrays as a whole alone.
         let layer = || {
             let view = super::shadow_map::texture(device, descriptor, (format, 1)).create_view(&Default::default());
             let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&sampler)];
-            let group = bindings::group(device, LABEL, &layout, (0, &resources));
+            let group = group(device, LABEL, &layout, &resources);
             (view, group)
         };
         let [_, mend] = layers_wgsl(descriptor);
-        let module = module(device, mend);
+        let module = wgsl_module(device, "shadowfit layers", mend);
         let layouts = [&layout, map.caster_layout()];
         let mend =
             Shape { fragment: Some("fs_mend"), layouts: &layouts, ..Shape::new("shadowfit mend", &module, "vs_clear") };
@@ -208,13 +204,6 @@ pub fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let caster = caster_wgsl(descriptor, &WgslOptions::group(1));
     let mend = [&caster, &clear, include_str!("mend.wgsl")].concat();
     [clear, mend]
-}
-
-fn module(device: &wgpu::Device, source: String) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("shadowfit layers"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    })
 }
 
 fn pipeline(device: &wgpu::Device, map: &ShadowMap, shape: &Shape<'_>) -> wgpu::RenderPipeline {

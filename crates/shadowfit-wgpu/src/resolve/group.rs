@@ -1,10 +1,11 @@
 //! What a picture is resolved into: the texture of factors, and the list of pixels whose rays are traced.
 
+use shadowfit_gpu::bindings::{UNIFORM, group, layout, plain_texture, storage, texture};
+use shadowfit_gpu::catch_errors;
+
 use super::error::ResolveError;
 use super::noise::RANKS;
 use super::shader::TRACE_THREADS;
-use crate::bindings;
-use crate::caught::caught;
 
 /// Counts at the beginning of a list: pixels on it, facing pixels, those of them that the filter decides, and how many
 /// were on it before some were left out.
@@ -52,47 +53,33 @@ pub(super) struct Layouts {
 }
 
 /// A float texture that is loaded.
-pub(super) const FLOATS: wgpu::BindingType = wgpu::BindingType::Texture {
-    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-    view_dimension: wgpu::TextureViewDimension::D2,
-    multisampled: false,
-};
+pub(super) const FLOATS: wgpu::BindingType = texture(wgpu::TextureSampleType::Float { filterable: false }, false);
 
 impl Layouts {
     /// Where the device `computes`; otherwise only what the picture's shader reads.
     pub(super) fn new(device: &wgpu::Device, computes: bool) -> Self {
-        let stages = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let storage = |read_only| bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let stages = wgpu::ShaderStages::FRAGMENT | compute;
         let arguments = [storage(true), storage(false)];
-        let select = [storage(true), storage(false), storage(true), bindings::UNIFORM];
+        let select = [storage(true), storage(false), storage(true), UNIFORM];
         // Devices without storage buffers refuse layouts of them.
         let used = if computes { usize::MAX } else { 0 };
         Self {
-            read: bindings::layout(device, "shadowfit resolved", stages, (0, &[FLOATS])),
-            arguments: bindings::layout(
-                device,
-                "shadowfit resolve arguments",
-                wgpu::ShaderStages::COMPUTE,
-                (0, &arguments[..used.min(arguments.len())]),
-            ),
-            select: bindings::layout(
-                device,
-                "shadowfit resolve select",
-                wgpu::ShaderStages::COMPUTE,
-                (0, &select[..used.min(select.len())]),
-            ),
+            read: layout(device, "shadowfit resolved", stages, &[FLOATS]),
+            arguments: layout(device, "shadowfit resolve arguments", compute, &arguments[..used.min(arguments.len())]),
+            select: layout(device, "shadowfit resolve select", compute, &select[..used.min(select.len())]),
         }
     }
 
     fn arguments(&self, device: &wgpu::Device, list: &wgpu::Buffer, groups: &wgpu::Buffer) -> wgpu::BindGroup {
         let resources = [list.as_entire_binding(), groups.as_entire_binding()];
-        bindings::group(device, "shadowfit resolve arguments", &self.arguments, (0, &resources))
+        group(device, "shadowfit resolve arguments", &self.arguments, &resources)
     }
 
     /// What the picture's shader reads.
     pub(super) fn group(&self, device: &wgpu::Device, factors: &wgpu::TextureView) -> wgpu::BindGroup {
         let resources = [wgpu::BindingResource::TextureView(factors)];
-        bindings::group(device, "shadowfit resolved", &self.read, (0, &resources))
+        group(device, "shadowfit resolved", &self.read, &resources)
     }
 }
 
@@ -111,7 +98,7 @@ impl Target {
             let group = layouts.group(device, &factors);
             Self { size, factors, list, groups, group, arguments, kept: None }
         };
-        caught(device, made).map_err(|error| ResolveError::Device(error.to_string()))
+        catch_errors(device, made).map_err(|error| ResolveError::Device(error.to_string()))
     }
 }
 
@@ -125,7 +112,7 @@ impl Target {
         [budget, frame]: [u32; 2],
     ) -> Result<(), ResolveError> {
         if self.kept.is_none() {
-            let made = caught(device, || Kept::new(device, queue, layouts, self));
+            let made = catch_errors(device, || Kept::new(device, queue, layouts, self));
             self.kept = Some(made.map_err(|error| ResolveError::Device(error.to_string()))?);
         }
         if let Some(kept) = &self.kept {
@@ -150,27 +137,19 @@ impl Kept {
         let budget = buffer(16, wgpu::BufferUsages::UNIFORM);
         let list = list(device, target.size);
         let resources = [&target.list, &list, &noise, &budget].map(|buffer: &wgpu::Buffer| buffer.as_entire_binding());
-        let group = bindings::group(device, "shadowfit resolve select", &layouts.select, (0, &resources));
+        let group = group(device, "shadowfit resolve select", &layouts.select, &resources);
         let arguments = layouts.arguments(device, &list, &target.groups);
         Self { list, budget, group, arguments }
     }
 }
 
 /// A texture of factors.
-pub(super) fn factors(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadowfit factors"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::STORAGE_BINDING
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
+pub(super) fn factors(device: &wgpu::Device, size: [u32; 2]) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::STORAGE_BINDING
+        | wgpu::TextureUsages::TEXTURE_BINDING
+        | wgpu::TextureUsages::COPY_SRC
+        | wgpu::TextureUsages::COPY_DST;
+    let texture = plain_texture(device, "shadowfit factors", size, wgpu::TextureFormat::R32Float, usage);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 

@@ -1,24 +1,24 @@
 //! The pass itself: what it needs of a device, its pipelines, and a frame of it.
 
-use shadowfit_rays::{RayScene, make_at_once};
+use shadowfit_gpu::bindings::{UNIFORM, group, layout, storage, texture, uniform_buffer, written_texture};
+use shadowfit_gpu::{ReadBackRing, catch_errors, compute_pipeline, make_at_once, wgsl_module};
+use shadowfit_rays::RayScene;
 
 use super::any_hit::AnyHit;
 use super::error::ResolveError;
 use super::group::{COUNTS, FLOATS, Kept, Layouts, SURFACE_GROUPS, Target, factors};
-use super::pipeline::{module, pipeline};
 use super::pyramid::{BOUNDS, Pyramids};
 use super::result::{EdgeResult, ResolveCounts, WhyFiltered};
 use super::shader::{self, Shape};
 use super::source::Source;
 use super::uniform::ResolveUniform;
 use super::view::ResolveView;
-use crate::bindings;
-use crate::caught::caught;
 use crate::demand::{Unsupported, supported};
 use crate::pixels::lies_in;
-use crate::read_back::ReadBack;
 use crate::{FadingUniform, ShadowMapDescriptor, SunShadows};
 
+/// Name of the passes and their resources, for debuggers.
+const LABEL: &str = "shadowfit resolve";
 /// Pixels along a side of a workgroup that classifies, as in the WGSL.
 const SQUARE: u32 = 8;
 /// Pictures whose counts may be on their way back at once, as many as a GPU may be behind and one more.
@@ -47,8 +47,7 @@ pub struct ResolvePass {
     /// What shaders read where nothing is resolved: one pixel, which is the filter's.
     nothing: (wgpu::TextureView, wgpu::BindGroup),
     result: EdgeResult,
-    counts: Vec<ReadBack<()>>,
-    recordings: u64,
+    counts: ReadBackRing<()>,
 }
 
 /// Pipelines for maps of a descriptor and pictures of a shape.
@@ -86,7 +85,7 @@ impl ResolvePass {
         if pass.lacks.is_none() {
             let shape = Shape { samples: 1, normals: None };
             let wgsl = shader::trace(&ShadowMapDescriptor::default(), shape, pass.counts_wgsl());
-            caught(device, || module(device, wgsl)).map_err(|error| pass.refused(&error))?;
+            catch_errors(device, || wgsl_module(device, LABEL, wgsl)).map_err(|error| pass.refused(&error))?;
         }
         Ok(pass)
     }
@@ -107,10 +106,10 @@ impl ResolvePass {
                 any_hit,
                 layouts,
                 pipelines: None,
-                resolve: uniform(device, size_of::<ResolveUniform>()),
-                receiver: uniform(device, size_of::<FadingUniform>()),
+                resolve: uniform_buffer::<ResolveUniform>(device, LABEL),
+                receiver: uniform_buffer::<FadingUniform>(device, LABEL),
                 texels: device.create_sampler(&wgpu::SamplerDescriptor {
-                    label: Some("shadowfit resolve"),
+                    label: Some(LABEL),
                     address_mode_u: wgpu::AddressMode::Repeat,
                     address_mode_v: wgpu::AddressMode::Repeat,
                     ..Default::default()
@@ -120,11 +119,10 @@ impl ResolvePass {
                 no_bounds: no_bounds(&texture),
                 nothing,
                 result: EdgeResult::Filtered(WhyFiltered::Picture),
-                counts: (0..FRAMES).map(|_| ReadBack::new(device, COUNTS)).collect(),
-                recordings: 0,
+                counts: ReadBackRing::new(device, "shadowfit read back", COUNTS as u64 * 4, FRAMES),
             }
         };
-        caught(device, made).map_err(|error| ResolveError::Device(error.to_string()))
+        catch_errors(device, made).map_err(|error| ResolveError::Device(error.to_string()))
     }
 
     /// The layout of what [`resolved_wgsl`](super::resolved_wgsl) reads: in fragment and compute shaders.
@@ -261,7 +259,7 @@ impl ResolvePass {
         for list in [&target.list, traced] {
             encoder.clear_buffer(list, 0, Some(COUNTS as u64 * 4));
         }
-        let label = Some("shadowfit resolve");
+        let label = Some(LABEL);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: timestamps });
         if let Some(pyramids) = self.pyramids.as_mut().filter(|_| is_soft) {
             pyramids.renew(&mut pass, sun, &receiver);
@@ -280,10 +278,7 @@ impl ResolvePass {
             pass.dispatch_workgroups_indirect(&target.groups, arguments);
         }
         drop(pass);
-        self.recordings += 1;
-        if let Some(counts) = self.counts.iter_mut().find(|counts| counts.is_free()) {
-            counts.record(encoder, traced, (), self.recordings);
-        }
+        self.counts.record(encoder, traced, ());
         Ok(())
     }
 
@@ -319,9 +314,8 @@ impl ResolvePass {
     pub fn take_counts(&mut self) -> Option<ResolveCounts> {
         // This only polls; what is finished shows below.
         let _status = self.device.poll(wgpu::PollType::Poll);
-        self.counts.iter_mut().for_each(|counts| _ = counts.has_failed());
-        let ((), counts) = ReadBack::newest(self.counts.iter_mut())?.take()?;
-        let [traced, facing, filtered, before] = counts[..] else { return None };
+        let ((), counts) = self.counts.take(bytemuck::pod_read_unaligned::<[u32; COUNTS]>).ok()??;
+        let [traced, facing, filtered, before] = counts;
         let unsure = before.max(traced);
         Some(ResolveCounts { facing, unsure, traced, filtered: filtered + unsure - traced })
     }
@@ -342,7 +336,7 @@ impl ResolvePass {
             wgpu::BindingResource::Sampler(&self.texels),
             wgpu::BindingResource::TextureView(self.pyramids.as_ref().map_or(&self.no_bounds, |made| &made.view)),
         ];
-        bindings::group(&self.device, "shadowfit resolve", layout, (0, &resources))
+        group(&self.device, LABEL, layout, &resources)
     }
 
     fn make_pipelines(&mut self, sun: &SunShadows, rays: &RayScene, shape: Shape) -> Result<(), ResolveError> {
@@ -356,7 +350,7 @@ impl ResolvePass {
         let Layouts { arguments, select, .. } = &self.layouts;
         let layouts = [sun.map().receiver_layout(), rays.layout(), arguments, select];
         let own = self.any_hit.as_ref();
-        let made = caught(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts, own));
+        let made = catch_errors(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts, own));
         self.pipelines = Some(made.map_err(|error| self.refused(&error))?);
         Ok(())
     }
@@ -369,7 +363,7 @@ impl Pipelines {
         [receiver, rays, arguments, select]: [&wgpu::BindGroupLayout; 4],
         any_hit: Option<&AnyHit>,
     ) -> Self {
-        let [layout, trace_layout] = [false, true].map(|read_only| layout(device, shape, read_only));
+        let [layout, trace_layout] = [false, true].map(|read_only| picture_layout(device, shape, read_only));
         let counts = any_hit.map(|any_hit| any_hit.wgsl.as_str());
         let own = any_hit.and_then(|any_hit| any_hit.layout.as_ref());
         let [found, traced] = [&layout, &trace_layout]
@@ -381,7 +375,9 @@ impl Pipelines {
             (found, shader::surfaces(descriptor, shape, counts), "find_surfaces"),
             (traced, shader::trace(descriptor, shape, counts), "trace"),
         ];
-        let make = |(layouts, wgsl, entry): &(Vec<_>, String, &str)| pipeline(device, layouts, (wgsl.clone(), entry));
+        let make = |(layouts, wgsl, entry): &(Vec<_>, String, &str)| {
+            compute_pipeline(device, LABEL, layouts, &wgsl_module(device, LABEL, wgsl.clone()), entry)
+        };
         let mut made = make_at_once(device, &steps, make).into_iter();
         let [classify, arguments, select, surfaces, trace] =
             steps.each_ref().map(|step| made.next().unwrap_or_else(|| make(step)));
@@ -430,26 +426,12 @@ fn no_bounds(any: &wgpu::TextureView) -> wgpu::TextureView {
 }
 
 /// Layout of a picture: its list is written, or read.
-fn layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGroupLayout {
-    let factors = wgpu::BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format: wgpu::TextureFormat::R32Float,
-        view_dimension: wgpu::TextureViewDimension::D2,
-    };
-    let depths = bindings::depths(wgpu::TextureViewDimension::D2, shape.samples > 1);
-    let list = bindings::buffer(wgpu::BufferBindingType::Storage { read_only });
+fn picture_layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGroupLayout {
+    let factors = written_texture(wgpu::TextureFormat::R32Float);
+    let depths = texture(wgpu::TextureSampleType::Depth, shape.samples > 1);
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
-    let types = [bindings::UNIFORM, depths, FLOATS, factors, list, sampler, BOUNDS];
-    bindings::layout(device, "shadowfit resolve", wgpu::ShaderStages::COMPUTE, (0, &types))
-}
-
-fn uniform(device: &wgpu::Device, bytes: usize) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("shadowfit resolve"),
-        size: bytes as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
+    let types = [UNIFORM, depths, FLOATS, factors, storage(read_only), sampler, BOUNDS];
+    layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &types)
 }
 
 /// Refuses textures that cannot be bound, and a picture that does not lie in them.

@@ -1,24 +1,22 @@
 //! The bounds of maps' depths for suns with a radius: of blocks of texels, and of blocks of these, renewed where a map was
 //! drawn.
 
+use shadowfit_gpu::bindings::{UNIFORM, group, layout, texture_array, written_texture};
+use shadowfit_gpu::{catch_errors, compute_pipeline, wgsl_module};
+
 use super::error::ResolveError;
 use super::group::FLOATS;
-use super::pipeline::pipeline;
 use super::shader::{BLOCK, pyramid};
-use crate::bindings;
-use crate::caught::caught;
 use crate::{MAX_MAPS, ShadowMapDescriptor, SunShadows};
 
+/// Name of the pyramids' resources, for debuggers.
+const LABEL: &str = "shadowfit pyramid";
 /// Threads along a side of a workgroup.
 const SQUARE: u32 = 8;
 /// Format of the bounds: nearest and farthest depth.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The bounds of maps.
-pub(super) const BOUNDS: wgpu::BindingType = wgpu::BindingType::Texture {
-    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-    view_dimension: wgpu::TextureViewDimension::D2Array,
-    multisampled: false,
-};
+pub(super) const BOUNDS: wgpu::BindingType = texture_array(wgpu::TextureSampleType::Float { filterable: false });
 /// Blocks along the longer side of the coarsest level: a region of more is looked at in these.
 const COARSEST: u32 = 4;
 
@@ -52,19 +50,17 @@ impl Pyramids {
         if let Some(present) = present.filter(|present| present.maps == *map.view() && present.descriptor == key) {
             return Ok(present);
         }
-        caught(device, || Self::new(device, sun, key)).map_err(|error| ResolveError::Device(error.to_string()))
+        catch_errors(device, || Self::new(device, sun, key)).map_err(|error| ResolveError::Device(error.to_string()))
     }
 
     fn new(device: &wgpu::Device, sun: &SunShadows, descriptor: ShadowMapDescriptor) -> Self {
         let (map, stages) = (sun.map(), wgpu::ShaderStages::COMPUTE);
-        let written = wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format: FORMAT,
-            view_dimension: wgpu::TextureViewDimension::D2,
+        let written = written_texture(FORMAT);
+        let of_blocks = layout(device, LABEL, stages, &[UNIFORM, written]);
+        let of_levels = layout(device, LABEL, stages, &[FLOATS, written]);
+        let pipeline = |layouts: &[_], wgsl, entry| {
+            compute_pipeline(device, LABEL, layouts, &wgsl_module(device, LABEL, wgsl), entry)
         };
-        let label = "shadowfit pyramid";
-        let of_blocks = bindings::layout(device, label, stages, (0, &[bindings::UNIFORM, written]));
-        let of_levels = bindings::layout(device, label, stages, (0, &[FLOATS, written]));
         let [blocks, levels] = pyramid(&descriptor);
         let texture = texture(device, &descriptor);
         let layers =
@@ -77,8 +73,8 @@ impl Pyramids {
             layers: layers.collect(),
             maps: map.view().clone(),
             view,
-            blocks: pipeline(device, &[Some(map.receiver_layout()), Some(&of_blocks)], (blocks, "gather_blocks")),
-            levels: pipeline(device, &[Some(&of_levels)], (levels, "join_blocks")),
+            blocks: pipeline(&[Some(map.receiver_layout()), Some(&of_blocks)], blocks, "gather_blocks"),
+            levels: pipeline(&[Some(&of_levels)], levels, "join_blocks"),
             made: [None; 2 * MAX_MAPS],
             descriptor,
         }
@@ -125,7 +121,7 @@ fn texture(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Tex
     // Mip levels round down: the last blocks of a level would not be part of the next one.
     let [width, height] = blocks.map(|side| side.next_multiple_of(1 << coarser));
     device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadowfit pyramid"),
+        label: Some(LABEL),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: descriptor.layers() },
         mip_level_count: coarser + 1,
         sample_count: 1,
@@ -156,7 +152,7 @@ impl Layer {
         };
         let views: Vec<wgpu::TextureView> = levels.clone().map(view).collect();
         let number = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("shadowfit pyramid"),
+            label: Some(LABEL),
             size: 16,
             usage: wgpu::BufferUsages::UNIFORM,
             mapped_at_creation: true,
@@ -168,11 +164,11 @@ impl Layer {
         let blocks = [number.as_entire_binding(), wgpu::BindingResource::TextureView(&views[0])];
         let join = |pair: &[wgpu::TextureView; 2]| {
             let resources = pair.each_ref().map(wgpu::BindingResource::TextureView);
-            bindings::group(device, "shadowfit pyramid", of_levels, (0, &resources))
+            group(device, LABEL, of_levels, &resources)
         };
         let size = |level: u32| [texture.width(), texture.height()].map(|side| side >> level);
         Self {
-            blocks: bindings::group(device, "shadowfit pyramid", of_blocks, (0, &blocks)),
+            blocks: group(device, LABEL, of_blocks, &blocks),
             levels: views.array_windows().map(join).collect(),
             sizes: levels.map(size).collect(),
         }

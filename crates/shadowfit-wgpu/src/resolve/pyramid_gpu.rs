@@ -3,6 +3,7 @@
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{Edges, FilterKind, MapFormat};
 use shadowfit::{Aabb, Boxes, DepthConvention, PerspectiveCamera, Technique};
+use shadowfit_gpu::bindings::storage;
 use shadowfit_testing::{TestGpu, test_gpu};
 
 use super::*;
@@ -124,12 +125,12 @@ impl Bench {
         };
         let values = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
         let read = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-        let types = [BOUNDS, bindings::buffer(wgpu::BufferBindingType::Storage { read_only: false })];
-        let layout = bindings::layout(&self.device, "read", wgpu::ShaderStages::COMPUTE, (0, &types));
+        let layout = layout(&self.device, "read", wgpu::ShaderStages::COMPUTE, &[BOUNDS, storage(false)]);
         let resources = [wgpu::BindingResource::TextureView(&pyramids.view), values.as_entire_binding()];
-        let group = bindings::group(&self.device, "read", &layout, (0, &resources));
+        let group = group(&self.device, "read", &layout, &resources);
         let wgsl = READ.replace("LAYER", &layer.to_string()).replace("LEVEL", &level.to_string());
-        let pipeline = pipeline(&self.device, &[Some(&layout)], (wgsl, "read"));
+        let module = wgsl_module(&self.device, "read", wgsl);
+        let pipeline = compute_pipeline(&self.device, "read", &[Some(&layout)], &module, "read");
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);

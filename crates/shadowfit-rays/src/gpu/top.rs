@@ -7,10 +7,10 @@ use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 
+use super::pool::Records;
 use crate::STACK;
 use crate::error::RayError;
 use crate::hierarchy::{self, WIDTH, around};
-use crate::pool::Records;
 use crate::records::{InstanceRecord, NO_ROOT, NodeRecord};
 
 /// A refitted hierarchy is built again when its cost has grown by more than this factor since it was built. The time of

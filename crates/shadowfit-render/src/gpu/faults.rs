@@ -134,20 +134,9 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// [`DeviceFault`]; what was made meanwhile is gone.
+    /// [`DeviceFault`]; the result is dropped.
     pub fn try_making<T>(&self, make: impl FnOnce() -> T) -> Result<T, DeviceFault> {
-        if cfg!(target_family = "wasm") {
-            return Ok(making(make));
-        }
-        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let made = making(make);
-        let [validation, memory] = [validation, memory].map(|scope| pollster::block_on(scope.pop()));
-        // What is used in vain after the memory was gone is no fault of its own.
-        match memory.or(validation) {
-            Some(error) => Err(error.into()),
-            None => Ok(made),
-        }
+        Ok(shadowfit_gpu::catch_errors(&self.device, || making(make))?)
     }
 }
 

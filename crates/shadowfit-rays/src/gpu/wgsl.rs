@@ -65,11 +65,11 @@ impl<'a> RayWgslOptions<'a> {
 /// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 4 of the group, which is
 /// [`RayScene::group`](crate::RayScene::group); no derivatives.
 pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
-    let rays = include_str!("shaders/rays.wgsl")
+    let rays = include_str!("../shaders/rays.wgsl")
         .replace("GROUP", &options.group.to_string())
         .replace("NODES_ON_STACK", &STACK.to_string());
-    let counts = options.counts.unwrap_or(include_str!("shaders/counts.wgsl"));
-    let text = [include_str!("shaders/types.wgsl"), &rays, include_str!("shaders/surface.wgsl"), counts].concat();
+    let counts = options.counts.unwrap_or(include_str!("../shaders/counts.wgsl"));
+    let text = [include_str!("../shaders/types.wgsl"), &rays, include_str!("../shaders/surface.wgsl"), counts].concat();
     if options.prefix == RayWgslOptions::PREFIX {
         return text;
     }
@@ -79,5 +79,5 @@ pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
 
 /// The WGSL of the passes of [`RayScene::refit`](crate::RayScene::refit).
 pub fn refit_wgsl() -> String {
-    [include_str!("shaders/types.wgsl"), include_str!("shaders/refit.wgsl")].concat()
+    [include_str!("../shaders/types.wgsl"), include_str!("../shaders/refit.wgsl")].concat()
 }

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
-use crate::placed::MeshId;
+use super::placed::MeshId;
 use crate::records::{InstanceRecord, NO_ROOT};
 
 /// Which triangles of an instance block the light, by the side that the light sees. The front is the side from which the

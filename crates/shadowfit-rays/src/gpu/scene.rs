@@ -4,19 +4,21 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
+use shadowfit_gpu::bindings;
 
+use super::deform::{Deforming, RefitPass, Refitted, VertexBuffer};
+use super::device::{BUFFERS, LABEL, caught, check};
+use super::instance::RayInstance;
+use super::placed::{MeshId, Meshes, Placed};
+use super::pool::{Pool, Records};
+use super::ranges::MeshRanges;
+use super::top::{Instance, TopLevel};
 use crate::STACK;
-use crate::cut_out::AlphaImage;
-use crate::deform::{Deforming, RefitPass, VertexBuffer};
-use crate::device::{BUFFERS, caught, check, group, layout, storage};
+use crate::cut_out::{AlphaImage, ImageId};
 use crate::error::RayError;
 use crate::hierarchy::WIDTH;
-use crate::instance::RayInstance;
 use crate::mesh::RayMesh;
-use crate::placed::{ImageId, MeshId, Meshes, Placed};
-use crate::pool::{Pool, Records};
 use crate::records::{CutOutRecord, InstanceRecord, NodeRecord, TriangleRecord};
-use crate::top::{Instance, TopLevel};
 
 /// The meshes of an engine and their instances of the frame, for shaders with [`rays_wgsl`](crate::rays_wgsl).
 ///
@@ -129,12 +131,12 @@ impl RayScene {
         let placed = self.place(mesh)?;
         let made = caught(&self.device, || {
             self.refit.get_or_insert_with(|| RefitPass::new(&self.device));
-            Deforming::new(&self.device, &self.queue, mesh, &placed)
+            Deforming::new(&self.device, &self.queue, mesh, &placed.ranges)
         });
         match made {
             Ok(deforming) => Ok(self.meshes.add(Placed { bounds, deforming: Some(deforming), ..placed })),
             Err(error) => {
-                self.give(&placed);
+                self.give(&placed.ranges);
                 Err(error)
             }
         }
@@ -154,18 +156,16 @@ impl RayScene {
         }
         let before = self.meshes.get(id).ok_or(RayError::NoMesh)?;
         let bounds = mesh.bounds().unwrap_or_default();
-        let placed = if before.has_room_for(mesh) {
-            let placed = Placed { stack, bounds, deforming: None, ..before.ranges() };
-            self.write(mesh, &placed);
-            placed
+        let before = before.ranges.clone();
+        let placed = if before.fit(mesh) {
+            self.write(mesh, &before);
+            Placed { ranges: before, stack, bounds, deforming: None }
         } else {
             let placed = self.place(mesh)?;
-            if let Some(old) = self.meshes.get(id).map(Placed::ranges) {
-                self.give(&old);
-            }
+            self.give(&before);
             placed
         };
-        let root = placed.root();
+        let root = placed.ranges.root();
         if let Some(stored) = self.meshes.get_mut(id) {
             *stored = placed;
         }
@@ -185,7 +185,7 @@ impl RayScene {
     /// [`RayError::NoMesh`] if it is not in the scene.
     pub fn remove_mesh(&mut self, mesh: MeshId) -> Result<(), RayError> {
         let placed = self.meshes.remove(mesh).ok_or(RayError::NoMesh)?;
-        self.give(&placed);
+        self.give(&placed.ranges);
         for index in 0..self.instances.len() {
             if self.instances[index].mesh == mesh {
                 // Differs from whatever is set next.
@@ -266,8 +266,8 @@ impl RayScene {
         let (Some(deforming), Some(refit)) = (&mut placed.deforming, &self.refit) else {
             return Err(RayError::NotDeforming);
         };
-        let scene = [&self.triangles, &self.nodes].map(|pool| pool.records.buffer());
-        refit.record(&self.device, &self.queue, encoder, deforming, (scene, vertices))
+        let scene = Refitted { triangles: self.triangles.records.buffer(), nodes: self.nodes.records.buffer() };
+        refit.record(&self.device, &self.queue, encoder, deforming, &scene, vertices)
     }
 
     /// Layout of the bind group: five storage buffers that compute and fragment shaders read.
@@ -298,12 +298,12 @@ impl RayScene {
 
     /// Number of triangles of all meshes, each counted once.
     pub fn triangles(&self) -> u64 {
-        self.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum()
+        self.meshes.iter().map(|mesh| mesh.ranges.triangles.len() as u64).sum()
     }
 
     /// Where a mesh's triangles lie among those of the scene, in leaf order; `None` if it is not in the scene.
     pub fn slots(&self, mesh: MeshId) -> Option<Range<u32>> {
-        self.meshes.get(mesh).map(|mesh| mesh.triangles.clone())
+        self.meshes.get(mesh).map(|mesh| mesh.ranges.triangles.clone())
     }
 
     /// Bytes on the GPU.
@@ -341,7 +341,8 @@ impl RayScene {
         for index in &self.changed {
             let index = *index as usize;
             let instance = &instances[index];
-            let placed = self.meshes.get(instance.mesh).and_then(|mesh| instance.placed(mesh.root(), mesh.bounds));
+            let placed =
+                self.meshes.get(instance.mesh).and_then(|mesh| instance.placed(mesh.ranges.root(), mesh.bounds));
             self.top.set(index, placed);
             self.instances[index] = *instance;
         }
@@ -358,7 +359,7 @@ impl RayScene {
             .map(|(index, instance)| {
                 let mesh = self.meshes.get(instance.mesh).ok_or(RayError::NoMeshOfInstance(index))?;
                 mesh_stack = mesh_stack.max(mesh.stack);
-                Ok(instance.placed(mesh.root(), mesh.bounds))
+                Ok(instance.placed(mesh.ranges.root(), mesh.bounds))
             })
             .collect();
         let placed = placed?;
@@ -391,53 +392,46 @@ impl RayScene {
         if stack > STACK {
             return Err(RayError::TooDeep { top: 0, mesh: stack, limit: STACK });
         }
-        let mut placed = Placed {
-            nodes: 0..0,
-            triangles: 0..0,
-            cut_outs: 0..0,
-            stack,
-            bounds: mesh.bounds().unwrap_or_default(),
-            deforming: None,
-        };
-        let taken = self.take(mesh, &mut placed).and_then(|()| self.rebind());
+        let mut ranges = MeshRanges::default();
+        let taken = self.take(mesh, &mut ranges).and_then(|()| self.rebind());
         if let Err(error) = taken {
-            self.give(&placed);
+            self.give(&ranges);
             // The buffers that have grown already are the ones to read.
             self.rebind()?;
             return Err(error);
         }
-        self.write(mesh, &placed);
-        Ok(placed)
+        self.write(mesh, &ranges);
+        Ok(Placed { ranges, stack, bounds: mesh.bounds().unwrap_or_default(), deforming: None })
     }
 
     /// Uploads a mesh where it has its room.
-    fn write(&self, mesh: &RayMesh, placed: &Placed) {
+    fn write(&self, mesh: &RayMesh, ranges: &MeshRanges) {
         let nodes = mesh.hierarchy.nodes.iter().map(|node| {
-            let base = if node.count > 0 { placed.triangles.start } else { placed.nodes.start };
+            let base = if node.count > 0 { ranges.triangles.start } else { ranges.nodes.start };
             if node.is_none() { *node } else { NodeRecord { first: base + node.first, ..*node } }
         });
         let triangles = mesh.triangles.iter().map(|triangle| {
-            let base = if triangle.cut_out > 0 { placed.cut_outs.start } else { 0 };
+            let base = if triangle.cut_out > 0 { ranges.cut_outs.start } else { 0 };
             TriangleRecord { cut_out: base + triangle.cut_out, ..*triangle }
         });
-        self.nodes.records.write_all(placed.nodes.start, nodes);
-        self.triangles.records.write_all(placed.triangles.start, triangles);
-        self.cut_outs.records.write_all(placed.cut_outs.start, mesh.cut_outs.iter().copied());
+        self.nodes.records.write_all(ranges.nodes.start, nodes);
+        self.triangles.records.write_all(ranges.triangles.start, triangles);
+        self.cut_outs.records.write_all(ranges.cut_outs.start, mesh.cut_outs.iter().copied());
     }
 
     /// Takes room in the three buffers, as far as there is.
-    fn take(&mut self, mesh: &RayMesh, placed: &mut Placed) -> Result<(), RayError> {
-        placed.nodes = self.nodes.take(mesh.hierarchy.nodes.len())?;
-        placed.triangles = self.triangles.take(mesh.triangles.len())?;
-        placed.cut_outs = self.cut_outs.take(mesh.cut_outs.len())?;
+    fn take(&mut self, mesh: &RayMesh, ranges: &mut MeshRanges) -> Result<(), RayError> {
+        ranges.nodes = self.nodes.take(mesh.hierarchy.nodes.len())?;
+        ranges.triangles = self.triangles.take(mesh.triangles.len())?;
+        ranges.cut_outs = self.cut_outs.take(mesh.cut_outs.len())?;
         Ok(())
     }
 
     /// Gives the room of a mesh back.
-    fn give(&mut self, placed: &Placed) {
-        self.nodes.give(placed.nodes.clone());
-        self.triangles.give(placed.triangles.clone());
-        self.cut_outs.give(placed.cut_outs.clone());
+    fn give(&mut self, ranges: &MeshRanges) {
+        self.nodes.give(ranges.nodes.clone());
+        self.triangles.give(ranges.triangles.clone());
+        self.cut_outs.give(ranges.cut_outs.clone());
     }
 
     /// Makes the bind group again if a buffer is another one.
@@ -455,9 +449,10 @@ impl RayScene {
 
 /// Layout of [`RayScene::group`], for pipelines that are made before there is a scene.
 pub fn rays_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    layout(device, wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT, &[storage(true); BUFFERS])
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    bindings::layout(device, LABEL, stages, &[bindings::storage(true); BUFFERS])
 }
 
 fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffers: &[wgpu::Buffer; BUFFERS]) -> wgpu::BindGroup {
-    group(device, layout, &buffers.each_ref().map(wgpu::Buffer::as_entire_binding))
+    bindings::group(device, LABEL, layout, &buffers.each_ref().map(wgpu::Buffer::as_entire_binding))
 }

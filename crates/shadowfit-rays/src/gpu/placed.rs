@@ -1,13 +1,9 @@
 //! The meshes of a scene: where each lies in the buffers, by numbers that are never used twice.
 
-use core::ops::Range;
-
 use glam::Vec3;
 
-use crate::deform::Deforming;
-use crate::hierarchy::WIDTH;
-use crate::mesh::RayMesh;
-use crate::records::{NO_ROOT, packed};
+use super::deform::Deforming;
+use super::ranges::MeshRanges;
 
 /// A mesh of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,49 +17,15 @@ impl MeshId {
     pub(crate) const NONE: Self = Self { place: u32::MAX, generation: u32::MAX };
 }
 
-/// An image of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ImageId {
-    /// Where it begins among the words of all images.
-    pub(crate) first: u32,
-    pub(crate) generation: u32,
-}
-
-/// Where a mesh lies.
+/// A mesh in the buffers of a scene.
 #[derive(Debug)]
 pub(crate) struct Placed {
-    pub(crate) nodes: Range<u32>,
-    pub(crate) triangles: Range<u32>,
-    pub(crate) cut_outs: Range<u32>,
+    pub(crate) ranges: MeshRanges,
     /// Stack that a ray through it needs.
     pub(crate) stack: usize,
     /// The box around it, in its own space.
     pub(crate) bounds: [Vec3; 2],
     pub(crate) deforming: Option<Deforming>,
-}
-
-impl Placed {
-    /// Its root, packed.
-    pub(crate) fn root(&self) -> u32 {
-        match self.nodes.len() {
-            0 => NO_ROOT,
-            // A leaf.
-            WIDTH => packed(self.triangles.len() as u32, self.triangles.start),
-            _ => packed(0, self.nodes.start + WIDTH as u32),
-        }
-    }
-
-    /// Whether a mesh takes as much room.
-    pub(crate) fn has_room_for(&self, mesh: &RayMesh) -> bool {
-        [self.nodes.len(), self.triangles.len(), self.cut_outs.len()]
-            == [mesh.hierarchy.nodes.len(), mesh.triangles.len(), mesh.cut_outs.len()]
-    }
-
-    /// The same room, of a mesh that keeps its shape.
-    pub(crate) fn ranges(&self) -> Self {
-        let [nodes, triangles, cut_outs] = [&self.nodes, &self.triangles, &self.cut_outs].map(Clone::clone);
-        Self { nodes, triangles, cut_outs, stack: self.stack, bounds: self.bounds, deforming: None }
-    }
 }
 
 /// All meshes.

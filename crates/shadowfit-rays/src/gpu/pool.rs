@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::device::{buffer_limit, caught};
+use super::device::{buffer_limit, caught};
 use crate::error::RayError;
 
 /// Records of a buffer at first: enough for small scenes, and less than a page.

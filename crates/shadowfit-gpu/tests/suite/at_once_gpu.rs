@@ -4,9 +4,8 @@ use core::future::Future;
 use core::pin::pin;
 use core::task::{Context, Poll, Waker};
 
-use shadowfit_rays::make_at_once;
-
-use crate::device::gpu;
+use shadowfit_gpu::make_at_once;
+use shadowfit_testing::test_gpu;
 
 /// Several rounds of threads on most machines.
 const COUNT: u64 = 65;
@@ -17,7 +16,7 @@ fn buffer(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgpu::
 
 #[test]
 fn gpu_what_is_made_at_once_comes_in_the_order_of_its_kinds() {
-    let device = gpu().device;
+    let device = test_gpu().device;
     let sizes: Vec<u64> = (1..=COUNT).map(|size| size * 4).collect();
     let made = make_at_once(&device, &sizes, |size| buffer(&device, *size, wgpu::BufferUsages::STORAGE));
     assert_eq!(made.iter().map(wgpu::Buffer::size).collect::<Vec<_>>(), sizes);
@@ -26,7 +25,7 @@ fn gpu_what_is_made_at_once_comes_in_the_order_of_its_kinds() {
 
 #[test]
 fn gpu_an_error_of_one_kind_reaches_the_scope_of_the_thread_that_asks() {
-    let device = gpu().device;
+    let device = test_gpu().device;
     let usages = [wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::STORAGE];
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let made = make_at_once(&device, &usages, |usage| buffer(&device, 4, *usage));

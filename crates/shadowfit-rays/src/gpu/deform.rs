@@ -1,12 +1,15 @@
 //! Meshes that are skinned or morphed: passes that read their positions from the engine's vertex buffer, and fit their
 //! hierarchy to them.
 
-use crate::device::{WORKGROUP_THREADS, group, layout, storage};
+use shadowfit_gpu::bindings::{group, layout, storage};
+use shadowfit_gpu::{compute_pipeline, wgsl_module};
+
+use super::device::{LABEL, WORKGROUP_THREADS};
+use super::ranges::MeshRanges;
+use super::wgsl::refit_wgsl;
 use crate::error::{RayError, VertexBufferLack};
 use crate::mesh::RayMesh;
-use crate::placed::Placed;
 use crate::records::{RefitUniform, TriangleRecord};
-use crate::wgsl::refit_wgsl;
 
 /// Uniforms of dispatches begin at multiples of this, in bytes: the greatest alignment that WebGPU allows a device to
 /// ask for.
@@ -45,11 +48,24 @@ pub(crate) struct Deforming {
     bound: Option<Bound>,
 }
 
+/// The buffers of a scene that a refit writes.
+pub(crate) struct Refitted<'a> {
+    pub(crate) triangles: &'a wgpu::Buffer,
+    pub(crate) nodes: &'a wgpu::Buffer,
+}
+
+/// The part of a vertex buffer that is bound, in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Window {
+    offset: u64,
+    size: u64,
+}
+
 /// The bind group of the last refit, and what it binds.
 #[derive(Debug)]
 struct Bound {
     buffers: [wgpu::Buffer; 3],
-    window: [u64; 2],
+    window: Window,
     group: wgpu::BindGroup,
 }
 
@@ -61,43 +77,27 @@ impl RefitPass {
             min_binding_size: None,
         };
         let types = [uniform, storage(true), storage(true), storage(false), storage(false)];
-        let layout = layout(device, wgpu::ShaderStages::COMPUTE, &types);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("shadowfit rays refit"),
-            source: wgpu::ShaderSource::Wgsl(refit_wgsl().into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("shadowfit rays refit"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = |entry| {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&pipeline_layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        };
+        let layout = layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &types);
+        let module = wgsl_module(device, "shadowfit rays refit", refit_wgsl());
+        let pipeline = |entry| compute_pipeline(device, entry, &[Some(&layout)], &module, entry);
         Self { triangles: pipeline("move_triangles"), level: pipeline("fit_level"), layout }
     }
 
-    /// Records the refit of a mesh, whose triangles and nodes are in these buffers.
+    /// Records the refit of a mesh of a scene.
     pub(crate) fn record(
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         encoder: &mut wgpu::CommandEncoder,
         deforming: &mut Deforming,
-        (scene, vertices): ([&wgpu::Buffer; 2], &VertexBuffer<'_>),
+        scene: &Refitted<'_>,
+        vertices: &VertexBuffer<'_>,
     ) -> Result<(), RayError> {
         let limits = device.limits();
         let window = window(vertices, deforming.vertices, &limits)?;
-        deforming.bind(device, &self.layout, scene, (vertices.buffer, window));
+        deforming.bind(device, &self.layout, scene, vertices.buffer, window);
         let step = &mut deforming.steps[0];
-        let read = ((vertices.offset - window[0]) as u32 / 4, vertices.stride / 4);
+        let read = ((vertices.offset - window.offset) as u32 / 4, vertices.stride / 4);
         if (step.offset, step.stride) != read {
             (step.offset, step.stride) = read;
             queue.write_buffer(&deforming.uniforms, 0, bytemuck::bytes_of(step));
@@ -118,13 +118,13 @@ impl RefitPass {
 }
 
 impl Deforming {
-    /// What a mesh that lies in a scene will need.
-    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &RayMesh, placed: &Placed) -> Self {
+    /// Makes the buffers for the refits of a mesh in a scene.
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &RayMesh, ranges: &MeshRanges) -> Self {
         let step = |first: u32, count: u32| RefitUniform { first, count, ..RefitUniform::default() };
-        let ends = mesh.hierarchy.levels.iter().skip(1).copied().chain([placed.nodes.len() as u32]);
+        let ends = mesh.hierarchy.levels.iter().skip(1).copied().chain([ranges.nodes.len() as u32]);
         let levels = mesh.hierarchy.levels.iter().zip(ends);
-        let mut steps = vec![step(placed.triangles.start, placed.triangles.len() as u32)];
-        steps.extend(levels.map(|(first, end)| step(placed.nodes.start + first, end - first)));
+        let mut steps = vec![step(ranges.triangles.start, ranges.triangles.len() as u32)];
+        steps.extend(levels.map(|(first, end)| step(ranges.nodes.start + first, end - first)));
         steps[1..].reverse();
         let vertices_of = |triangle: &TriangleRecord| mesh.vertices_of(triangle.index);
         let mut indices: Vec<[u32; 3]> = mesh.triangles.iter().map(vertices_of).collect();
@@ -140,7 +140,7 @@ impl Deforming {
         let bytes = bytemuck::cast_slice(&indices);
         let index_buffer = buffer(device, "refit indices", bytes.len() as u64, wgpu::BufferUsages::STORAGE);
         queue.write_buffer(&index_buffer, 0, bytes);
-        Self { vertices: mesh.vertices() as u64, indices: index_buffer, uniforms, steps, bound: None }
+        Self { vertices: mesh.vertices as u64, indices: index_buffer, uniforms, steps, bound: None }
     }
 
     /// Bytes of its own buffers.
@@ -153,11 +153,12 @@ impl Deforming {
         &mut self,
         device: &wgpu::Device,
         layout: &wgpu::BindGroupLayout,
-        [triangles, nodes]: [&wgpu::Buffer; 2],
-        (vertices, window): (&wgpu::Buffer, [u64; 2]),
+        scene: &Refitted<'_>,
+        vertices: &wgpu::Buffer,
+        window: Window,
     ) {
-        let is_same =
-            |bound: &Bound| bound.window == window && bound.buffers.each_ref() == [vertices, triangles, nodes];
+        let buffers = [vertices, scene.triangles, scene.nodes];
+        let is_same = |bound: &Bound| bound.window == window && bound.buffers.each_ref() == buffers;
         if self.bound.as_ref().is_some_and(is_same) {
             return;
         }
@@ -166,18 +167,18 @@ impl Deforming {
         };
         let resources = [
             part(&self.uniforms, 0, size_of::<RefitUniform>() as u64),
-            part(vertices, window[0], window[1]),
+            part(vertices, window.offset, window.size),
             self.indices.as_entire_binding(),
-            triangles.as_entire_binding(),
-            nodes.as_entire_binding(),
+            scene.triangles.as_entire_binding(),
+            scene.nodes.as_entire_binding(),
         ];
-        let group = group(device, layout, &resources);
-        self.bound = Some(Bound { buffers: [vertices, triangles, nodes].map(Clone::clone), window, group });
+        let group = group(device, LABEL, layout, &resources);
+        self.bound = Some(Bound { buffers: buffers.map(Clone::clone), window, group });
     }
 }
 
-/// Offset and size of the part of a vertex buffer that is bound, in bytes.
-fn window(vertices: &VertexBuffer<'_>, count: u64, limits: &wgpu::Limits) -> Result<[u64; 2], RayError> {
+/// Returns the part of a vertex buffer to bind for a number of vertices.
+fn window(vertices: &VertexBuffer<'_>, count: u64, limits: &wgpu::Limits) -> Result<Window, RayError> {
     let VertexBuffer { buffer, offset, stride } = *vertices;
     let lacks = |lack| Err(RayError::Vertices(lack));
     if !buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
@@ -197,7 +198,7 @@ fn window(vertices: &VertexBuffer<'_>, count: u64, limits: &wgpu::Limits) -> Res
     if needed - first > limit {
         return Err(RayError::TooLarge { what: "vertices of a deforming mesh", bytes: needed - first, limit });
     }
-    Ok([first, needed - first])
+    Ok(Window { offset: first, size: needed - first })
 }
 
 /// Columns and rows of workgroups for a number of threads, since one row of them may be too short.

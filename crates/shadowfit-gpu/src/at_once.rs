@@ -4,7 +4,7 @@
 use std::thread;
 
 #[cfg(not(target_family = "wasm"))]
-use crate::device::caught;
+use crate::errors::catch_errors;
 
 /// Stack of a thread that compiles, in bytes: as large as a main thread's, since compilers of shaders recurse.
 #[cfg(not(target_family = "wasm"))]
@@ -34,7 +34,7 @@ where
             return kinds.iter().map(make).collect();
         }
         let make = &make;
-        let on_thread = |kind| move || caught(device, || make(kind)).ok();
+        let on_thread = |kind| move || catch_errors(device, || make(kind)).ok();
         let mut made = Vec::new();
         for some in kinds.chunks(cores) {
             let found: Vec<Option<T>> = thread::scope(|scope| {
