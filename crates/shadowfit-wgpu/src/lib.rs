@@ -83,7 +83,6 @@
 // Rooms, each of which uses those above it: `descriptor` says how maps are, `wgsl` writes the text of the look-ups, `maps`
 // holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `resolve` makes its
 // edges exact.
-mod cached_maps;
 pub mod demand;
 mod descriptor;
 mod maps;
@@ -93,10 +92,10 @@ pub mod resolve;
 mod sun;
 mod wgsl;
 
-pub use cached_maps::{ShadowPass, ShadowPiece};
 pub use descriptor::{MapTextureError, RESOLUTIONS, ShadowMapDescriptor, ShadowMapError};
 pub use maps::{
-    CasterUniform, FadingUniform, MapTexture, MapUniform, MapView, ReceiverUniform, ShadowMap, layers_wgsl,
+    CasterUniform, FadingUniform, MapTexture, MapUniform, MapView, ReceiverUniform, ShadowMap, ShadowPass, ShadowPiece,
+    layers_wgsl,
 };
 pub use shadowfit::cache::{Casters, Culling, MapUpdate, PassContent, UpdateContent, UpdateSchedule};
 pub use shadowfit::settings::MAX_MAPS;

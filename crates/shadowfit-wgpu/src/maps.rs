@@ -1,11 +1,13 @@
 //! The maps on the GPU: textures, uniforms, bind groups, passes, and the layers of static casters beside them.
 
+pub(crate) mod cached_maps;
 pub(crate) mod shadow_map;
 pub(crate) mod static_layers;
 pub(crate) mod texture;
 pub(crate) mod uniform;
 pub(crate) mod view;
 
+pub use cached_maps::{ShadowPass, ShadowPiece};
 pub use shadow_map::ShadowMap;
 pub use static_layers::layers_wgsl;
 pub use texture::MapTexture;

@@ -17,8 +17,8 @@ mod tools;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::{Aabb, DepthConvention, FittedMap, Seen, ShadowFitter, ViewFrustum};
 
-use crate::cached_maps::CachedMaps;
 use crate::demand::{DemandPass, DemandPassError, DemandView, supported};
+use crate::maps::cached_maps::CachedMaps;
 use crate::{
     Culling, CullingPiece, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, ShadowPiece, UpdateSchedule,
 };
@@ -330,7 +330,7 @@ impl SunShadows {
         frame: &SunFrame<'_>,
         maps: &[FittedMap],
     ) -> Result<(), ShadowMapError> {
-        self.maps.update(queue, frame, maps)?;
+        self.maps.update(queue, &frame.cache_frame(maps), &frame.map_view())?;
         self.last = frame.views.first().map(|view| LastFrame { view: *view, direction: frame.direction });
         Ok(())
     }

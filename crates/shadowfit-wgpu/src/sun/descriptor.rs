@@ -4,7 +4,7 @@ use shadowfit::{ShadowFitter, Technique};
 
 use super::other_set::OtherSet;
 use super::{Demand, SunShadows};
-use crate::cached_maps::CachedMaps;
+use crate::maps::cached_maps::CachedMaps;
 use crate::{MapTexture, ShadowMapDescriptor, ShadowMapError};
 
 /// The description of a sun's shadows, for [`SunShadows::new`].

@@ -1,8 +1,9 @@
 //! What an engine tells about a frame: views, light, boxes and casters.
 
 use shadowfit::NormalCone;
+use shadowfit::cache::{CacheFrame, InView};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{BoxTree, Boxes, FitError, FitInput, ViewFrustum};
+use shadowfit::{BoxTree, Boxes, FitError, FitInput, FittedMap, ViewFrustum};
 
 use crate::{Casters, MapView};
 
@@ -104,6 +105,19 @@ impl<'a> SunFrame<'a> {
         }
     }
 
+    /// The input of the cache, with the maps to draw.
+    pub(crate) fn cache_frame(&self, maps: &'a [FittedMap]) -> CacheFrame<'a> {
+        CacheFrame {
+            maps,
+            casters: self.casters,
+            standing: self.standing,
+            direction: self.direction,
+            reader: self.map_view().reader(),
+            in_view: InView::Views(self.views),
+        }
+    }
+
+    /// The view from which the maps are read.
     pub(crate) fn map_view(&self) -> MapView {
         let Self { origin, eye, forward, number, .. } = *self;
         MapView { origin, eye, forward, frame: number }

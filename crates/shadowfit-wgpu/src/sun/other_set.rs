@@ -4,7 +4,7 @@ use shadowfit::{FittedMap, ShadowFitter};
 
 use super::steps::{Stage, Step};
 use super::{SunShadows, SunShadowsError};
-use crate::cached_maps::CachedMaps;
+use crate::maps::cached_maps::CachedMaps;
 use crate::{ShadowPass, SunFrame};
 
 /// A set of maps with the fitter that places them.
@@ -63,10 +63,10 @@ impl SunShadows {
             Stage::Drawing { drawn, .. } => {
                 // A map more than in the frame before; the others are kept.
                 let drawn: &[FittedMap] = &fitted[..drawn.min(fitted.len())];
-                other.maps.update(queue, &frame, drawn)?;
+                other.maps.update(queue, &frame.cache_frame(drawn), &frame.map_view())?;
             }
             Stage::Fading { share, .. } => {
-                other.maps.update(queue, &frame, &fitted)?;
+                other.maps.update(queue, &frame.cache_frame(&fitted), &frame.map_view())?;
                 self.maps.fade_from(queue, &other.maps, &frame.map_view(), share);
             }
             Stage::Held => {}

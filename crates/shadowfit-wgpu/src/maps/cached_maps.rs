@@ -4,14 +4,13 @@ mod passes;
 
 #[cfg(feature = "rays")]
 use shadowfit::cache::StaleMap;
-use shadowfit::cache::{CacheFrame, CacheSettings, InView, MapCache};
+use shadowfit::cache::{CacheFrame, CacheSettings, MapCache};
 use shadowfit::glam::DVec3;
 use shadowfit::{Aabb, FittedMap};
 
-use crate::maps::static_layers::Layers;
+use super::static_layers::Layers;
 use crate::{
-    Casters, Culling, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame,
-    UpdateSchedule,
+    Casters, Culling, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, UpdateSchedule,
 };
 
 pub use passes::{ShadowPass, ShadowPiece};
@@ -143,41 +142,32 @@ impl CachedMaps {
         self.is_off = true;
     }
 
-    /// Finds which parts of a frame's maps must be drawn, and writes the uniforms. [`Self::passes`] then has the passes
-    /// of this frame; they count as drawn from the next call on.
+    /// Finds which parts of a frame's maps must be drawn, and writes the uniforms for shaders that read them from `view`.
+    /// [`Self::pass`] then returns the passes of this frame. They count as drawn from the next call on.
     ///
     /// Maps with an [anchor](FittedMap::anchor) can be kept; others are redrawn in each frame.
     pub(crate) fn update(
         &mut self,
         queue: &wgpu::Queue,
-        frame: &SunFrame<'_>,
-        fitted: &[FittedMap],
+        frame: &CacheFrame<'_>,
+        view: &MapView,
     ) -> Result<(), ShadowMapError> {
         self.skip();
-        let view = frame.map_view();
-        crate::maps::view::check(self.map.descriptor(), &view, fitted)?;
+        super::view::check(self.map.descriptor(), view, frame.maps)?;
         // 1. The passes.
         self.cache.settings = self.cache_settings();
-        let cached = CacheFrame {
-            maps: fitted,
-            casters: frame.casters,
-            standing: frame.standing,
-            direction: frame.direction,
-            reader: view.reader(),
-            in_view: InView::Views(frame.views),
-        };
-        self.cache.update(&cached).map_err(ShadowMapError::View)?;
+        self.cache.update(frame).map_err(ShadowMapError::View)?;
         if self.cache.has_static_layers() && self.layers.split(&self.device, &self.map).is_err() {
             // Without memory for separate layers, static casters are drawn together with moving ones.
             (self.caching, self.cache) = (false, MapCache::default());
-            return self.update(queue, frame, fitted);
+            return self.update(queue, frame, view);
         }
         #[cfg(feature = "rays")]
         self.cache.find_stale(&frame.casters, &mut self.stale);
         #[cfg(feature = "rays")]
         self.cache.plan().passes.iter().for_each(|pass| self.drawn[pass.map] += 1);
         // 2. The uniforms of the shaders.
-        self.write_uniforms(queue, &view)?;
+        self.write_uniforms(queue, view)?;
         self.is_off = false;
         self.layers.prepare(&self.device, queue, self.cache.plan());
         Ok(())
