@@ -118,8 +118,8 @@ impl Drawing<'_> {
         self.whole_map(content, &over, is_over) - moving.len()
     }
 
-    /// Adds a pass that clears the shown layer. It draws the casters of the list that `is_over` chooses by number and mask,
-    /// and the casters of the tree in a volume. Returns their number.
+    /// Adds a pass that clears the shown layer. It draws the casters of the list that `is_over` chooses by number and
+    /// mask, and the casters of the tree in a volume. Returns their number.
     fn whole_map(&mut self, content: PassContent, standing: &CasterVolume, is_over: impl Fn(u32, u8) -> bool) -> usize {
         let (piece, first) = (self.plan.pieces.len(), self.plan.casters.len());
         let over = (0..).zip(&self.buffers.masks).filter(|(number, mask)| is_over(*number, **mask));
@@ -131,7 +131,8 @@ impl Drawing<'_> {
         piece.casters.len() + piece.standing.len()
     }
 
-    /// Adds a piece with the planned casters from this one on, and the casters of the tree that have a bit in their masks.
+    /// Adds a piece with the planned casters from this one on, and the casters of the tree that have a bit in their
+    /// masks.
     fn piece(&mut self, part: StoredRect, first: usize, bit: usize) {
         let (plan, order) = (&mut *self.plan, &mut self.buffers.order);
         let standing = plan.standing.len();
@@ -185,7 +186,8 @@ impl Drawing<'_> {
         is_split
     }
 
-    /// Adds a pass with the static casters of some parts, unless there are none. It `clears` the whole layer, or the parts.
+    /// Adds a pass with the static casters of some parts, unless there are none. It `clears` the whole layer, or the
+    /// parts.
     fn static_casters(&mut self, parts: &[StoredRect], layer: Layer, clears: bool) {
         if parts.is_empty() {
             return;

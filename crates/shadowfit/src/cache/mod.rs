@@ -1,7 +1,7 @@
 //! Caching: the parts of the maps that can be kept from frame to frame, and the passes that draw the rest.
 //!
 //! A map on the world's grid moves by whole texels, so its static casters are drawn once. [`MapCache`] compares a frame's
-//! maps and casters with those that were drawn, and lists the passes, each with rectangles and casters. It needs no
+//! maps and casters with the drawn ones, and lists the passes, each with rectangles and casters. It needs no
 //! graphics API: an engine carries the passes out with its own, as `shadowfit-wgpu` does with wgpu.
 //!
 //! ```text
@@ -149,8 +149,8 @@ impl MapCache {
     /// # Errors
     ///
     /// Those of [`caster_volumes`](crate::culling::caster_volumes), for views that make no sense: [`FitError::NoView`]
-    /// without a view, where passes depend on it. There are no passes then, and the maps to read are those of the frame
-    /// before.
+    /// without a view, where passes depend on it. Then the frame has no passes, and shaders go on reading the maps of the
+    /// frame before.
     pub fn update(&mut self, frame: &CacheFrame<'_>) -> Result<&FramePlan, FitError> {
         self.skip();
         // 1. Where static casters changed.
@@ -177,8 +177,8 @@ impl MapCache {
         self.plan.clear_passes();
     }
 
-    /// Leaves the frame without passes and without maps to read, such as for a light that gives nothing. What the layers
-    /// hold stays.
+    /// Leaves the frame without passes and without maps to read, such as for a light that is off. The layers keep their
+    /// content.
     pub fn turn_off(&mut self) {
         self.skip();
         self.plan.maps.clear();

@@ -1,4 +1,4 @@
-//! The passes of a frame, as data: which rectangles are drawn, with which casters.
+//! The passes of a frame, as data: rectangles, and the casters of each.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -13,7 +13,7 @@ use crate::{Aabb, CasterVolume, FittedMap};
 pub enum Layer {
     /// The layer that shaders read.
     Shown,
-    /// The layer of the static casters alone, from which the shown layer is restored. It is needed from the first moving
+    /// The layer of the static casters alone. Passes restore the shown layer from it. It is needed from the first moving
     /// caster on; see [`MapCache::has_static_layers`](super::MapCache::has_static_layers).
     Static,
 }
@@ -29,11 +29,10 @@ pub enum PassContent {
     Moving,
 }
 
-/// What a frame reuses of a map.
+/// The part of a map that a frame reuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapReuse {
-    /// All of it, with the matrices of the frame in which it was drawn: the [schedule](super::UpdateSchedule) draws it
-    /// later.
+    /// All of it, with the matrices of an earlier frame: the [schedule](super::UpdateSchedule) draws it later.
     Waits,
     /// All texels that were in it before, unless a static caster changed there. The texel at `t` was at `t + shift`
     /// before, right and down.
@@ -92,10 +91,10 @@ pub struct FramePlan {
     /// The maps to read, with the texel offset [`FittedMap::wrap`]. A map that waits is the one that was drawn last,
     /// relative to the origin of the fitted one.
     pub maps: Vec<FittedMap>,
-    /// What is reused of each map.
+    /// The reuse of each map.
     pub reuse: Vec<MapReuse>,
     /// The casters of each map that can shadow something in view, where the passes depend on that; otherwise all that the
-    /// map can store. Each volume has an origin of its own.
+    /// map can store. The origins of the volumes differ.
     pub in_view: Vec<CasterVolume>,
     /// The passes, in the order in which they must be drawn. A map that is kept unchanged has none.
     pub passes: Vec<PassPlan>,

@@ -1,4 +1,4 @@
-//! The content of a map's layers, and what a frame makes of it.
+//! The content of a map's layers, and its transitions from frame to frame.
 
 use alloc::vec::Vec;
 use core::mem::take;
@@ -44,7 +44,7 @@ pub(super) enum Layers {
     Split(Drawn),
 }
 
-/// A map as it was drawn, and what has changed since.
+/// A map as it was drawn, and the changes since.
 #[derive(Debug)]
 pub(super) struct Drawn {
     /// The map, with its texel offset.
@@ -71,12 +71,12 @@ pub(super) struct MapState {
     pub(super) over: usize,
 }
 
-/// What a frame does with the layers of a map.
+/// The change of a map's layers in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Transition {
     /// Reads them as they are.
     Wait,
-    /// Draws static casters into some rectangles, a range of those of all maps, and then moving ones:
+    /// Draws static casters into some rectangles, a range of the rectangles of all maps, and then moving casters:
     /// to [`Layers::Kept`] or [`Layers::Split`].
     Update { wrap: UVec2, shift: IVec2, rects: Range<usize> },
     /// Draws all static casters together with the moving ones: to [`Layers::Kept`].
@@ -86,7 +86,7 @@ pub(super) enum Transition {
 }
 
 impl Transition {
-    /// Returns it as the plan has it.
+    /// Returns its name in the plan.
     pub(super) fn reuse(&self) -> MapReuse {
         match *self {
             Self::Wait => MapReuse::Waits,
@@ -96,7 +96,7 @@ impl Transition {
         }
     }
 
-    /// Returns the rectangles that it redraws, of those of all maps.
+    /// Returns its part of the rectangles of all maps.
     pub(super) fn rects<'a>(&self, rects: &'a [TexelRect]) -> &'a [TexelRect] {
         match self {
             Self::Update { rects: range, .. } => &rects[range.clone()],
@@ -134,7 +134,7 @@ impl Layers {
         matches!(self, Self::Kept(_) | Self::Split(_))
     }
 
-    /// Returns whether the static casters have a layer of their own that holds them.
+    /// Returns whether the static casters' separate layer holds them.
     pub(super) fn is_split(&self) -> bool {
         matches!(self, Self::Split(_))
     }
@@ -173,8 +173,8 @@ impl Drawn {
 }
 
 impl MapState {
-    /// Returns what is drawn of a map that is fitted now, with so many casters in the list. Adds the transition's
-    /// rectangles to `rects`.
+    /// Returns the transition to a map that is fitted now, with this number of casters in the list. Adds the
+    /// transition's rectangles to `rects`.
     pub(super) fn decide(
         &mut self,
         now: &FittedMap,
@@ -191,7 +191,7 @@ impl MapState {
         update.filter(|_| self.layers.is_kept()).unwrap_or(Transition::Renew)
     }
 
-    /// Returns what is drawn of a map if the rest of it is kept; `None` if that costs no less than all of it.
+    /// Returns the transition that keeps as many texels as possible; `None` if a new map costs no more.
     fn update(
         &self,
         now: &FittedMap,

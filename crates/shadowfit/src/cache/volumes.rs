@@ -12,8 +12,8 @@ use crate::scroll::TexelRect;
 use crate::settings::{CasterPolicy, MAX_MAPS};
 use crate::{CasterVolume, FitError, FittedMap};
 
-/// The casters of a part of a map, for engines that find them themselves, such as on the GPU. Each volume has an origin of
-/// its own.
+/// The casters of a part of a map, for engines that find them themselves, such as on the GPU. The origins of the volumes
+/// may differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PieceVolumes {
     /// Casters outside of it are not drawn.
