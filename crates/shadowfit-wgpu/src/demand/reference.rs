@@ -66,7 +66,7 @@ impl Picture<'_> {
         let space = seen.space().demand;
         if normal.dot(space.direction.as_dvec3()) < 0.0 {
             let texel = needed_texel(right.as_vec3(), down.as_vec3(), space.direction);
-            let class = (self.pixel_width((x, y), depth) / f64::from(texel)).log2() as f32;
+            let class = (self.pixel_width(x, y, depth) / f64::from(texel)).log2() as f32;
             // Views that begin behind the eye have no histogram.
             seen.count_depth(depth as f32, class);
         }
@@ -121,7 +121,7 @@ impl Picture<'_> {
 
     /// Width of a pixel that faces the eye at a view depth, of a picture whose part in the frustum is [`PIXELS`] high, in
     /// metres.
-    fn pixel_width(&self, (x, y): (i32, i32), depth: f64) -> f64 {
+    fn pixel_width(&self, x: i32, y: i32, depth: f64) -> f64 {
         let frustum = &self.view.frustum;
         let forward = frustum.forward.as_dvec3();
         let offset = f64::from(frustum.near) - forward.dot(frustum.corners[0].as_dvec3());

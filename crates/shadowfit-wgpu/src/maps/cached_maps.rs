@@ -181,7 +181,7 @@ impl CachedMaps {
 
     /// Lets the look-up mix another set of maps into these, after [`Self::update`] of both. `share`: that of these.
     pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, view: &MapView, share: f32) {
-        self.map.fade_from(queue, (&before.map, before.maps()), view, share);
+        self.map.fade_from(queue, &before.map, before.maps(), view, share);
     }
 
     /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.

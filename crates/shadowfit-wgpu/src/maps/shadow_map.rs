@@ -330,14 +330,8 @@ impl ShadowMap {
         group_from(device, "shadowfit resolve", self.descriptor.first_binding, &self.receiver_layout, resources)
     }
 
-    /// Mixes another set of maps into what the look-up reads, after [`Self::prepare`]. `share`: that of this set.
-    pub(crate) fn fade_from(
-        &self,
-        queue: &wgpu::Queue,
-        (before, maps): (&Self, &[FittedMap]),
-        view: &MapView,
-        share: f32,
-    ) {
+    /// Mixes another set, and its maps, into the look-up, after [`Self::prepare`]. `share`: the share of this set.
+    pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, maps: &[FittedMap], view: &MapView, share: f32) {
         let uniform = ReceiverUniform::new(maps, view, &before.descriptor).in_layers(before.first_layer);
         let write = |offset: usize, bytes: &[u8]| queue.write_buffer(&self.receiver_uniform, offset as u64, bytes);
         write(offset_of!(FadingUniform, before), bytemuck::bytes_of(&uniform));
@@ -503,14 +497,14 @@ impl Textures {
         if handed_in.is_none() && !missing.is_empty() {
             return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
         }
-        let made = |of| MapTexture { texture: texture(device, descriptor, of), base_layer: 0 };
+        let made = |format, layers| MapTexture { texture: texture(device, descriptor, format, layers), base_layer: 0 };
         // Shaders read an array; one more layer makes it one where it would not be.
         let layers = descriptor.layers();
         let layers = layers + u32::from(!is_array(resolution, layers, device.adapter_info().backend));
         // Devices below WebGPU's level may lack more than these flags say.
         catch_errors(device, || Self {
-            read: handed_in.cloned().unwrap_or_else(|| made((descriptor.texture_format(), layers))),
-            beside: (!format.is_depth()).then(|| made((descriptor.depth_format(), maps))),
+            read: handed_in.cloned().unwrap_or_else(|| made(descriptor.texture_format(), layers)),
+            beside: (!format.is_depth()).then(|| made(descriptor.depth_format(), maps)),
             is_handed_in: handed_in.is_some(),
         })
         .map_err(|error| match error {
@@ -529,7 +523,8 @@ const USAGES: wgpu::TextureUsages = ShadowMapDescriptor::USAGES.union(wgpu::Text
 pub(crate) fn texture(
     device: &wgpu::Device,
     descriptor: &ShadowMapDescriptor,
-    (format, layers): (wgpu::TextureFormat, u32),
+    format: wgpu::TextureFormat,
+    layers: u32,
 ) -> wgpu::Texture {
     let mut of = descriptor.texture();
     of.size.depth_or_array_layers = layers;

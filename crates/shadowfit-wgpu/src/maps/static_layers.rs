@@ -135,7 +135,7 @@ impl StaticLayers {
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some(LABEL), ..Default::default() });
         // A texture each: OpenGL's shaders read arrays as a whole alone.
         let layer = || {
-            let view = super::shadow_map::texture(device, descriptor, (format, 1)).create_view(&Default::default());
+            let view = super::shadow_map::texture(device, descriptor, format, 1).create_view(&Default::default());
             let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&sampler)];
             let group = group(device, LABEL, &layout, &resources);
             (view, group)

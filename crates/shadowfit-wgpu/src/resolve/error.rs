@@ -85,15 +85,7 @@ impl fmt::Display for ResolveError {
             }
             Self::Eye(eye) => write!(f, "the view's eye is at {eye}: give a finite world position, in metres"),
             Self::AnyHit(message) => write!(f, "the engine's own test of hits does not compile: {message}"),
-            Self::AnyHitGroup(true) => write!(
-                f,
-                "the engine's own test of hits reads a bind group, and the view has none: set ResolveView::any_hit"
-            ),
-            Self::AnyHitGroup(false) => write!(
-                f,
-                "the view has a bind group for the engine's own test of hits, and the pass has no layout for it: make \
-                 the pass with ResolvePass::with_any_hit and a layout"
-            ),
+            Self::AnyHitGroup(has_layout) => f.write_str(any_hit_group(*has_layout)),
             Self::Device(message) => {
                 write!(f, "edges cannot be traced, since the device refused it: {message}")
             }
@@ -102,3 +94,13 @@ impl fmt::Display for ResolveError {
 }
 
 impl core::error::Error for ResolveError {}
+
+/// The message for a view and a pass of which one lacks what the other has of an engine's own test of hits.
+fn any_hit_group(has_layout: bool) -> &'static str {
+    if has_layout {
+        "the engine's own test of hits reads a bind group, and the view has none: set ResolveView::any_hit"
+    } else {
+        "the view has a bind group for the engine's own test of hits, and the pass has no layout for it: make the pass \
+         with ResolvePass::with_any_hit and a layout"
+    }
+}

@@ -103,13 +103,15 @@ impl Target {
 }
 
 impl Target {
-    /// What leaves out pixels, so that a frame traces about as many as its budget allows.
-    pub(super) fn kept(
+    /// Makes the resources that leave out pixels, so that a frame traces about as many as its budget allows, and writes the
+    /// budget.
+    pub(super) fn keep(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         layouts: &Layouts,
-        [budget, frame]: [u32; 2],
+        budget: u32,
+        frame: u32,
     ) -> Result<(), ResolveError> {
         if self.kept.is_none() {
             let made = catch_errors(device, || Kept::new(device, queue, layouts, self));

@@ -63,6 +63,22 @@ struct Pipelines {
     trace: wgpu::ComputePipeline,
 }
 
+/// Layouts of bind groups that come from outside of the pipelines.
+struct PassLayouts<'a> {
+    receiver: &'a wgpu::BindGroupLayout,
+    rays: &'a wgpu::BindGroupLayout,
+    arguments: &'a wgpu::BindGroupLayout,
+    select: &'a wgpu::BindGroupLayout,
+}
+
+/// Bind groups of a picture: the look-up, and the picture with the list that a pass writes or reads.
+struct Groups {
+    receiver: wgpu::BindGroup,
+    classify: wgpu::BindGroup,
+    surfaces: wgpu::BindGroup,
+    trace: wgpu::BindGroup,
+}
+
 impl ResolvePass {
     /// A pass that has resolved nothing yet. On devices without compute shaders, and on OpenGL, whose shaders cannot load
     /// depth, [`Self::record`] says so, and all edges are filtered.
@@ -239,47 +255,44 @@ impl ResolvePass {
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) -> Result<(), ResolveError> {
         check_textures(view)?;
-        let has_layout = self.any_hit.as_ref().is_some_and(|any_hit| any_hit.layout.is_some());
-        if has_layout != view.any_hit.is_some() {
-            return Err(ResolveError::AnyHitGroup(has_layout));
-        }
+        self.check_any_hit(view)?;
         let Some(map_view) = sun.map_view() else { return Ok(()) };
-        let source = Source::new(sun, map_view, (view, rays.origin()))?;
+        let source = Source::new(sun, map_view, view, rays.origin())?;
         self.make(sun, rays, view, map_view.frame)?;
         let (Some(target), Some(pipelines)) = (&self.target, &self.pipelines) else { return Ok(()) };
         let kept = target.kept.as_ref().filter(|_| view.budget.is_some());
         self.queue.write_buffer(&self.resolve, 0, bytemuck::bytes_of(&source.resolve));
         self.queue.write_buffer(&self.receiver, 0, &source.receiver);
-        let receiver = sun.map().receiver_group_with(&self.device, &self.receiver);
         let is_soft = sun.map().descriptor().filter.is_soft();
         let traced = kept.map_or(&target.list, |kept| &kept.list);
-        let classify = self.bind(&pipelines.layout, (target, &target.list), view);
-        let surfaces = self.bind(&pipelines.layout, (target, traced), view);
-        let trace = self.bind(&pipelines.trace_layout, (target, traced), view);
+        let groups = Groups {
+            receiver: sun.map().receiver_group_with(&self.device, &self.receiver),
+            classify: self.bind(&pipelines.layout, target, &target.list, view),
+            surfaces: self.bind(&pipelines.layout, target, traced, view),
+            trace: self.bind(&pipelines.trace_layout, target, traced, view),
+        };
         for list in [&target.list, traced] {
             encoder.clear_buffer(list, 0, Some(COUNTS as u64 * 4));
         }
         let label = Some(LABEL);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: timestamps });
         if let Some(pyramids) = self.pyramids.as_mut().filter(|_| is_soft) {
-            pyramids.renew(&mut pass, sun, &receiver);
+            pyramids.renew(&mut pass, sun, &groups.receiver);
         }
-        pipelines.list(&mut pass, (target, kept), [&receiver, &classify], source.resolve.size);
-        for (pipeline, group, arguments) in
-            [(&pipelines.surfaces, &surfaces, SURFACE_GROUPS), (&pipelines.trace, &trace, 0)]
-        {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &receiver, &[]);
-            pass.set_bind_group(1, group, &[]);
-            pass.set_bind_group(2, rays.group(), &[]);
-            if let Some(group) = view.any_hit {
-                pass.set_bind_group(AnyHit::GROUP, group, &[]);
-            }
-            pass.dispatch_workgroups_indirect(&target.groups, arguments);
+        pipelines.classify(&mut pass, target, &groups, source.resolve.size);
+        if let Some(kept) = kept {
+            pipelines.select(&mut pass, target, kept);
         }
+        pipelines.trace(&mut pass, target, &groups, rays, view.any_hit);
         drop(pass);
         self.counts.record(encoder, traced, ());
         Ok(())
+    }
+
+    /// Refuses a bind group for an engine's own test of hits that is missing, or that has no layout.
+    fn check_any_hit(&self, view: &ResolveView<'_>) -> Result<(), ResolveError> {
+        let has_layout = self.any_hit.as_ref().is_some_and(|any_hit| any_hit.layout.is_some());
+        if has_layout == view.any_hit.is_some() { Ok(()) } else { Err(ResolveError::AnyHitGroup(has_layout)) }
     }
 
     /// Makes what a picture needs that is not there yet.
@@ -304,7 +317,7 @@ impl ResolvePass {
             self.pyramids = Some(Pyramids::of(self.pyramids.take(), &self.device, sun)?);
         }
         if let (Some(budget), Some(target)) = (view.budget, &mut self.target) {
-            target.kept(&self.device, &self.queue, &self.layouts, [budget, frame])?;
+            target.keep(&self.device, &self.queue, &self.layouts, budget, frame)?;
         }
         Ok(())
     }
@@ -323,7 +336,8 @@ impl ResolvePass {
     fn bind(
         &self,
         layout: &wgpu::BindGroupLayout,
-        (target, list): (&Target, &wgpu::Buffer),
+        target: &Target,
+        list: &wgpu::Buffer,
         view: &ResolveView<'_>,
     ) -> wgpu::BindGroup {
         let normals = view.normals.map_or(&self.nothing.0, |normals| normals.view);
@@ -348,9 +362,9 @@ impl ResolvePass {
             return Ok(());
         }
         let Layouts { arguments, select, .. } = &self.layouts;
-        let layouts = [sun.map().receiver_layout(), rays.layout(), arguments, select];
+        let layouts = PassLayouts { receiver: sun.map().receiver_layout(), rays: rays.layout(), arguments, select };
         let own = self.any_hit.as_ref();
-        let made = catch_errors(&self.device, || Pipelines::new(&self.device, (&descriptor, shape), layouts, own));
+        let made = catch_errors(&self.device, || Pipelines::new(&self.device, &descriptor, shape, &layouts, own));
         self.pipelines = Some(made.map_err(|error| self.refused(&error))?);
         Ok(())
     }
@@ -359,10 +373,12 @@ impl ResolvePass {
 impl Pipelines {
     fn new(
         device: &wgpu::Device,
-        (descriptor, shape): (&ShadowMapDescriptor, Shape),
-        [receiver, rays, arguments, select]: [&wgpu::BindGroupLayout; 4],
+        descriptor: &ShadowMapDescriptor,
+        shape: Shape,
+        layouts: &PassLayouts<'_>,
         any_hit: Option<&AnyHit>,
     ) -> Self {
+        let PassLayouts { receiver, rays, arguments, select } = *layouts;
         let [layout, trace_layout] = [false, true].map(|read_only| picture_layout(device, shape, read_only));
         let counts = any_hit.map(|any_hit| any_hit.wgsl.as_str());
         let own = any_hit.and_then(|any_hit| any_hit.layout.as_ref());
@@ -384,29 +400,48 @@ impl Pipelines {
         Self { classify, arguments, select, surfaces, trace, key: (*descriptor, shape), layout, trace_layout }
     }
 
-    /// Lists the pixels of a picture that rays are traced for, as many as its budget keeps, and counts their workgroups.
-    fn list(
-        &self,
-        pass: &mut wgpu::ComputePass<'_>,
-        (target, kept): (&Target, Option<&Kept>),
-        [receiver, classify]: [&wgpu::BindGroup; 2],
-        size: [u32; 2],
-    ) {
+    /// Lists the pixels of a picture that the maps are not sure of, and counts their workgroups.
+    fn classify(&self, pass: &mut wgpu::ComputePass<'_>, target: &Target, groups: &Groups, size: [u32; 2]) {
         pass.set_pipeline(&self.classify);
-        pass.set_bind_group(0, receiver, &[]);
-        pass.set_bind_group(1, classify, &[]);
+        pass.set_bind_group(0, &groups.receiver, &[]);
+        pass.set_bind_group(1, &groups.classify, &[]);
         let [x, y] = size.map(|side| side.div_ceil(SQUARE));
         pass.dispatch_workgroups(x, y, 1);
         pass.set_pipeline(&self.arguments);
         pass.set_bind_group(0, &target.arguments, &[]);
         pass.dispatch_workgroups(1, 1, 1);
-        if let Some(kept) = kept {
-            pass.set_pipeline(&self.select);
-            pass.set_bind_group(0, &kept.group, &[]);
-            pass.dispatch_workgroups_indirect(&target.groups, 0);
-            pass.set_pipeline(&self.arguments);
-            pass.set_bind_group(0, &kept.arguments, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// Keeps as many of them as the budget allows, and counts their workgroups.
+    fn select(&self, pass: &mut wgpu::ComputePass<'_>, target: &Target, kept: &Kept) {
+        pass.set_pipeline(&self.select);
+        pass.set_bind_group(0, &kept.group, &[]);
+        pass.dispatch_workgroups_indirect(&target.groups, 0);
+        pass.set_pipeline(&self.arguments);
+        pass.set_bind_group(0, &kept.arguments, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// Finds the triangles of the pixels on the list, and traces their rays.
+    fn trace(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        target: &Target,
+        groups: &Groups,
+        rays: &RayScene,
+        any_hit: Option<&wgpu::BindGroup>,
+    ) {
+        for (pipeline, group, arguments) in
+            [(&self.surfaces, &groups.surfaces, SURFACE_GROUPS), (&self.trace, &groups.trace, 0)]
+        {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &groups.receiver, &[]);
+            pass.set_bind_group(1, group, &[]);
+            pass.set_bind_group(2, rays.group(), &[]);
+            if let Some(group) = any_hit {
+                pass.set_bind_group(AnyHit::GROUP, group, &[]);
+            }
+            pass.dispatch_workgroups_indirect(&target.groups, arguments);
         }
     }
 }

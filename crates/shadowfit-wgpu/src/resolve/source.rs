@@ -25,7 +25,8 @@ impl Source {
     pub(super) fn new(
         sun: &SunShadows,
         map_view: &MapView,
-        (view, rays_origin): (&ResolveView<'_>, DVec3),
+        view: &ResolveView<'_>,
+        rays_origin: DVec3,
     ) -> Result<Self, ResolveError> {
         let descriptor = sun.map().descriptor();
         let part @ [left, top, width, height] = view.part();
@@ -167,7 +168,8 @@ impl Unknown {
                 Some(boxes) if self.count + boxes.len() <= MAX_UNKNOWN / 2 => {
                     let around = reach(map, sun);
                     for aabb in boxes {
-                        self.push(&aabb.relative_to(eye), around, (bit, 0));
+                        let Aabb { min, max } = aabb.relative_to(eye);
+                        self.push(UnknownUniform { maps: bit, ..unknown(min, max, around) });
                     }
                 }
                 _ => self.maps |= bit,
@@ -185,7 +187,7 @@ impl Unknown {
         for aabb in lacking.boxes.iter().filter(|aabb| !aabb.is_empty()) {
             let aabb = Aabb::new(aabb.min + offset, aabb.max + offset);
             if self.count < MAX_UNKNOWN {
-                self.push(&aabb, around, (0, 1));
+                self.push(UnknownUniform { is_filtered: 1, ..unknown(aabb.min, aabb.max, around) });
             } else if let Some(last) = self.boxes[first..].last_mut() {
                 let [least, most] = [Vec3::from(last.least), Vec3::from(last.most)];
                 last.least = least.min(aabb.min - around).to_array();
@@ -194,11 +196,16 @@ impl Unknown {
         }
     }
 
-    fn push(&mut self, aabb: &Aabb, around: f32, (maps, is_filtered): (u32, u32)) {
-        let [least, most] = [aabb.min - around, aabb.max + around].map(|corner| corner.to_array());
-        self.boxes[self.count] = UnknownUniform { least, maps, most, is_filtered };
+    fn push(&mut self, aabb: UnknownUniform) {
+        self.boxes[self.count] = aabb;
         self.count += 1;
     }
+}
+
+/// A box of unknown casters, widened by a distance.
+fn unknown(min: Vec3, max: Vec3, around: f32) -> UnknownUniform {
+    let [least, most] = [min - around, max + around].map(|corner| corner.to_array());
+    UnknownUniform { least, most, ..UnknownUniform::default() }
 }
 
 /// What a filter reads around a point of a map, in metres.

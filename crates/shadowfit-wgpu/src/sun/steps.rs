@@ -150,7 +150,7 @@ impl StepState {
             self.stage = Stage::Held;
         }
         Ok(match self.stage {
-            Stage::Held => self.hold(new, &core, (fades, kept))?,
+            Stage::Held => self.hold(new, &core, fades.then_some(kept))?,
             Stage::Drawing { now, drawn } if drawn < kept => {
                 self.stage = Stage::Drawing { now, drawn: drawn + 1 };
                 self.step(now, false)
@@ -160,14 +160,14 @@ impl StepState {
         })
     }
 
-    /// The next frame of a sun that is held.
-    fn hold(&mut self, new: Vec3, core: &LightStepSettings, (fades, kept): (bool, usize)) -> Result<Step, FitError> {
+    /// The next frame of a sun that is held. `fading`: if the next step fades, the number of maps that are drawn one by one.
+    fn hold(&mut self, new: Vec3, core: &LightStepSettings, fading: Option<usize>) -> Result<Step, FitError> {
         let held = self.light.held;
         let next = self.light.update(new, core, 0.0)?.direction;
-        Ok(match held.filter(|held| fades && *held != next) {
+        Ok(match held.filter(|held| *held != next).zip(fading) {
             None => self.step(next, false),
-            Some(now) if kept == 0 => Step { begins: true, ..self.fade(now, 1) },
-            Some(now) => {
+            Some((now, 0)) => Step { begins: true, ..self.fade(now, 1) },
+            Some((now, _)) => {
                 self.stage = Stage::Drawing { now, drawn: 1 };
                 self.step(now, true)
             }
