@@ -8,7 +8,10 @@ use std::collections::HashMap;
 use std::f64::consts::SQRT_2;
 
 use glam::{DMat4, DVec2, DVec3};
-use shadowfit_truth::{Tracer, TruthPoint};
+use shadowfit::selection::MapOrder;
+use shadowfit_truth::{MapReading, MeasuredMap, Tracer, Truth, TruthPoint};
+
+use super::LightMaps;
 
 /// Greatest number of texels that a filter reads along an axis.
 const MAX_TAPS: usize = 6;
@@ -41,6 +44,52 @@ pub struct ShadowLookup {
     pub to_light: DVec3,
     /// Filter of the look-up.
     pub filter: LookupFilter,
+}
+
+impl ShadowLookup {
+    /// Returns the share of the light that reaches each pixel, 0..=1; 1 at pixels that are not judged. `extent` is the size
+    /// of the scene, in metres.
+    pub fn factors(&self, tracer: &Tracer, truth: &Truth, extent: f64) -> Vec<f32> {
+        self.factors_at(tracer, truth, extent, |point| point.view_depth)
+    }
+
+    /// Returns the same, with a view depth for each point that selects its map, in metres.
+    pub(super) fn factors_at(
+        &self,
+        tracer: &Tracer,
+        truth: &Truth,
+        extent: f64,
+        view_depth: impl Fn(&TruthPoint) -> f64,
+    ) -> Vec<f32> {
+        let mut simulation = Simulation::new(tracer, self, extent);
+        let judged = truth.points.iter().map(|point| point.as_ref().filter(|point| point.is_judged));
+        let mut factor = |point: &TruthPoint| simulation.factor(point, view_depth(point)) as f32;
+        judged.map(|point| point.map_or(1.0, &mut factor)).collect()
+    }
+
+    /// Describes the maps as the look-up reads them. They also hold casters before their near plane.
+    pub fn light_maps(&self) -> LightMaps {
+        let size = DVec2::splat(self.size.into());
+        let mut blend_near = f64::INFINITY;
+        let measured = self.maps.iter().map(|map| {
+            let measured = MeasuredMap::new(&map.clip_from_world, size, map.bound, self.to_light);
+            let measured = measured.with_blend_near(blend_near);
+            if let LookupBlend::ViewDepth { overlap } = self.blend {
+                blend_near = (1.0 - overlap) * map.bound;
+            }
+            measured
+        });
+        let maps: Vec<MeasuredMap> = measured.collect();
+        let reading = match self.blend {
+            LookupBlend::ViewDepth { .. } => MapReading::ViewDepth,
+            LookupBlend::Coverage { blend, .. } => {
+                // Equal areas keep the order of the maps.
+                let order = MapOrder::by_area(maps.iter().map(|_| Some(1.0)));
+                MapReading::Coverage { order, blend: blend as f32 }
+            }
+        };
+        LightMaps { maps, reading, reach: self.filter.reach(), depth_clamp: true, reads_later_maps: false }
+    }
 }
 
 /// How a point selects among maps, and where two maps are blended.
@@ -78,6 +127,14 @@ struct AxisTaps {
 }
 
 impl LookupFilter {
+    /// Returns the greatest distance per axis, in texels, from the sample point to the centre of a texel of non-zero weight.
+    pub fn reach(self) -> f32 {
+        match self {
+            Self::Hardware2x2 => 1.0,
+            Self::Castano13 => 3.0,
+        }
+    }
+
     /// Returns the weights of texels around a position, in texels.
     fn taps(self, position: f64) -> AxisTaps {
         match self {
@@ -114,7 +171,7 @@ fn castano_13(position: f64) -> AxisTaps {
 }
 
 /// Finds the light that reaches points, and remembers the texels that it has traced.
-pub(super) struct Simulation<'a> {
+struct Simulation<'a> {
     tracer: &'a Tracer,
     lookup: &'a ShadowLookup,
     /// Distance by which rays start before the maps, in metres: maps also hold casters before their near plane.
@@ -130,14 +187,14 @@ struct MapTexels {
 
 impl<'a> Simulation<'a> {
     /// `extent` is the size of the scene, in metres.
-    pub(super) fn new(tracer: &'a Tracer, lookup: &'a ShadowLookup, extent: f64) -> Self {
+    fn new(tracer: &'a Tracer, lookup: &'a ShadowLookup, extent: f64) -> Self {
         let texels =
             |map: &LookupMap| MapTexels { world_from_clip: map.clip_from_world.inverse(), depths: HashMap::new() };
         Self { tracer, lookup, before: 2.0 * extent, texels: lookup.maps.iter().map(texels).collect() }
     }
 
     /// Returns the share of the light that reaches a point, 0..=1. `view_depth` selects the map, in metres.
-    pub(super) fn factor(&mut self, point: &TruthPoint, view_depth: f64) -> f64 {
+    fn factor(&mut self, point: &TruthPoint, view_depth: f64) -> f64 {
         match self.lookup.blend {
             LookupBlend::ViewDepth { overlap } => self.by_view_depth(point, view_depth, overlap),
             LookupBlend::Coverage { reach, blend } => self.by_coverage(point, view_depth, reach, blend),
@@ -235,7 +292,33 @@ mod tests {
                 let centre: f64 =
                     weights.iter().zip(first..).map(|(weight, texel)| weight * (texel as f64 + 0.5)).sum();
                 assert!((sum - 1.0).abs() < 1e-12 && (centre - position).abs() < 0.26, "{position}: {sum} {centre}");
+                let distances = weights.iter().zip(first..).filter(|(weight, _)| **weight > 0.0);
+                let farthest = distances.map(|(_, texel)| (texel as f64 + 0.5 - position).abs()).fold(0.0, f64::max);
+                assert!(farthest <= f64::from(filter.reach()) + 1e-12, "{filter:?} at {position}: {farthest}");
             }
         }
+    }
+
+    #[test]
+    fn maps_are_described_as_the_look_up_reads_them() {
+        let clip_from_world = DMat4::from_scale(DVec3::splat(0.01));
+        let map = |bound: f64| LookupMap { clip_from_world, texel: 0.1, bound };
+        let lookup = ShadowLookup {
+            maps: vec![map(10.0), map(20.0)],
+            size: 512,
+            blend: LookupBlend::ViewDepth { overlap: 0.25 },
+            depth_bias: 0.0,
+            normal_bias: 0.0,
+            to_light: DVec3::Z,
+            filter: LookupFilter::Castano13,
+        };
+        let described = lookup.light_maps();
+        let depths: Vec<_> = described.maps.iter().map(|map| [map.split_far, map.blend_near]).collect();
+        assert_eq!(depths, [[10.0, f64::INFINITY], [20.0, 7.5]]);
+        assert_eq!((described.reading, described.reach), (MapReading::ViewDepth, 3.0));
+        let blend = LookupBlend::Coverage { reach: 3.0, blend: 8.0 };
+        let described = ShadowLookup { blend, ..lookup }.light_maps();
+        assert!(matches!(described.reading, MapReading::Coverage { blend: 8.0, .. }), "{:?}", described.reading);
+        assert!(described.maps.iter().all(|map| map.blend_near.is_infinite()));
     }
 }

@@ -6,7 +6,6 @@ use anyhow::{Context, Result, ensure};
 use glam::DVec3;
 use shadowfit_truth::{Crawl, Judged, MapsBefore, PixelCamera, Tracer, Truth, TruthPoint, crawl, judge};
 
-use super::lookup::Simulation;
 use super::results::{FrameResult, Results};
 use super::sums::Sums;
 use super::surfaces::{MAX_DIFFERENT, Surfaces, factors};
@@ -306,12 +305,7 @@ impl<C: Contestant> Stage<'_, C> {
                 Ok(factors(picture, unshadowed))
             }
             Shadows::Factors(factors) => Ok(factors.clone()),
-            Shadows::Lookup(lookup) => {
-                let mut simulation = Simulation::new(self.tracer, lookup, self.extent);
-                let judged = surfaces.truth.points.iter().map(|point| point.as_ref().filter(|point| point.is_judged));
-                let mut factor = |point: &TruthPoint| simulation.factor(point, view_depth(point)) as f32;
-                Ok(judged.map(|point| point.map_or(1.0, &mut factor)).collect())
-            }
+            Shadows::Lookup(lookup) => Ok(lookup.factors_at(self.tracer, &surfaces.truth, self.extent, view_depth)),
         }
     }
 

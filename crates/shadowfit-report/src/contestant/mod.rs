@@ -144,7 +144,8 @@ pub struct LightMaps {
 }
 
 impl LightMaps {
-    fn picture_maps(&self) -> PictureMaps<'_> {
+    /// Returns the maps in the form that a picture is judged with.
+    pub fn picture_maps(&self) -> PictureMaps<'_> {
         PictureMaps { maps: &self.maps, reading: self.reading, reach: self.reach, depth_clamp: self.depth_clamp }
     }
 
