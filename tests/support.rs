@@ -11,23 +11,6 @@ use shadowfit_testing::package_folder;
 /// The tests' device, lent to one test after another, and the name of its adapter for programs.
 pub(crate) use shadowfit_testing::{adapter_name, renderer_gpu as test_gpu};
 
-/// A glTF file of two triangles, with lines that are skipped and an image that is missing.
-pub(crate) const SCENE_WITH_NOTES: &str = r#"{
-    "asset": { "version": "2.0" }, "nodes": [{ "mesh": 0 }],
-    "meshes": [{ "primitives": [
-        { "mode": 5, "attributes": { "POSITION": 0 }, "material": 0 }, { "mode": 3, "attributes": { "POSITION": 0 } }
-    ] }],
-    "materials": [{ "doubleSided": true, "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
-    "textures": [{ "source": 0 }], "images": [{ "uri": "missing.png" }],
-    "accessors": [{ "bufferView": 0, "componentType": 5121, "type": "VEC3", "count": 4 }],
-    "bufferViews": [{ "buffer": 0, "byteLength": 12 }],
-    "buffers": [{ "byteLength": 12, "uri": "data:;base64,AAAAAAAJCQAACQAJ" }]
-}"#;
-
-/// How the notes of [`SCENE_WITH_NOTES`] begin.
-pub(crate) const NOTES: [&str; 2] =
-    ["images[0]: replaced by a placeholder: ", "meshes[0].primitives[1]: lines skipped: only triangles are drawn"];
-
 /// The view from a scene's own camera under its own sun, in pictures of this size.
 pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {
     let camera = scene.cameras.first().expect("a camera");
@@ -54,16 +37,6 @@ pub(crate) fn workspace() -> PathBuf {
 /// The collection of scenes beside the workspace, or `None` with a word about it.
 pub(crate) fn assets() -> Option<PathBuf> {
     let folder = workspace().join("../shared/assets");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("SKIPPED: {} does not exist", folder.display());
-    None
-}
-
-/// The fits of other code beside the workspace, with their scenarios, or `None` with a word about it.
-pub(crate) fn peers() -> Option<PathBuf> {
-    let folder = workspace().join("../shared/peers");
     if folder.is_dir() {
         return Some(folder);
     }

@@ -17,8 +17,6 @@ mod culling;
 mod fits;
 mod frames;
 mod picture;
-#[path = "../shared/plotting.rs"]
-mod plotting;
 #[path = "../shared/table.rs"]
 mod table;
 mod times;

@@ -6,12 +6,11 @@ use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use shadowfit_study::write_whole;
-use shadowfit_truth::peers::readable;
-
-use crate::plotting::{
+use shadowfit_report::page::plotting::{
     COLOURS, FAMILY, GRID, INK, LEGEND_LINE, LEGEND_TOP, PAPER, RULE, TEXT, TITLE, register, text_style,
 };
+use shadowfit_report::readable;
+use shadowfit_study::write_whole;
 
 /// Size, in pixels, and how much of its width the legend takes.
 const SIZE: (u32, u32) = (860, 400);

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use shadowfit_truth::peers::markdown_table;
+use shadowfit_report::markdown_table;
 
 /// A table with a heading and a line that says what it shows.
 #[derive(Debug)]

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use shadowfit_adapter::ADAPTER_VARIABLE;
+use shadowfit_testing::refuses_missing_adapter;
+use shadowfit_testing::scene_notes::{NOTES, SCENE_WITH_NOTES};
 
-use crate::support::{
-    NOTES, SCENE_WITH_NOTES, adapter_name, assets, example_program, files_below, test_gpu, viewer_program,
-};
+use crate::support::{adapter_name, assets, files_below, viewer_program};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -187,27 +186,13 @@ fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
 }
 
 #[test]
-fn an_adapter_that_the_machine_lacks_ends_each_program_with_exit_code_2_and_a_list_of_adapters() {
+fn an_adapter_that_the_machine_lacks_is_refused_with_a_list_of_adapters() {
     let scratch = Scratch::new("adapter");
-    let present = test_gpu().name();
-    for (program, arguments) in
-        [("viewer", &["--headless", "out"][..]), ("report", &["courtyard", "-o", "out"]), ("growth", &["--quick"])]
-    {
-        for is_option in [true, false] {
-            let mut command = Command::new(example_program(program));
-            command.current_dir(&scratch.0).args(arguments);
-            if is_option {
-                command.args(["--adapter", "no such adapter"]);
-            } else {
-                command.env(ADAPTER_VARIABLE, "no such adapter");
-            }
-            let output = command.output().expect("the program starts");
-            let message = String::from_utf8_lossy(&output.stderr);
-            assert_eq!(output.status.code(), Some(REFUSED), "{program}: {message}");
-            assert!(message.contains("\"no such adapter\"") && message.contains(&present), "{program}: {message}");
-            assert!(output.stdout.is_empty(), "{program} begins: {}", String::from_utf8_lossy(&output.stdout));
-        }
-    }
+    refuses_missing_adapter(|| {
+        let mut viewer = Command::new(viewer_program());
+        viewer.current_dir(&scratch.0).args(["--headless", "out"]);
+        viewer
+    });
     assert!(scratch.files().is_empty(), "{:?}", scratch.files());
 }
 

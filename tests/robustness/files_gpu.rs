@@ -1,11 +1,11 @@
-//! What the programs say of places where they cannot write, and what is left of their files when they are killed.
+//! What the viewer says of places where they cannot write, and what is left of their files when they are killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use crate::support::{adapter_name, example_program, files_below, viewer_program};
+use crate::support::{adapter_name, files_below, viewer_program};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -59,12 +59,6 @@ fn viewer(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-fn example(name: &str, folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(example_program(name));
-    command.current_dir(folder).args(arguments);
-    command
-}
-
 fn assert_refused(mut command: Command, words: &[&str]) -> Output {
     let output = command.output().expect("the program starts");
     let message = String::from_utf8_lossy(&output.stderr);
@@ -90,17 +84,12 @@ fn a_full_disk_is_told_with_the_picture_that_it_has_no_room_for_and_holds_whole_
 }
 
 #[test]
-fn a_read_only_folder_is_refused_before_anything_is_measured_or_drawn() {
+fn a_read_only_folder_is_refused_before_anything_is_drawn() {
     let scratch = Scratch::new("read-only");
     let Some(_disk) = Mounted::new(scratch.0.join("disk"), "ro") else { return };
     let reason = ["disk", "read-only"];
     let output = assert_refused(viewer(&scratch.0, &["--headless", "disk"]), &reason);
     assert!(output.stdout.is_empty(), "no picture is begun");
-    for command in [&[][..], &["tune"]] {
-        let report = [command, &["courtyard", "--adapter", adapter_name(), "--size", "96x54", "-o", "disk"]].concat();
-        let output = assert_refused(example("report", &scratch.0, &report), &reason);
-        assert!(output.stdout.is_empty());
-    }
 }
 
 #[test]
@@ -111,8 +100,6 @@ fn folders_and_files_that_are_in_the_way_are_named() {
     for folder in ["occupied", "occupied/below"] {
         let words = [folder, "part of the path is a file"];
         assert_refused(viewer(&scratch.0, &["--headless", folder]), &words);
-        let report = ["courtyard", "--adapter", adapter_name(), "--size", "96x54", "-o", folder];
-        assert_refused(example("report", &scratch.0, &report), &words);
     }
     let script = "await loaded\nwindow folder\n";
     fs::write(scratch.0.join("script.txt"), script).expect("written");

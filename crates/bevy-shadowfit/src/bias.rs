@@ -8,11 +8,29 @@
 //! 1.05%, and Bevy's defaults, 0.02 m and 1.8, 2.4 and 2.7%. False shadow, over all frames: 0.0014% with windows, 0.0027%
 //! with calm maps, and 0.03% with still ones, whose last texels are the widest; Bevy's cascades and biases have 0.016%.
 
-/// Depth bias, in metres.
-const DEPTH: f32 = 0.05;
+use bevy::light::DirectionalLight;
 
-/// Normal bias, in diagonals of a texel, for filters that read as far as Bevy's default one.
-const NORMAL: f32 = 0.3;
+/// Biases of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Biases {
+    /// Offset toward the light, in metres.
+    pub(crate) depth: f32,
+    /// Offset along the normal, in diagonals of a texel.
+    pub(crate) normal: f32,
+}
 
-/// The biases of a light.
-pub(crate) const OURS: [f32; 2] = [DEPTH, NORMAL];
+impl Biases {
+    /// Biases for filters of the reach of Bevy's default filter.
+    pub(crate) const OURS: Self = Self { depth: 0.05, normal: 0.3 };
+
+    /// Returns the biases of a light.
+    pub(crate) fn of(light: &DirectionalLight) -> Self {
+        Self { depth: light.shadow_depth_bias, normal: light.shadow_normal_bias }
+    }
+
+    /// Sets the biases of a light.
+    pub(crate) fn set(self, light: &mut DirectionalLight) {
+        light.shadow_depth_bias = self.depth;
+        light.shadow_normal_bias = self.normal;
+    }
+}

@@ -3,6 +3,7 @@
 use std::f32::consts::SQRT_2;
 
 use bevy::camera::visibility::RenderLayers;
+use bevy::ecs::query::QueryData;
 use bevy::light::cascade::{Cascade, CascadeShadowConfig, Cascades};
 use bevy::light::{DirectionalLight, DirectionalLightShadowMap};
 use bevy::pbr::MAX_CASCADES_PER_LIGHT;
@@ -12,35 +13,33 @@ use shadowfit::settings::MAX_MAPS;
 use shadowfit::{Boxes, FitInput, FittedMap, ShadowFitter, ViewFrustum};
 use shadowfit_wgpu::demand::DemandView;
 
-use crate::bias;
+use crate::bias::Biases;
 use crate::cascade::cascade;
 use crate::clusters::LARGE;
-use crate::histogram::{Sightings, Wanted};
+use crate::histogram::{CountedView, Sightings, Wanted};
 use crate::memory::FitMemory;
 use crate::problem::Problem;
 use crate::settings::{Fit, FitBias, FitSplits, FittedShadows, Reading};
-use crate::view::{Scene, View};
+use crate::view::{Receivers, Scene, View};
 use crate::windows_shader::WindowsShader;
 
-/// Lights whose cascades are fitted.
-type Lights<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        &'static FittedShadows,
-        &'static GlobalTransform,
-        Option<&'static RenderLayers>,
-        &'static mut FitMemory,
-        &'static mut DirectionalLight,
-        &'static mut CascadeShadowConfig,
-        &'static mut Cascades,
-    ),
->;
+/// A light whose cascades are fitted.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct FittedLight {
+    entity: Entity,
+    fitted: &'static FittedShadows,
+    transform: &'static GlobalTransform,
+    layers: Option<&'static RenderLayers>,
+    memory: &'static mut FitMemory,
+    light: &'static mut DirectionalLight,
+    config: &'static mut CascadeShadowConfig,
+    cascades: &'static mut Cascades,
+}
 
 /// Replaces the cascades that Bevy has made in this frame.
 pub(crate) fn fit_cascades(
-    mut lights: Lights,
+    mut lights: Query<FittedLight>,
     scene: Scene,
     maps: Res<DirectionalLightShadowMap>,
     sightings: Res<Sightings>,
@@ -48,29 +47,43 @@ pub(crate) fn fit_cascades(
     mut wanted: ResMut<Wanted>,
 ) {
     wanted.0.clear();
-    let shadowed = lights.iter().filter(|(.., light, _, _)| light.shadow_maps_enabled);
-    let ends = shadowed.filter_map(|(.., config, _)| config.bounds.last().copied());
+    let shadowed = lights.iter().filter(|item| item.light.shadow_maps_enabled);
+    let ends = shadowed.filter_map(|item| item.config.bounds.last().copied());
     let Some(farthest) = ends.reduce(f32::max) else { return };
     let views = scene.views(farthest * LARGE);
-    for (entity, fitted, transform, layers, mut memory, mut light, mut config, mut cascades) in &mut lights {
-        if !light.shadow_maps_enabled {
+    for mut item in &mut lights {
+        if !item.light.shadow_maps_enabled {
             continue;
         }
         let result = views.as_ref().map_err(|problem| problem.to_string()).and_then(|views| {
-            let layers = layers.cloned().unwrap_or_default();
+            let layers = item.layers.cloned().unwrap_or_default();
             let views: Vec<&View> = views.iter().filter(|view| view.layers.intersects(&layers)).collect();
-            let fitted = fitted.with_shader(*shader);
-            let sun =
-                Sun::new(&fitted, transform, &light, &config, maps.size as u32, &views).map_err(|p| p.to_string())?;
+            let sun = Sun::new(&item, *shader, maps.size as u32, &views).map_err(|p| p.to_string())?;
             for (camera, demand) in sun.demand(&views) {
-                if let Some(seen) = sightings.take((entity, camera)) {
-                    memory.fitter_of(camera, sun.fitted.fit).see(seen);
+                let key = CountedView { light: item.entity, camera };
+                if let Some(seen) = sightings.take(key) {
+                    item.memory.fitter_of(camera, sun.fitted.fit).see(seen);
                 }
-                wanted.0.push(((entity, camera), demand));
+                wanted.0.push((key, demand));
             }
-            sun.fit(&views, &mut memory, &mut light, &mut config, &mut cascades).map_err(|p| p.to_string())
+            sun.fit(&views, &mut item).map_err(|p| p.to_string())
         });
-        memory.tell(entity, result.err());
+        item.memory.tell(item.entity, result.err());
+    }
+}
+
+/// Leaves a light to Bevy when its [`FittedShadows`] are removed.
+pub(crate) fn forget(
+    removed: On<Remove<FittedShadows>>,
+    mut lights: Query<(&mut FitMemory, &mut CascadeShadowConfig, &mut DirectionalLight)>,
+    mut commands: Commands,
+) {
+    let light = removed.event_target();
+    if let Ok((mut memory, mut config, mut sun)) = lights.get_mut(light) {
+        memory.give_back(&mut config, &mut sun);
+    }
+    if let Ok(mut light) = commands.get_entity(light) {
+        light.try_remove::<FitMemory>();
     }
 }
 
@@ -114,18 +127,13 @@ struct Sun {
     overlap: f32,
     resolution: u32,
     reading: Reading,
-    biases: [f32; 2],
+    biases: Biases,
 }
 
 impl Sun {
-    fn new(
-        fitted: &FittedShadows,
-        transform: &GlobalTransform,
-        light: &DirectionalLight,
-        config: &CascadeShadowConfig,
-        resolution: u32,
-        views: &[&View],
-    ) -> Result<Self, Problem> {
+    fn new(item: &FittedLightItem, shader: WindowsShader, resolution: u32, views: &[&View]) -> Result<Self, Problem> {
+        let FittedLightItem { transform, light, config, .. } = item;
+        let fitted = item.fitted.with_shader(shader);
         let count = config.bounds.len();
         let is_ascending = config.bounds.iter().all(|bound| bound.is_finite() && *bound > 0.0)
             && config.bounds.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -136,16 +144,16 @@ impl Sun {
         let forward = -transform.affine().matrix3.z_axis;
         let direction = forward.try_normalize().ok_or(Problem::Light)?;
         let biases = match fitted.bias {
-            FitBias::Ours => bias::OURS,
-            FitBias::Bevys => [light.shadow_depth_bias, light.shadow_normal_bias],
+            FitBias::Ours => Biases::OURS,
+            FitBias::Bevys => Biases::of(light),
         };
         Ok(Self {
-            fitted: *fitted,
+            fitted,
             direction: fit_glam::Vec3::from_array(direction.to_array()),
             bounds: config.bounds.clone(),
             overlap: config.overlap_proportion.clamp(0.0, 1.0),
             resolution,
-            reading: Reading::new(views.iter().map(|view| view.filter), biases[1]),
+            reading: Reading::new(views.iter().map(|view| view.filter), biases.normal),
             biases,
         })
     }
@@ -156,33 +164,28 @@ impl Sun {
     }
 
     /// Fits all cascades of all views. Nothing is changed where one of them is refused.
-    fn fit(
-        &self,
-        views: &[&View],
-        memory: &mut FitMemory,
-        light: &mut Mut<DirectionalLight>,
-        config: &mut Mut<CascadeShadowConfig>,
-        cascades: &mut Mut<Cascades>,
-    ) -> Result<(), Problem> {
-        let frusta = self.frusta(views)?;
-        if frusta.is_empty() {
+    fn fit(&self, views: &[&View], item: &mut FittedLightItem) -> Result<(), Problem> {
+        let FittedLightItem { memory, light, config, cascades, .. } = item;
+        let shadowed = self.shadowed(views)?;
+        if shadowed.is_empty() {
             return Ok(());
         }
         let has_windows = self.fitted.fit == Fit::Windows;
         let bounds =
-            if has_windows { vec![self.max_distance(); self.bounds.len()] } else { self.bounds(&frusta, memory)? };
+            if has_windows { vec![self.max_distance(); self.bounds.len()] } else { self.bounds(&shadowed, memory)? };
         memory.views.retain(|camera, _| views.iter().any(|view| view.camera == *camera));
         let farthest = memory.farthest.unwrap_or(f32::MAX);
-        let mut fitted = Vec::with_capacity(frusta.len());
-        for (view, frustum) in &frusta {
-            let Some(bevys) = cascades.cascades.get(&view.camera) else { continue };
-            let fitters = memory.views.entry(view.camera).or_default();
+        let mut fitted = Vec::with_capacity(shadowed.len());
+        for part in &shadowed {
+            let camera = part.view.camera;
+            let Some(bevys) = cascades.cascades.get(&camera) else { continue };
+            let fitters = memory.views.entry(camera).or_default();
             let cascades = if has_windows {
-                self.windows(view, frustum, fitters)?
+                self.windows(part, fitters)?
             } else {
-                self.cascades(view, frustum, &bounds, fitters, bevys, farthest)?
+                self.cascades(part, &bounds, fitters, bevys, farthest)?
             };
-            fitted.push((view.camera, cascades));
+            fitted.push((camera, cascades));
         }
         cascades.cascades.extend(fitted);
         memory.lend(bounds, self.biases, config, light);
@@ -204,40 +207,36 @@ impl Sun {
         counted.filter_map(demand).collect()
     }
 
-    /// The windows of a view.
-    fn windows(
-        &self,
-        view: &View,
-        frustum: &ViewFrustum,
-        fitters: &mut Vec<ShadowFitter>,
-    ) -> Result<Vec<Cascade>, Problem> {
+    /// Fits the windows of a view.
+    fn windows(&self, part: &ShadowedView, fitters: &mut Vec<ShadowFitter>) -> Result<Vec<Cascade>, Problem> {
         let technique = Fit::for_windows(self.bounds.len(), self.max_distance(), self.resolution, self.reading);
         fitters.resize_with(1, || ShadowFitter::new(&technique));
         let fitter = &mut fitters[0];
         if *fitter.technique() != technique {
             fitter.set_technique(&technique);
         }
-        let receivers = (!view.receivers.has_unknown).then_some(Boxes::world(&view.receivers.boxes));
-        let views = [*frustum];
+        let Receivers { boxes, has_unknown } = &part.view.receivers;
+        let receivers = (!has_unknown).then_some(Boxes::world(boxes));
+        let views = [part.frustum];
         let maps = fitter.fit(&FitInput { receivers, ..FitInput::new(&views, self.direction) })?;
         Ok(maps.iter().map(|map| self.cascade(map)).collect())
     }
 
-    /// The views of which a part is shadowed.
-    fn frusta<'a>(&self, views: &[&'a View]) -> Result<Vec<(&'a View, ViewFrustum)>, Problem> {
-        let mut frusta = Vec::with_capacity(views.len());
+    /// Returns the views that have a part with shadows.
+    fn shadowed<'a>(&self, views: &[&'a View]) -> Result<Vec<ShadowedView<'a>>, Problem> {
+        let mut shadowed = Vec::with_capacity(views.len());
         for view in views {
             let frustum = view.frustum(self.max_distance())?;
             // An empty one lies beyond the shadows.
             if !frustum.is_empty() {
-                frusta.push((*view, frustum));
+                shadowed.push(ShadowedView { view, frustum });
             }
         }
-        Ok(frusta)
+        Ok(shadowed)
     }
 
     /// Bounds of the cascades of all views, in metres of view depth.
-    fn bounds(&self, views: &[(&View, ViewFrustum)], memory: &mut FitMemory) -> Result<Vec<f32>, Problem> {
+    fn bounds(&self, views: &[ShadowedView], memory: &mut FitMemory) -> Result<Vec<f32>, Problem> {
         let count = self.bounds.len();
         if self.fitted.splits == FitSplits::Bevys {
             return Ok(self.bounds.clone());
@@ -253,16 +252,16 @@ impl Sun {
         if *fitter.technique() != technique {
             fitter.set_technique(&technique);
         }
-        let frusta: Vec<ViewFrustum> = views.iter().map(|(_, frustum)| *frustum).collect();
+        let frusta: Vec<ViewFrustum> = views.iter().map(|part| part.frustum).collect();
         let all: Vec<shadowfit::Aabb>;
         let boxes = match views {
-            [(view, _)] => &view.receivers.boxes,
+            [part] => &part.view.receivers.boxes,
             _ => {
-                all = views.iter().flat_map(|(view, _)| view.receivers.boxes.iter().copied()).collect();
+                all = views.iter().flat_map(|part| part.view.receivers.boxes.iter().copied()).collect();
                 &all
             }
         };
-        let has_unknown = views.iter().any(|(view, _)| view.receivers.has_unknown);
+        let has_unknown = views.iter().any(|part| part.view.receivers.has_unknown);
         let receivers = (!has_unknown).then_some(Boxes::world(boxes));
         let fitted = fitter.fit(&FitInput { receivers, ..FitInput::new(&frusta, self.direction) })?;
         let mut bounds = Vec::with_capacity(count);
@@ -278,9 +277,9 @@ impl Sun {
 
     /// Bounds by Bevy's rule, equal ratios from the first one on, up to the farthest receiver in view instead of where
     /// shadows end: nearer ones are sharper, but more pixels pass from one map to the next when the camera moves.
-    fn spaced_bounds(&self, views: &[(&View, ViewFrustum)], held: &mut Option<f32>) -> Vec<f32> {
+    fn spaced_bounds(&self, views: &[ShadowedView], held: &mut Option<f32>) -> Vec<f32> {
         let (first, end) = (self.bounds[0], self.max_distance());
-        let farthest = |(view, frustum): &(&View, ViewFrustum)| view.receivers.farthest(frustum.origin.as_vec3());
+        let farthest = |part: &ShadowedView| part.view.receivers.farthest(part.frustum.origin.as_vec3());
         let last = views.iter().map(farthest).fold(first, f32::max).min(end);
         let is_kept = |far: &f32| *far >= last && *far <= last * MAX_FAR_WASTE;
         let far = held.filter(is_kept).unwrap_or(last * FAR_ROOM).min(end);
@@ -295,13 +294,13 @@ impl Sun {
     /// The cascades of a view; Bevy's where no point of the view lies between their bounds.
     fn cascades(
         &self,
-        view: &View,
-        frustum: &ViewFrustum,
+        shadowed: &ShadowedView,
         bounds: &[f32],
         fitters: &mut Vec<ShadowFitter>,
         bevys: &[Cascade],
         farthest: f32,
     ) -> Result<Vec<Cascade>, Problem> {
+        let ShadowedView { view, frustum } = shadowed;
         let technique = self.fitted.fit.for_cascade(self.resolution, self.reading);
         fitters.resize_with(bounds.len(), || ShadowFitter::new(&technique));
         let depths = Depths::of(view, frustum);
@@ -336,7 +335,7 @@ impl Sun {
     /// The cascade of a map, with room for receivers that biases move toward the light.
     fn cascade(&self, map: &FittedMap) -> Cascade {
         let texel = map.projection.texel_size.max_element();
-        cascade(map, self.biases[0].max(0.0) + (self.biases[1].max(0.0) * SQRT_2 + 1.0) * texel)
+        cascade(map, self.biases.depth.max(0.0) + (self.biases.normal.max(0.0) * SQRT_2 + 1.0) * texel)
     }
 }
 
@@ -348,10 +347,23 @@ const MAX_FAR_WASTE: f32 = 2.5;
 /// Relative error of a view depth in Bevy's shader: f32, with room for the matrices that it goes through.
 const ROUNDING: f32 = 1e-5;
 
+/// A view that has a part with shadows.
+struct ShadowedView<'a> {
+    view: &'a View,
+    /// This part.
+    frustum: ViewFrustum,
+}
+
 /// The receivers of a view with their depths in it.
 struct Depths<'a> {
     boxes: &'a [shadowfit::Aabb],
-    ranges: Vec<(f32, f32)>,
+    ranges: Vec<DepthRange>,
+}
+
+/// View depths between which a receiver lies, in metres.
+struct DepthRange {
+    near: f32,
+    far: f32,
 }
 
 impl<'a> Depths<'a> {
@@ -363,14 +375,14 @@ impl<'a> Depths<'a> {
             let (centre, half) = ((aabb.min + aabb.max) * 0.5, (aabb.max - aabb.min) * 0.5);
             let (depth, reach) = (centre.dot(forward) - eye, half.dot(forward.abs()));
             let rounding = (centre.abs().max_element() + eye.abs()) * ROUNDING;
-            (depth - reach - rounding, depth + reach + rounding)
+            DepthRange { near: depth - reach - rounding, far: depth + reach + rounding }
         };
         Self { boxes, ranges: boxes.iter().map(range).collect() }
     }
 
     /// The boxes of which a part may lie between two view depths.
     fn between(&self, near: f32, far: f32) -> impl Iterator<Item = shadowfit::Aabb> {
-        let is_in = move |range: &(f32, f32)| range.1 >= near && range.0 <= far;
+        let is_in = move |range: &DepthRange| range.far >= near && range.near <= far;
         self.ranges.iter().zip(self.boxes).filter(move |(range, _)| is_in(range)).map(|(_, aabb)| *aabb)
     }
 }

@@ -15,25 +15,29 @@ use bevy::render::{Render, RenderApp, RenderSystems};
 use shadowfit::Seen;
 use shadowfit_wgpu::demand::{DemandPass, DemandView};
 
-/// A light and the camera whose picture is counted for it.
-type Key = (Entity, Entity);
+/// A light, and a camera whose picture is counted for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct CountedView {
+    pub(crate) light: Entity,
+    pub(crate) camera: Entity,
+}
 
 /// Pictures that are to be counted in this frame; their rectangles are those of the cameras.
 #[derive(Resource, ExtractResource, Clone, Default)]
 #[extract_app(RenderApp)]
-pub(crate) struct Wanted(pub(crate) Vec<(Key, DemandView)>);
+pub(crate) struct Wanted(pub(crate) Vec<(CountedView, DemandView)>);
 
 /// What was counted last, shared by both worlds.
 #[derive(Resource, Clone, Default)]
-pub(crate) struct Sightings(Arc<Mutex<HashMap<Key, Seen>>>);
+pub(crate) struct Sightings(Arc<Mutex<HashMap<CountedView, Seen>>>);
 
 impl Sightings {
     /// The newest counts, given once.
-    pub(crate) fn take(&self, key: Key) -> Option<Seen> {
+    pub(crate) fn take(&self, key: CountedView) -> Option<Seen> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key)
     }
 
-    fn put(&self, key: Key, seen: Seen) {
+    fn put(&self, key: CountedView, seen: Seen) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, seen);
     }
 }
@@ -41,7 +45,7 @@ impl Sightings {
 /// The passes that count, in the render world: one for each light and camera.
 #[derive(Resource, Default)]
 struct Passes {
-    passes: HashMap<Key, DemandPass>,
+    passes: HashMap<CountedView, DemandPass>,
     /// Whether the device cannot count.
     is_refused: bool,
 }
@@ -74,7 +78,7 @@ fn count(
     let (view, camera, textures) = view.into_inner();
     let camera_entity = view.retained_view_entity.main_entity.id();
     let (Some(wanted), Some(depth)) = (wanted, textures.depth_only_view()) else { return };
-    for (key, demand) in wanted.0.iter().filter(|((_, camera), _)| *camera == camera_entity) {
+    for (key, demand) in wanted.0.iter().filter(|(key, _)| key.camera == camera_entity) {
         let (corner, size) = match &camera.viewport {
             Some(part) => (part.physical_position, part.physical_size),
             None => (UVec2::ZERO, UVec2::new(depth.texture().width(), depth.texture().height())),
@@ -90,7 +94,13 @@ fn count(
 
 impl Passes {
     /// The pass of a light and a camera; `None` where the device has none.
-    fn of(&mut self, key: Key, samples: u32, device: &RenderDevice, queue: &RenderQueue) -> Option<&mut DemandPass> {
+    fn of(
+        &mut self,
+        key: CountedView,
+        samples: u32,
+        device: &RenderDevice,
+        queue: &RenderQueue,
+    ) -> Option<&mut DemandPass> {
         if self.is_refused {
             return None;
         }

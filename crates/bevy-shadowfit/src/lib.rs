@@ -67,7 +67,7 @@ impl Plugin for ShadowfitPlugin {
             .register_type::<WholeBox>()
             .init_resource::<MeshClusters>()
             .init_resource::<WindowsShader>()
-            .add_observer(memory::forget)
+            .add_observer(fit::forget)
             .add_systems(First, memory::give_back.in_set(ShadowfitSystems::GiveBack))
             .add_systems(
                 PostUpdate,

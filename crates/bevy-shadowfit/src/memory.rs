@@ -5,7 +5,7 @@ use bevy::light::{CascadeShadowConfig, DirectionalLight};
 use bevy::prelude::*;
 use shadowfit::ShadowFitter;
 
-use crate::settings::FittedShadows;
+use crate::bias::Biases;
 
 /// The fitters of a light, and the values that it has lent us.
 #[derive(Component, Clone, Default)]
@@ -26,7 +26,7 @@ pub(crate) struct FitMemory {
 #[derive(Clone)]
 struct Lent {
     bounds: Replaced<Vec<f32>>,
-    biases: Replaced<[f32; 2]>,
+    biases: Replaced<Biases>,
 }
 
 #[derive(Clone)]
@@ -45,13 +45,13 @@ impl<T: PartialEq> Replaced<T> {
 }
 
 impl FitMemory {
-    /// Puts a fit's bounds, in metres of view depth, into the config, and its biases (depth in metres, normal in texels)
-    /// into the light, for Bevy's renderer. Change detection does not see it: the renderer extracts lights in each
-    /// frame, since Bevy makes their cascades anew in each.
+    /// Sets the bounds of the config, in metres of view depth, and the biases of the light to the values of a fit, for
+    /// Bevy's renderer. The user's values are kept. Change detection does not see it: Bevy makes new cascades in each
+    /// frame, so the renderer extracts all lights in each frame.
     pub(crate) fn lend(
         &mut self,
         bounds: Vec<f32>,
-        biases: [f32; 2],
+        biases: Biases,
         config: &mut Mut<CascadeShadowConfig>,
         light: &mut Mut<DirectionalLight>,
     ) {
@@ -59,20 +59,20 @@ impl FitMemory {
         let light = light.bypass_change_detection();
         let users = std::mem::replace(&mut config.bounds, bounds);
         let ours = config.bounds.clone();
-        let users_biases = [light.shadow_depth_bias, light.shadow_normal_bias];
-        [light.shadow_depth_bias, light.shadow_normal_bias] = biases;
+        let users_biases = Biases::of(light);
+        biases.set(light);
         self.lent =
             Some(Lent { bounds: Replaced { users, ours }, biases: Replaced { users: users_biases, ours: biases } });
     }
 
     /// Gives the user's values back.
-    fn give_back(&mut self, config: &mut Mut<CascadeShadowConfig>, light: &mut Mut<DirectionalLight>) {
+    pub(crate) fn give_back(&mut self, config: &mut Mut<CascadeShadowConfig>, light: &mut Mut<DirectionalLight>) {
         let Some(Lent { bounds, biases }) = self.lent.take() else { return };
         bounds.give_back(&mut config.bypass_change_detection().bounds);
         let light = light.bypass_change_detection();
-        let mut place = [light.shadow_depth_bias, light.shadow_normal_bias];
+        let mut place = Biases::of(light);
         biases.give_back(&mut place);
-        [light.shadow_depth_bias, light.shadow_normal_bias] = place;
+        place.set(light);
     }
 }
 
@@ -80,20 +80,5 @@ impl FitMemory {
 pub(crate) fn give_back(mut lights: Query<(&mut FitMemory, &mut CascadeShadowConfig, &mut DirectionalLight)>) {
     for (mut memory, mut config, mut light) in &mut lights {
         memory.give_back(&mut config, &mut light);
-    }
-}
-
-/// Leaves a light to Bevy.
-pub(crate) fn forget(
-    removed: On<Remove<FittedShadows>>,
-    mut lights: Query<(&mut FitMemory, &mut CascadeShadowConfig, &mut DirectionalLight)>,
-    mut commands: Commands,
-) {
-    let light = removed.event_target();
-    if let Ok((mut memory, mut config, mut sun)) = lights.get_mut(light) {
-        memory.give_back(&mut config, &mut sun);
-    }
-    if let Ok(mut light) = commands.get_entity(light) {
-        light.try_remove::<FitMemory>();
     }
 }

@@ -43,22 +43,18 @@ pub(crate) struct Receivers {
     pub(crate) has_unknown: bool,
 }
 
-/// Cameras that show meshes.
-type Cameras<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        &'static Camera,
-        &'static Projection,
-        &'static GlobalTransform,
-        &'static VisibleEntities,
-        Option<&'static RenderLayers>,
-        Option<&'static ShadowFilteringMethod>,
-        Has<DepthPrepass>,
-    ),
-    With<Camera3d>,
->;
+/// A camera that shows meshes.
+#[derive(QueryData)]
+pub(crate) struct ViewCamera {
+    entity: Entity,
+    camera: &'static Camera,
+    projection: &'static Projection,
+    transform: &'static GlobalTransform,
+    visible: &'static VisibleEntities,
+    layers: Option<&'static RenderLayers>,
+    filter: Option<&'static ShadowFilteringMethod>,
+    has_prepass: Has<DepthPrepass>,
+}
 
 /// Meshes whose visibility the CPU does not look at.
 type Unculled<'w, 's> = Query<
@@ -75,13 +71,15 @@ pub(crate) struct MeshBox {
     mesh: &'static Mesh3d,
     aabb: Option<&'static Aabb>,
     is_unbounded: Has<NoFrustumCulling>,
-    is_whole: (Has<WholeBox>, Has<SkinnedMesh>, Has<MeshMorphWeights>),
+    is_whole: Has<WholeBox>,
+    is_skinned: Has<SkinnedMesh>,
+    is_morphed: Has<MeshMorphWeights>,
 }
 
 /// Everything that views are made from.
 #[derive(SystemParam)]
 pub(crate) struct Scene<'w, 's> {
-    cameras: Cameras<'w, 's>,
+    cameras: Query<'w, 's, ViewCamera, With<Camera3d>>,
     clusters: Res<'w, MeshClusters>,
     meshes: Query<'w, 's, MeshBox, (With<Mesh3d>, Without<NotShadowReceiver>)>,
     unculled: Unculled<'w, 's>,
@@ -91,51 +89,44 @@ impl Scene<'_, '_> {
     /// The active views, each with what receives shadows in it. Meshes that reach farther than `large` metres to a side
     /// count with their clusters.
     pub(crate) fn views(&self, large: f32) -> Result<Vec<View>, Problem> {
-        self.cameras.iter().filter(|(_, camera, ..)| camera.is_active).map(|camera| self.view(camera, large)).collect()
+        self.cameras.iter().filter(|item| item.camera.is_active).map(|item| self.view(&item, large)).collect()
     }
 
-    fn view(
-        &self,
-        (entity, camera, projection, transform, visible, layers, filter, has_prepass): (
-            Entity,
-            &Camera,
-            &Projection,
-            &GlobalTransform,
-            &VisibleEntities,
-            Option<&RenderLayers>,
-            Option<&ShadowFilteringMethod>,
-            bool,
-        ),
-        large: f32,
-    ) -> Result<View, Problem> {
-        let layers = layers.cloned().unwrap_or_default();
+    fn view(&self, item: &ViewCameraItem, large: f32) -> Result<View, Problem> {
+        let layers = item.layers.cloned().unwrap_or_default();
+        let receivers = self.receivers(item, &layers, large)?;
+        let world_from_view = world_from_view(item.transform).ok_or(Problem::View(item.entity))?;
+        let clip_from_view = match &item.camera.sub_camera_view {
+            Some(part) => item.projection.get_clip_from_view_for_sub(part),
+            None => item.projection.get_clip_from_view(),
+        };
+        let clip_from_view = DMat4::from_cols_array(&clip_from_view.to_cols_array().map(f64::from));
+        let world_from_clip = world_from_view * clip_from_view.inverse();
+        Ok(View {
+            camera: item.entity,
+            layers,
+            filter: item.filter.copied().unwrap_or_default(),
+            world_from_clip: fit_glam::DMat4::from_cols_array(&world_from_clip.to_cols_array()),
+            eye: fit_glam::DVec3::from_array(world_from_view.w_axis.truncate().to_array()),
+            has_prepass: item.has_prepass,
+            receivers,
+        })
+    }
+
+    /// Returns the boxes of the meshes that a camera sees. `layers` are the camera's.
+    fn receivers(&self, item: &ViewCameraItem, layers: &RenderLayers, large: f32) -> Result<Receivers, Problem> {
         let mut receivers = Receivers::default();
-        let visible = visible.get(TypeId::of::<Mesh3d>());
+        let visible = item.visible.get(TypeId::of::<Mesh3d>());
         receivers.boxes.reserve(visible.len());
         for (mesh, item) in visible.iter().filter_map(|&mesh| Some((mesh, self.meshes.get(mesh).ok()?))) {
             receivers.add(&item, &self.clusters, large).map_err(|()| Problem::Mesh(mesh))?;
         }
         for (mesh, visibility, mesh_layers) in &self.unculled {
             if visibility.get() && layers.intersects(mesh_layers.unwrap_or_default()) {
-                receivers.add(&mesh, &self.clusters, large).map_err(|()| Problem::View(entity))?;
+                receivers.add(&mesh, &self.clusters, large).map_err(|()| Problem::View(item.entity))?;
             }
         }
-        let world_from_view = world_from_view(transform).ok_or(Problem::View(entity))?;
-        let clip_from_view = match &camera.sub_camera_view {
-            Some(part) => projection.get_clip_from_view_for_sub(part),
-            None => projection.get_clip_from_view(),
-        };
-        let clip_from_view = DMat4::from_cols_array(&clip_from_view.to_cols_array().map(f64::from));
-        let world_from_clip = world_from_view * clip_from_view.inverse();
-        Ok(View {
-            camera: entity,
-            layers,
-            filter: filter.copied().unwrap_or_default(),
-            world_from_clip: fit_glam::DMat4::from_cols_array(&world_from_clip.to_cols_array()),
-            eye: fit_glam::DVec3::from_array(world_from_view.w_axis.truncate().to_array()),
-            has_prepass,
-            receivers,
-        })
+        Ok(receivers)
     }
 }
 
@@ -187,7 +178,7 @@ impl Receivers {
         let world_from_mesh = item.transform.affine();
         let whole = world_box(aabb, &world_from_mesh).ok_or(())?;
         let is_large = (whole.max - whole.min).max_element() > 2.0 * large;
-        let may_be_cut = !(item.is_whole.0 || item.is_whole.1 || item.is_whole.2);
+        let may_be_cut = !(item.is_whole || item.is_skinned || item.is_morphed);
         match (is_large && may_be_cut).then(|| clusters.of(item.mesh.id())).flatten() {
             Some(clusters) => {
                 let boxes = clusters.iter().map(|cluster| {

@@ -1,11 +1,13 @@
 //! Windows are read by coverage, which Bevy's shader does not do: it takes the cascade of a point's view depth. So the
 //! text of its shader library `shadows.wesl` is extended once it is loaded: two functions begin with a question that only
-//! lights with [`Fit::Windows`](crate::Fit::Windows) answer with yes.
+//! lights with [`Fit::Windows`] answer with yes.
 
 use std::borrow::Cow;
 
 use bevy::prelude::*;
 use bevy::shader::{Shader, Source};
+
+use crate::settings::{Fit, FittedShadows};
 
 /// The library's path in Bevy.
 const PATH: &str = "bevy_pbr/render/shadows.wesl";
@@ -55,13 +57,13 @@ pub(crate) enum WindowsShader {
 /// Extends Bevy's shader library as soon as a light asks for windows and the library is there.
 pub(crate) fn extend(
     mut state: ResMut<WindowsShader>,
-    lights: Query<&crate::FittedShadows>,
+    lights: Query<&FittedShadows>,
     shaders: Option<ResMut<Assets<Shader>>>,
 ) {
     if *state == WindowsShader::Extended {
         *state = WindowsShader::Ready;
     }
-    let is_asked_for = lights.iter().any(|fitted| fitted.fit == crate::Fit::Windows);
+    let is_asked_for = lights.iter().any(|fitted| fitted.fit == Fit::Windows);
     let Some(mut shaders) = shaders.filter(|_| is_asked_for && *state == WindowsShader::Awaited) else { return };
     let library =
         shaders.iter().find(|(_, shader)| shader.path.ends_with(PATH)).map(|(id, shader)| (id, &shader.source));

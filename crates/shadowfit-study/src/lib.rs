@@ -43,7 +43,6 @@ pub use fits::{RayUse, see_by_rays};
 pub use frame::atmosphere;
 pub use judging::{Judging, SharedTruth};
 pub use live::LiveTruth;
-pub use maps::fit_map;
 pub use picture::{FrameBefore, JudgeJob};
 pub use rays::SceneRays;
 pub use scene::{PosedScene, PrepareError, PreparedScene};

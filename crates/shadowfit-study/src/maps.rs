@@ -4,21 +4,11 @@ use glam::{DMat4, DVec3, Vec3};
 use shadowfit::FittedMap;
 use shadowfit::selection::MapOrder;
 use shadowfit::settings::MapSelection;
-use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-/// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
-pub fn fit_map(map: &FittedMap) -> FitMap {
-    FitMap {
-        view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
-        resolution: map.projection.resolution.x,
-        resolution_xy: (map.projection.resolution.x != map.projection.resolution.y)
-            .then(|| map.projection.resolution.to_array()),
-        split_near: 0.0,
-        split_far: map.depth_range().far.min(FitMap::NO_END),
-    }
-}
+/// View depth, in metres, of the end of maps that have none: measured maps have finite ends.
+pub(crate) const NO_END: f64 = 1e9;
 
 /// Maps of a descriptor in the form that is measured, for positions relative to a world position. `direction` is the
 /// light's direction of travel.
@@ -28,10 +18,10 @@ pub(crate) fn measured(
     direction: Vec3,
     origin: DVec3,
 ) -> Vec<MeasuredMap> {
-    let from_origin = |map: &FittedMap| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
     let measured = |map: &FittedMap| {
         let reach = descriptor.softness.reach_in(descriptor.filter, &map.projection).per_axis();
-        let measured = from_origin(map).measured(-direction.as_dvec3());
+        let (size, end) = (map.projection.resolution.as_dvec2(), map.depth_range().far.min(NO_END));
+        let measured = MeasuredMap::new(&clip_from(map, origin), size, end, -direction.as_dvec3());
         measured.with_blend_near(map.depth_range().blend_near).with_reach(reach)
     };
     maps.iter().map(measured).collect()

@@ -9,12 +9,15 @@ mod lacking;
 #[cfg(feature = "wgsl")]
 pub mod layout;
 pub mod pairs;
+mod program;
 pub mod read_back;
+pub mod scene_notes;
 #[cfg(feature = "wgsl")]
 pub mod wgsl;
 
-pub use folder::package_folder;
+pub use folder::{package_folder, package_program};
 pub use gpu::{Lent, TestGpu, adapter_choice, adapter_name, filter_step, open_test_gpu, subpixel_step, test_gpu};
 #[cfg(feature = "render")]
 pub use gpu::{golden_gpu, open_renderer_gpu, renderer_gpu};
 pub use lacking::{lacking, require_fine_steps, require_large_triangles};
+pub use program::refuses_missing_adapter;

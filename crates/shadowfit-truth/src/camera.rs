@@ -128,7 +128,7 @@ impl PixelRay {
 }
 
 /// How far the point where a ray meets a plane moves on it when the ray is moved there by `across` times `spread`.
-pub(crate) fn slide(across: DVec3, ray: DVec3, normal: DVec3, spread: f64) -> DVec3 {
+pub fn slide(across: DVec3, ray: DVec3, normal: DVec3, spread: f64) -> DVec3 {
     (across - ray * (across.dot(normal) / ray.dot(normal))) * spread
 }
 

@@ -2,19 +2,17 @@
 //!
 //! It takes plain triangles (world space, right-handed, metres) and cut-outs, so that any engine can
 //! be judged. [`Tracer`] casts rays, [`Truth`] says whether light reaches each pixel, [`judge()`]
-//! sorts the pixels of a picture into right ones and the named kinds of wrong ones, and [`peers`]
-//! ranks fits by what their maps give to many frames. With the feature `gpu`, compute passes fill a
-//! texture with the same classes. The light is a sun or, on the CPU alone, one with a position
+//! sorts the pixels of a picture into right ones and the named kinds of wrong ones. With the feature `gpu`,
+//! compute passes fill a texture with the same classes. The light is a sun or, on the CPU alone, one with a position
 //! ([`TruthLight`]). [`AmbientTruth`] is the reference of ambient occlusion.
 //!
-//! Each module uses only modules of the lines below its own. What pictures and fits share (`maps`,
-//! `histogram`, `tally`) stands below both:
+//! Each module uses only modules of the lines below its own:
 //!
 //! ```text
 //! crawl
 //! gpu      judge
 //!          pixel
-//! ambient  peers  truth
+//! ambient  truth
 //! displacement  light  seen  tally
 //! camera  class  distances  histogram  maps  sun  tracer
 //! cut_out  memory  spiral
@@ -35,7 +33,6 @@ mod judge;
 mod light;
 mod maps;
 mod memory;
-pub mod peers;
 mod pixel;
 mod seen;
 mod spiral;
@@ -44,16 +41,9 @@ mod tally;
 mod tracer;
 mod truth;
 
-#[cfg(any(test, fuzzing))]
-#[doc(hidden)]
-pub mod fuzzed {
-    //! What fuzzing feeds; no other build has it.
-    pub use crate::peers::fuzzed::fit_file;
-}
-
 pub use ambient::{AmbientSettings, AmbientTruth};
 pub use area::{AreaTally, area};
-pub use camera::{PixelCamera, PixelRay};
+pub use camera::{PixelCamera, PixelRay, slide};
 pub use class::Class;
 pub use crawl::{MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutMaterial, CutOut, CutOuts, Wrap};
@@ -61,7 +51,10 @@ pub use displacement::MAX_DISPLACEMENT;
 pub use histogram::Histogram;
 pub use judge::{Judged, judge, judge_while};
 pub use light::{LightRay, TruthLight};
-pub use maps::{MapGradients, MapPosition, MapReading, MeasuredMap, PictureMaps};
+pub use maps::{
+    MIN_FACING, MapGradients, MapPosition, MapReading, MeasuredMap, OccluderPlace, PictureMaps, SelectedMap,
+    pixels_per_texel,
+};
 pub use memory::TracerMemory;
 pub use pixel::{PixelFinding, PixelTruth};
 pub use tally::{ClassTally, Crawl, PictureFigures, PictureTally};

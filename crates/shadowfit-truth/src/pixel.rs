@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::camera::PixelCamera;
 use crate::class::{Class, counts_as_lit};
 use crate::distances::NONE_MARKED;
-use crate::maps::{MapSelection, OccluderPlace, PictureMaps, pixels_per_texel};
+use crate::maps::{OccluderPlace, PictureMaps, SelectedMap, pixels_per_texel};
 use crate::seen::seen_by_ray;
 use crate::tracer::Tracer;
 use crate::truth::{self, Occluder, TruthPoint, TruthSettings, is_transition, is_within};
@@ -155,14 +155,14 @@ impl PixelTruth<'_> {
 
     /// Pixels per texel along the worse axis, in the map that the point reads; infinite where the surface
     /// is edge-on to the light.
-    fn texel_width(&self, choice: &MapSelection, pixel: usize, point: &TruthPoint) -> f32 {
+    fn texel_width(&self, choice: &SelectedMap, pixel: usize, point: &TruthPoint) -> f32 {
         let steps = self.camera.pixel_steps(&self.camera.ray_of(pixel), point.normal, point.view_depth);
         let pixels = pixels_per_texel(choice.map.gradients(&choice.position).texels_per_step(steps)) as f32;
         if pixels.is_nan() { f32::INFINITY } else { pixels }
     }
 
     /// Whether the point reads no map, or one that does not hold any of its occluders.
-    fn is_hole(&self, maps: &PictureMaps, choice: Option<&MapSelection>, pixel: usize, point: &TruthPoint) -> bool {
+    fn is_hole(&self, maps: &PictureMaps, choice: Option<&SelectedMap>, pixel: usize, point: &TruthPoint) -> bool {
         let Some(choice) = choice else { return true };
         let mut is_held = false;
         self.settings.for_each_occluder(self.tracer, pixel, point, |occluder| {

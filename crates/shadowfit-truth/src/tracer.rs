@@ -158,14 +158,14 @@ impl Tracer {
     }
 
     /// Unit normal of a triangle's plane by its winding, in f64; zero for one without area.
-    pub(crate) fn plane_normal(&self, triangle: u32) -> DVec3 {
+    pub fn plane_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(triangle).map(Vec3::as_dvec3);
         (b - a).cross(c - a).normalize_or_zero()
     }
 
     /// Distance along a ray to the plane of the triangle that was hit, in f64; where that is not finite,
     /// the distance that f32 found.
-    pub(crate) fn refine(&self, hit: Hit, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
+    pub fn refine(&self, hit: Hit, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
         let corner = self.corners(hit.triangle)[0].as_dvec3();
         let distance = normal.dot(corner - origin) / normal.dot(direction);
         if distance.is_finite() { distance } else { f64::from(hit.distance) }

@@ -63,17 +63,17 @@ const SAMPLE_IMAGES: &str = "samples";
 const MOST_SAMPLE_BYTES: u64 = 200_000;
 
 /// The view that errors are shown in, relative to the workspace's folder.
-const ERROR_VIEW: &str = "examples/report/error-view.toml";
+const ERROR_VIEW: &str = "docs/gallery/error-view.toml";
 
 /// Techniques whose errors are shown.
 const WRONG: [&str; 2] = ["xna-1", "windows-4"];
 
 /// The walk that shadows are compared on, relative to the workspace's folder.
-const WALK: &str = "examples/report/walk.toml";
+const WALK: &str = "docs/gallery/walk.toml";
 
 /// Techniques whose shadows are compared, and how their pictures are named.
 const COMPARED: [(&str, &str); 3] =
-    [("examples/report/bevy.toml", "bevy"), ("stable-4", "stable-4"), ("windows-4", "windows-4")];
+    [("docs/gallery/bevy.toml", "bevy"), ("stable-4", "stable-4"), ("windows-4", "windows-4")];
 
 /// Filtered and traced edges of coarse maps, each the technique and how its picture is named, and what makes maps coarse.
 const TRACED: [(&str, &str); 2] = [("windows-4", "filtered"), ("exact-4", "traced")];

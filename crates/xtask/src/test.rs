@@ -33,7 +33,7 @@ const SHARING: [&str; 3] = ["gpu", "golden", "wgsl::"];
 const OWN_PROCESS: &str = "own_process";
 
 /// Programs that tests start.
-const PROGRAMS: [&str; 4] = ["growth", "peer_fit", "report", "viewer"];
+const PROGRAMS: [&str; 2] = ["growth", "viewer"];
 
 /// Packages of the quick tier. None of them links egui or winit.
 const QUICK_PACKAGES: [&str; 9] = [

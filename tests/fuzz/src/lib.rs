@@ -3,7 +3,7 @@
 //! Those of this folder use nothing but what is public, and the tests of the workspace run them over the files of
 //! `corpus`, too. What only the inside of a crate can reach stands in a module `fuzzed` of that crate, with its own test.
 
-#[path = "../../../examples/report/path"]
+#[path = "../../../crates/shadowfit-report/src/program/path"]
 mod path {
     //! Enough of the report's camera paths to read their files.
 
@@ -39,7 +39,7 @@ pub use cache_plan::cache_plan;
 pub use fit_input::fit_input;
 pub use gltf_import::gltf_import;
 pub use saved_json::saved_json;
-pub use shadowfit_truth::fuzzed::fit_file;
+pub use shadowfit_report::fuzzed::fit_file;
 pub use shadowfit_viewer::fuzzed::script;
 pub use technique_toml::technique_toml;
 

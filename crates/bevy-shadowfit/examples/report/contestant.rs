@@ -1,115 +1,73 @@
-//! Whose cascades are measured, and with which bias.
+//! Bevy's renderer as a contestant of the report: each technique is one of the entrants.
 
-use bevy::light::CascadeShadowConfigBuilder;
-use bevy::prelude::*;
-use bevy_shadowfit::{Fit, FitBias, FitSplits, FittedShadows};
+use anyhow::Result;
+use shadowfit::glam::DVec3;
+use shadowfit_report::contestant::{Contestant, Drawn, LightMaps, LitSurface, LookupFilter, Redraw, Shadows};
+use shadowfit_report::geometry::Corners;
+use shadowfit_report::peers::Frame;
 
-/// View depth at which Bevy's first cascade ends, in metres: its default.
-const FIRST_BOUND: f32 = 10.0;
+use crate::entrant::Entrant;
+use crate::stage::Stage;
+use crate::sun_maps::SunMaps;
 
-/// Whose cascades.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Contestant {
-    /// Bevy's own cascades
-    Bevy,
-    /// This crate's fit that stands still
-    Stable,
-    /// This crate's fit that seldom moves
-    Calm,
-    /// This crate's fit to what the camera sees, by its depth prepass
-    Histogram,
-    /// This crate's windows, read by coverage
-    Windows,
+/// Least cosine toward the eye in Bevy's shader.
+const MIN_TO_EYE: f64 = 1e-4;
+
+/// Bevy's renderer, and the entrants that it draws.
+pub(crate) struct Renderer {
+    pub(crate) stage: Stage,
+    pub(crate) entrants: Vec<Entrant>,
+    /// Updates of the app for each frame.
+    pub(crate) settle: u32,
+    pub(crate) filter: LookupFilter,
 }
 
-/// Whose bias.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Bias {
-    /// The defaults of Bevy's light
-    Bevys,
-    /// This crate's
-    Ours,
-}
+impl Contestant for Renderer {
+    type Maps = SunMaps;
 
-/// Whose bounds cascades have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Splits {
-    /// This crate's, in its own fits
-    Ours,
-    /// The defaults of Bevy's config
-    Bevys,
-}
-
-/// A row of the report.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Entrant {
-    pub(crate) contestant: Contestant,
-    pub(crate) bias: Bias,
-}
-
-impl Entrant {
-    /// Bevy's own cascades with its own bias, which others are compared with.
-    pub(crate) const BEVY: Self = Self { contestant: Contestant::Bevy, bias: Bias::Bevys };
-
-    /// Every pair that the plugin offers: it leaves Bevy's own cascades with Bevy's bias.
-    pub(crate) fn of(contestants: &[Contestant], biases: &[Bias]) -> Vec<Self> {
-        let pairs = contestants.iter().flat_map(|contestant| biases.iter().map(|bias| (*contestant, *bias)));
-        let entrants = pairs.map(|(contestant, bias)| Self { contestant, bias });
-        entrants.filter(|entrant| entrant.fit().is_some() || entrant.bias == Bias::Bevys).collect()
+    fn techniques(&self) -> Vec<String> {
+        self.entrants.iter().map(Entrant::name).collect()
     }
 
-    /// Name in tables and files.
-    pub(crate) fn name(&self) -> String {
-        let contestant = match self.contestant {
-            Contestant::Bevy => return "bevy".to_owned(),
-            Contestant::Stable => "stable",
-            Contestant::Calm => "calm",
-            Contestant::Histogram => "histogram",
-            Contestant::Windows => "windows",
+    fn set_scene(&mut self, objects: &[Vec<Corners>]) -> Result<()> {
+        self.stage.set_scene(objects);
+        Ok(())
+    }
+
+    fn begin_path(&mut self, technique: usize, first: &Frame) -> Result<()> {
+        self.stage.set_light(first, self.entrants[technique]);
+        Ok(())
+    }
+
+    fn draw(&mut self, frame: &Frame) -> Result<Drawn<SunMaps>> {
+        self.stage.set_camera(frame);
+        self.stage.settle(self.settle.saturating_sub(1));
+        let shadows = Shadows::Brightness(self.stage.draw()?);
+        Ok(Drawn { shadows, maps: self.stage.maps()? })
+    }
+
+    fn redraw(&mut self, redraw: &Redraw<'_, SunMaps>) -> Result<Option<Vec<f32>>> {
+        self.stage.set_camera(redraw.frame);
+        self.stage.set_view_depths(redraw.view_depths_of);
+        let picture = match redraw.maps {
+            Some(maps) => self.stage.draw_with(maps),
+            None => self.stage.draw_unshadowed(),
         };
-        let bias = match self.bias {
-            Bias::Bevys => "bevy's bias",
-            Bias::Ours => "our bias",
-        };
-        format!("{contestant}, {bias}")
+        self.stage.set_view_depths(None);
+        picture.map(Some)
     }
 
-    /// Whether the fit knows the view by the camera's depth prepass.
-    pub(crate) fn reads_depth(&self) -> bool {
-        matches!(self.contestant, Contestant::Calm | Contestant::Histogram | Contestant::Windows)
+    fn light_maps(&self, maps: &SunMaps, to_light: DVec3) -> LightMaps {
+        maps.lookup(self.stage.map_size(), self.filter, to_light).light_maps()
     }
 
-    /// Bounds of Bevy's cascades in a view that ends at `far`, in metres.
-    pub(crate) fn config(far: f32) -> CascadeShadowConfigBuilder {
-        CascadeShadowConfigBuilder {
-            num_cascades: 4,
-            first_cascade_far_bound: FIRST_BOUND,
-            maximum_distance: far,
-            ..default()
-        }
-    }
-
-    /// Hands a new light to the plugin, if the contestant is one of its fits.
-    pub(crate) fn take(&self, light: &mut EntityWorldMut, splits: Splits) {
-        let Some(fit) = self.fit() else { return };
-        let bias = match self.bias {
-            Bias::Bevys => FitBias::Bevys,
-            Bias::Ours => FitBias::Ours,
-        };
-        let splits = match splits {
-            Splits::Ours => FitSplits::Ours,
-            Splits::Bevys => FitSplits::Bevys,
-        };
-        light.insert(FittedShadows { fit, bias, splits });
-    }
-
-    fn fit(&self) -> Option<Fit> {
-        match self.contestant {
-            Contestant::Bevy => None,
-            Contestant::Stable => Some(Fit::Stable),
-            Contestant::Calm => Some(Fit::Calm),
-            Contestant::Histogram => Some(Fit::Histogram),
-            Contestant::Windows => Some(Fit::Windows),
-        }
+    /// Bevy's shader lights a white, fully rough surface by B. Burley's diffuse reflection ("Physically based shading at
+    /// Disney", 2012).
+    fn brightness(&self, LitSurface { normal, to_eye, to_light }: &LitSurface) -> f64 {
+        let (light, eye) = (normal.dot(*to_light).clamp(0.0, 1.0), normal.dot(*to_eye).max(MIN_TO_EYE));
+        let half = (to_light + to_eye).normalize_or_zero().dot(*to_light).clamp(0.0, 1.0);
+        let f90 = 0.5 + 2.0 * half * half;
+        let scatter = |cosine: f64| 1.0 + (f90 - 1.0) * (1.0 - cosine).powi(5);
+        light * scatter(light) * scatter(eye)
     }
 }

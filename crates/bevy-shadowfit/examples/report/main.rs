@@ -1,8 +1,8 @@
-//! Sun shadows of Bevy's own pictures against ray-traced truth: those of Bevy's cascades and of this crate's fits.
+//! Measures the sun shadows in Bevy's own pictures against rays: with Bevy's cascades, and with the fits of this crate.
 //!
-//! Every frame of five real scenes under three lights is drawn by Bevy, once without shadows and once with those of
-//! each fit. What the one has and the other lacks is compared, pixel by pixel, with rays toward the light. A further
-//! picture of the same view with the maps of the frame before tells how much of the shadows' edges crawls.
+//! Bevy draws each frame of five scenes under three lights, once without shadows and once with each fit. The report divides
+//! the pictures, and compares every pixel with a ray toward the light. Another picture of the same view, with the maps of
+//! the frame before, shows the shadow edges that crawl.
 //!
 //! ```text
 //! cargo run --example report -- --shared DIR
@@ -25,30 +25,29 @@
 //! with finer texels is a share of fewer pixels: `change %` compares fits on the same ones.
 
 mod contestant;
-mod geometry;
+mod entrant;
 mod light_maps;
-mod measure;
-mod pictures;
-mod seen;
 mod stage;
-mod table;
+#[path = "../shared/sun_maps.rs"]
+mod sun_maps;
 mod view_depth;
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
+use anyhow::{Context, Result, bail};
 use bevy::light::{DirectionalLight, ShadowFilteringMethod};
 use clap::Parser;
+use image::{Rgba, RgbaImage};
 use serde_json::{Value, json};
-use shadowfit_truth::Tracer;
-use shadowfit_truth::peers::{Frame, Scenarios};
+use shadowfit_report::contestant::{JudgeSettings, JudgeTimes, JudgedPicture, Judging, LookupFilter};
+use shadowfit_report::geometry::Source;
+use shadowfit_report::page::overlay;
+use shadowfit_report::peers::{Frame, Scenarios};
 
-use contestant::{Bias, Contestant, Entrant, Splits};
-use measure::{Measure, Picture, Times};
+use contestant::Renderer;
+use entrant::{Bias, Cascades, Entrant, Splits};
 use stage::{Stage, StageSettings};
-use table::Measured;
 
 /// Measures the sun shadows of Bevy's pictures against ray-traced truth.
 #[derive(Clone, Debug, Parser)]
@@ -70,7 +69,7 @@ struct Arguments {
     every: u32,
     /// Whose cascades
     #[arg(long, value_delimiter = ',', default_values = ["bevy", "stable", "calm", "histogram", "windows"])]
-    contestants: Vec<Contestant>,
+    contestants: Vec<Cascades>,
     /// Whose bias; Bevy's own cascades have Bevy's
     #[arg(long, value_delimiter = ',', default_values = ["bevys", "ours"])]
     biases: Vec<Bias>,
@@ -122,12 +121,12 @@ impl Filter {
         }
     }
 
-    /// Greatest distance along an axis from the point that is looked up to a texel that counts, in texels.
-    fn reach(self) -> f32 {
+    /// Returns the same filter in the report's form.
+    fn lookup(self) -> LookupFilter {
         match self {
             // Nine hardware look-ups, of which the outermost lie up to 2.25 texels from the middle texel.
-            Self::Gaussian => 3.0,
-            Self::Hardware2x2 => 1.0,
+            Self::Gaussian => LookupFilter::Castano13,
+            Self::Hardware2x2 => LookupFilter::Hardware2x2,
         }
     }
 }
@@ -137,127 +136,102 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     parts.and_then(|parts| parts.try_into().ok()).ok_or_else(|| "two numbers are wanted, such as 320x180".to_owned())
 }
 
-fn main() -> ExitCode {
+fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    match run(&arguments) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let file = if arguments.slow { "scenarios-slow.json" } else { "scenarios.json" };
     let scenarios = Scenarios::read(&arguments.shared.join("peers").join(file))?;
-    if let Some(unknown) =
-        arguments.scenes.iter().find(|name| scenarios.scenes.iter().all(|scene| scene.name != **name))
-    {
-        return Err(format!("{file} has no scene \"{unknown}\"").into());
+    let is_known = |name: &String| scenarios.scenes.iter().any(|scene| scene.name == *name);
+    if let Some(unknown) = arguments.scenes.iter().find(|name| !is_known(name)) {
+        bail!("{file} has no scene \"{unknown}\"");
     }
     if let Some(folder) = &arguments.pictures {
-        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }
     let start = Instant::now();
-    let mut report = Report::new(arguments);
-    for (index, scene) in scenarios.scenes.iter().enumerate() {
-        let frames = scenarios.frames.iter().filter(|frame| frame.scene == index && is_wanted(arguments, frame));
-        let is_wanted = arguments.scenes.is_empty() || arguments.scenes.contains(&scene.name);
-        let frames: Vec<&Frame> = frames.collect();
-        if is_wanted && !frames.is_empty() {
-            let objects = geometry::read(&arguments.shared.join("assets"), scene)?;
-            let tracer = Tracer::new(objects.iter().flatten().copied());
-            report.stage.set_scene(&objects);
-            report.measure_scene(&scene.name, &tracer, &frames)?;
-        }
-    }
-    println!("{}", table::markdown(&report.fits));
-    let seconds = start.elapsed().as_secs_f64();
-    let run = report.run(seconds);
+    let mut renderer = arguments.renderer();
+    let mut judging = Judging::new(&renderer, arguments.judge_settings());
+    judge(&arguments, &scenarios, &mut renderer, &mut judging)?;
+    let bevy = renderer.entrants.iter().position(|entrant| *entrant == Entrant::BEVY);
+    println!("{}", judging.results().to_markdown(bevy));
+    let mut run = arguments.run(judging.times());
+    run["updates"] = renderer.stage.updates.into();
+    run["seconds"] = start.elapsed().as_secs_f64().into();
     eprintln!("{run:#}");
     if let Some(file) = &arguments.json {
-        let text = format!("{:#}\n", table::json(&report.fits, run));
-        std::fs::write(file, text).map_err(|error| format!("{}: {error}", file.display()))?;
+        let text = format!("{:#}\n", judging.results().to_json(&run));
+        std::fs::write(file, text).with_context(|| file.display().to_string())?;
     }
     Ok(())
 }
 
-fn is_wanted(arguments: &Arguments, frame: &Frame) -> bool {
-    arguments.lights.is_empty() || arguments.lights.contains(&frame.elevation_deg)
-}
-
-/// What is measured, and with what.
-struct Report<'a> {
-    arguments: &'a Arguments,
-    settings: StageSettings,
-    stage: Stage,
-    fits: Vec<Measured>,
-    times: Times,
-}
-
-impl<'a> Report<'a> {
-    fn new(arguments: &'a Arguments) -> Self {
-        let Arguments { contestants, biases, .. } = arguments;
-        let settings = StageSettings {
-            size: arguments.size,
-            map_size: arguments.map_size,
-            filter: arguments.filter.method(),
-            splits: arguments.splits,
-            biases: [arguments.depth_bias, arguments.normal_bias],
-        };
-        let entrants = Entrant::of(contestants, biases);
-        let fits = entrants.into_iter().map(|entrant| Measured { entrant, groups: Vec::new() }).collect();
-        Self { arguments, settings, stage: Stage::new(&settings), fits, times: Times::default() }
-    }
-
-    /// Measures the paths of a scene.
-    fn measure_scene(&mut self, scene: &str, tracer: &Tracer, frames: &[&Frame]) -> Result<(), Box<dyn Error>> {
-        for (number, path) in frames.chunk_by(|a, b| a.elevation_deg == b.elevation_deg).enumerate() {
-            let light = path[0].elevation_deg;
-            let start = Instant::now();
-            let mut measure = Measure {
-                stage: &mut self.stage,
-                tracer,
-                settings: &self.settings,
-                reach: self.arguments.filter.reach(),
-                settle: self.arguments.settle,
-                every: self.arguments.every as usize,
-                crawl: !self.arguments.no_crawl,
-                times: self.times,
-            };
-            let seen = measure.see(path)?;
-            for fit in &mut self.fits {
-                let name = format!("{scene}, {}", fit.entrant.name());
-                let mut pictures = self.arguments.pictures.as_deref().filter(|_| number == 0);
-                let look = |picture: &Picture| show(&mut pictures, &name, picture);
-                let sums = measure.run(path, &seen, fit.entrant, look)?;
-                let [wrong, crawl] = ["wrong %", "crawl %"].map(|title| sums.value(title));
-                eprintln!("{name}, light at {light}: {wrong:.3}% wrong, {crawl:.2}% crawl");
-                fit.groups.push((scene.to_owned(), light, sums));
-            }
-            self.times = measure.times;
-            eprintln!("{scene}, light at {light}: {:.1} s", start.elapsed().as_secs_f64());
+/// Judges the wanted frames of all scenes.
+fn judge(arguments: &Arguments, scenarios: &Scenarios, renderer: &mut Renderer, judging: &mut Judging) -> Result<()> {
+    let source = Source { assets: Some(arguments.shared.join("assets")), triangles: None };
+    for (index, scene) in scenarios.scenes.iter().enumerate() {
+        let frames = scenarios.frames.iter().filter(|frame| frame.scene == index);
+        let frames: Vec<&Frame> = frames.filter(|frame| arguments.wants_light(frame)).collect();
+        if frames.is_empty() || !(arguments.scenes.is_empty() || arguments.scenes.contains(&scene.name)) {
+            continue;
         }
-        Ok(())
+        let start = Instant::now();
+        let names: Vec<String> = renderer.entrants.iter().map(Entrant::name).collect();
+        let mut is_shown = vec![false; names.len()];
+        let look = |picture: &JudgedPicture<'_>| {
+            let name = &names[picture.technique];
+            let frame = &picture.frame.id;
+            eprintln!(
+                "{frame}, {name}: {:.3}% wrong",
+                100.0 * picture.judged.tally.share(picture.judged.tally.all.wrong)
+            );
+            match arguments.pictures.as_deref().filter(|_| !is_shown[picture.technique]) {
+                Some(folder) => {
+                    is_shown[picture.technique] = true;
+                    write_pictures(folder, &format!("{}, {name}", picture.scene), picture)
+                }
+                None => Ok(()),
+            }
+        };
+        judging.judge_scene(renderer, &scene.name, &source.read(scene)?, &frames, look)?;
+        eprintln!("{}: {:.1} s", scene.name, start.elapsed().as_secs_f64());
+    }
+    Ok(())
+}
+
+impl Arguments {
+    fn renderer(&self) -> Renderer {
+        let settings = StageSettings {
+            size: self.size,
+            map_size: self.map_size,
+            filter: self.filter.method(),
+            splits: self.splits,
+            depth_bias: self.depth_bias,
+            normal_bias: self.normal_bias,
+        };
+        let entrants = Entrant::of(&self.contestants, &self.biases);
+        Renderer { stage: Stage::new(&settings), entrants, settle: self.settle, filter: self.filter.lookup() }
     }
 
-    /// How the numbers were measured, and how long that took.
-    fn run(&self, seconds: f64) -> Value {
-        let Arguments { size, map_size, filter, depth_bias, normal_bias, settle, every, slow, .. } = self.arguments;
-        let Times { drawing, tracing, judging, frames, different } = self.times;
+    fn judge_settings(&self) -> JudgeSettings {
+        JudgeSettings { size: self.size, every: self.every, crawl: !self.no_crawl }
+    }
+
+    fn wants_light(&self, frame: &Frame) -> bool {
+        self.lights.is_empty() || self.lights.contains(&frame.elevation_deg)
+    }
+
+    /// Returns how the numbers were measured.
+    fn run(&self, times: JudgeTimes) -> Value {
+        let JudgeTimes { drawing, tracing, judging, frames, different } = times;
         json!({
-            "picture": size,
-            "map": map_size,
-            "filter": format!("{filter:?}"),
-            "biases": [depth_bias.to_string(), normal_bias.to_string()],
-            "updates of each frame": settle,
-            "every": every,
-            "slow": slow,
+            "picture": self.size,
+            "map": self.map_size,
+            "filter": format!("{:?}", self.filter),
+            "biases": [self.depth_bias.to_string(), self.normal_bias.to_string()],
+            "updates of each frame": self.settle,
+            "every": self.every,
+            "slow": self.slow,
             "frames": frames,
             "pixels left out %": 100.0 * different / f64::from(frames.max(1)),
-            "updates": self.stage.updates,
-            "seconds": seconds,
             "seconds of drawing": drawing.as_secs_f64(),
             "seconds of tracing": tracing.as_secs_f64(),
             "seconds of judging": judging.as_secs_f64(),
@@ -265,9 +239,28 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Writes the first picture, and tells where its maps lie.
-fn show(folder: &mut Option<&Path>, name: &str, picture: &Picture) -> Result<(), Box<dyn Error>> {
-    let Some(folder) = folder.take() else { return Ok(()) };
-    eprintln!("{name}: cascades end at {:?} m, texels {:?} m", picture.maps.bounds(), picture.maps.texels());
-    pictures::write(folder, name, picture)
+/// Writes a picture as `<name>.png`, and with its wrong pixels marked as `<name>, wrong.png`.
+fn write_pictures(folder: &Path, name: &str, picture: &JudgedPicture<'_>) -> Result<()> {
+    let unshadowed = picture.unshadowed.context("Bevy's pictures are brightness")?;
+    // The brightest surface without shadows is white.
+    let brightest = unshadowed.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let [width, height] = picture.truth.camera.size;
+    let plain = RgbaImage::from_fn(width, height, |x, y| {
+        let pixel = (y * width + x) as usize;
+        let grey = srgb(picture.factors[pixel] * unshadowed[pixel] / brightest);
+        Rgba([grey, grey, grey, u8::MAX])
+    });
+    let marked = overlay(&plain, &picture.judged.classes)?;
+    for (image, name) in [(plain, name.to_owned()), (marked, format!("{name}, wrong"))] {
+        let file = folder.join(format!("{name}.png"));
+        image.save(&file).with_context(|| file.display().to_string())?;
+    }
+    Ok(())
+}
+
+/// Returns the sRGB code of a linear brightness of 0..=1.
+fn srgb(linear: f32) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let coded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (coded * 255.0).round() as u8
 }

@@ -4,15 +4,16 @@
 //! picture is submitted and waited for after that, so that a picture always belongs to the camera and the light that
 //! were set before its update.
 
-use std::error::Error;
-
+use anyhow::{Result, anyhow};
 use bevy::app::PluginsState;
+use bevy::asset::RenderAssetUsages;
 use bevy::camera::{Hdr, ImageRenderTarget, RenderTarget};
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::light::{CascadeShadowConfig, DirectionalLightShadowMap, ShadowFilteringMethod};
 use bevy::log::{Level, LogPlugin};
 use bevy::math::DMat4;
+use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_asset::RenderAssets;
@@ -26,11 +27,12 @@ use bevy::render::{RenderApp, RenderPlugin};
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use bevy_shadowfit::{Fit, FittedShadows};
-use shadowfit_truth::peers::Frame;
+use shadowfit_report::geometry::Corners;
+use shadowfit_report::peers::Frame;
 
-use crate::contestant::{Contestant, Entrant, Splits};
-use crate::geometry::{self, Corners};
-use crate::light_maps::{self, Frozen, LightMaps, Live, Sun};
+use crate::entrant::{Cascades, Entrant, Splits};
+use crate::light_maps::{self, Frozen, Live, Sun};
+use crate::sun_maps::SunMaps;
 use crate::view_depth::{self, ViewDepthsOf};
 
 /// Bytes of a pixel of the picture: four f32.
@@ -64,8 +66,10 @@ pub(crate) struct StageSettings {
     pub(crate) map_size: u32,
     pub(crate) filter: ShadowFilteringMethod,
     pub(crate) splits: Splits,
-    /// Depth bias, in metres, and normal bias, in diagonals of a texel, that lights are given.
-    pub(crate) biases: [f32; 2],
+    /// Depth bias of lights with Bevy's bias, in metres.
+    pub(crate) depth_bias: f32,
+    /// Normal bias of lights with Bevy's bias, in diagonals of a texel.
+    pub(crate) normal_bias: f32,
 }
 
 impl Stage {
@@ -107,7 +111,7 @@ impl Stage {
             world.despawn(object);
         }
         for object in objects.iter().filter(|object| !object.is_empty()) {
-            let mesh = world.resource_mut::<Assets<Mesh>>().add(geometry::mesh(object));
+            let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh(object));
             let parts = (Mesh3d(mesh), MeshMaterial3d(self.material.clone()), Transform::IDENTITY);
             self.objects.push(world.spawn(parts).id());
         }
@@ -127,7 +131,7 @@ impl Stage {
 
     /// Replaces the light, and with it all that fits remember.
     pub(crate) fn set_light(&mut self, frame: &Frame, entrant: Entrant) {
-        if entrant.contestant == Contestant::Windows && !self.reads_windows {
+        if entrant.cascades == Cascades::Windows && !self.reads_windows {
             self.wait_for_windows();
         }
         let world = self.app.world_mut();
@@ -135,8 +139,12 @@ impl Stage {
             world.despawn(sun);
         }
         let [x, y, z] = frame.light_dir.map(|part| part as f32);
-        let [shadow_depth_bias, shadow_normal_bias] = self.settings.biases;
-        let light = DirectionalLight { shadow_maps_enabled: true, shadow_depth_bias, shadow_normal_bias, ..default() };
+        let light = DirectionalLight {
+            shadow_maps_enabled: true,
+            shadow_depth_bias: self.settings.depth_bias,
+            shadow_normal_bias: self.settings.normal_bias,
+            ..default()
+        };
         let toward = Transform::default().looking_to(Vec3::new(x, y, z), Vec3::Y);
         let mut sun = world.spawn((Sun, light, Entrant::config(frame.far as f32).build(), toward));
         entrant.take(&mut sun, self.settings.splits);
@@ -171,13 +179,13 @@ impl Stage {
     }
 
     /// The picture of the next update. Red channels, rows from the top.
-    pub(crate) fn draw(&mut self) -> Result<Vec<f32>, Box<dyn Error>> {
+    pub(crate) fn draw(&mut self) -> Result<Vec<f32>> {
         self.update();
         self.read_back()
     }
 
     /// The picture without shadows.
-    pub(crate) fn draw_unshadowed(&mut self) -> Result<Vec<f32>, Box<dyn Error>> {
+    pub(crate) fn draw_unshadowed(&mut self) -> Result<Vec<f32>> {
         self.set_shadows(false);
         let picture = self.draw();
         self.set_shadows(true);
@@ -192,7 +200,7 @@ impl Stage {
     }
 
     /// The picture with the maps of another frame in place of the light's own.
-    pub(crate) fn draw_with(&mut self, maps: &LightMaps) -> Result<Vec<f32>, Box<dyn Error>> {
+    pub(crate) fn draw_with(&mut self, maps: &SunMaps) -> Result<Vec<f32>> {
         self.app.world_mut().resource_mut::<Frozen>().0 = Some(maps.clone());
         let picture = self.draw();
         self.app.world_mut().resource_mut::<Frozen>().0 = None;
@@ -200,14 +208,19 @@ impl Stage {
         let mut sun = self.sun();
         let (mut config, mut light) =
             sun.get_components_mut::<(&mut CascadeShadowConfig, &mut DirectionalLight)>().expect("a light's parts");
-        live.put(&mut config, &mut light);
+        light_maps::put(&live, &mut config, &mut light);
         picture
     }
 
     /// The light's own maps in the last update.
-    pub(crate) fn maps(&self) -> Result<LightMaps, Box<dyn Error>> {
+    pub(crate) fn maps(&self) -> Result<SunMaps> {
         let live = &self.app.world().resource::<Live>().0;
-        live.clone().ok_or_else(|| "Bevy made no cascades for the camera".into())
+        live.clone().ok_or_else(|| anyhow!("Bevy made no cascades for the camera"))
+    }
+
+    /// Texels across and down each shadow map.
+    pub(crate) fn map_size(&self) -> u32 {
+        self.settings.map_size
     }
 
     fn sun(&mut self) -> EntityWorldMut<'_> {
@@ -224,10 +237,11 @@ impl Stage {
     }
 
     /// The red channels of the picture of the last update.
-    fn read_back(&self) -> Result<Vec<f32>, Box<dyn Error>> {
+    fn read_back(&self) -> Result<Vec<f32>> {
         let world = self.app.sub_app(RenderApp).world();
         let (device, queue) = (world.resource::<RenderDevice>(), world.resource::<RenderQueue>());
-        let picture = world.resource::<RenderAssets<GpuImage>>().get(&self.picture).ok_or("Bevy drew no picture")?;
+        let pictures = world.resource::<RenderAssets<GpuImage>>();
+        let picture = pictures.get(&self.picture).ok_or_else(|| anyhow!("Bevy drew no picture"))?;
         let [width, height] = self.settings.size;
         let row_bytes = RenderDevice::align_copy_bytes_per_row((width * PIXEL_BYTES) as usize);
         let buffer = device.create_buffer(&BufferDescriptor {
@@ -273,7 +287,20 @@ fn add_picture(world: &mut World, [width, height]: [u32; 2]) -> Handle<Image> {
     world.resource_mut::<Assets<Image>>().add(image)
 }
 
-/// What every triangle is made of: it reflects light from both sides and casts shadows with both.
+/// Makes the mesh of an object. Its normals are perpendicular to its triangles, as rays find them.
+fn mesh(object: &[Corners]) -> Mesh {
+    let positions: Vec<[f32; 3]> = object.iter().flatten().map(|corner| corner.to_array()).collect();
+    let normal = |[a, b, c]: &Corners| {
+        let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+        (b - a).cross(c - a).normalize_or(shadowfit::glam::DVec3::Y).as_vec3().to_array()
+    };
+    let normals: Vec<[f32; 3]> = object.iter().flat_map(|triangle| [normal(triangle); 3]).collect();
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+}
+
+/// Makes the material of all triangles: it reflects light from both sides and casts shadows with both.
 fn white() -> StandardMaterial {
     StandardMaterial {
         base_color: Color::WHITE,

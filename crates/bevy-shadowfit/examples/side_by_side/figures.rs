@@ -1,102 +1,82 @@
-//! Measures what the halves show in the background: about once a second while it changes, and once when it stands.
+//! Judges the maps of both halves against rays in the background: about once a second while they change, and once after
+//! the last change.
 
-use std::sync::{Arc, OnceLock};
+use std::fmt;
 use std::time::{Duration, Instant};
 
-use bevy::light::cascade::Cascade;
 use bevy::light::{CascadeShadowConfig, Cascades, DirectionalLightShadowMap};
 use bevy::prelude::*;
 use bevy::tasks::futures::check_ready;
 use bevy::tasks::{AsyncComputeTaskPool, Task};
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam as fit_glam;
-use shadowfit_truth::Tracer;
+use shadowfit_report::contestant::{LookupFilter, ShadowLookup};
+use shadowfit_truth::{PixelCamera, Truth, TruthSettings, judge};
 
-use crate::content::Content;
 use crate::halves::Side;
-use crate::lookup::{LightMaps, ShadowMap};
-use crate::measure::{Figures, Shown};
-use crate::rays;
+use crate::scene::{Content, Shown};
+use crate::sun_maps::SunMaps;
 
-/// Time from the beginning of a measurement to that of the next one, at least.
+/// Least time from the start of a measurement to the start of the next one.
 const INTERVAL: Duration = Duration::from_secs(1);
+/// Pixels of a measured picture.
+const PIXELS: f32 = 160.0 * 90.0;
 
-/// What is measured of both halves.
-#[derive(Resource)]
+/// The measurements of a half.
+#[derive(Component, Default)]
 pub(crate) struct Measured {
-    content: Arc<Content>,
-    /// Made by the first measurement.
-    tracer: Arc<OnceLock<Tracer>>,
-    halves: [Half; 2],
-}
-
-#[derive(Default)]
-struct Half {
-    /// What the last measurement is of, when it began, and its figures.
-    begun: Option<(Shown, Instant)>,
+    /// Subject and start of the last measurement.
+    begun: Option<(Subject, Instant)>,
     task: Option<Task<Figures>>,
-    figures: Option<Figures>,
-    /// Whether the figures are those of what is shown.
-    is_current: bool,
+    /// Latest figures.
+    pub(crate) figures: Option<Figures>,
+    /// Whether the figures belong to the present picture.
+    pub(crate) is_current: bool,
 }
 
-impl Measured {
-    /// The latest figures of a half, once there are some.
-    pub(crate) fn figures(&self, side: Side) -> Option<Figures> {
-        self.halves[side.index()].figures
-    }
-
-    /// Whether both halves show what their figures were measured of.
-    pub(crate) fn is_current(&self) -> bool {
-        self.halves.iter().all(|half| half.is_current)
-    }
+/// The camera and the maps of a half: with the scene they decide its picture.
+#[derive(Clone, Debug, PartialEq)]
+struct Subject {
+    camera: PerspectiveCamera,
+    /// Pixels down the half.
+    height: u32,
+    lookup: ShadowLookup,
 }
 
-/// Adds the measurements.
-pub(crate) fn plugin(app: &mut App, content: Arc<Content>) {
-    let measured = Measured { content, tracer: Arc::default(), halves: Default::default() };
-    // From the fit to the end of the frame, lights have the bounds and biases that the shader gets.
-    app.insert_resource(measured).add_systems(Last, measure);
+/// Figures of a half. They are NaN if no surface faces the light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Figures {
+    /// Pixels of the window that a texel covers along its worse axis: the quantile of 95% of the pixels.
+    pixels_per_texel: f64,
+    /// Wrongly lit pixels, in per cent of the pixels that face the light.
+    wrong: f64,
+}
+
+impl fmt::Display for Figures {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "pixels per texel, 95%: {:.2}   wrong: {:.2}%", self.pixels_per_texel, self.wrong)
+    }
 }
 
 type SunParts<'a> = (&'a Side, &'a GlobalTransform, &'a DirectionalLight, &'a CascadeShadowConfig, &'a Cascades);
 
-fn measure(
-    mut measured: ResMut<Measured>,
-    cameras: Query<(Entity, &Side, &Camera, &Projection, &GlobalTransform)>,
+/// Measures both halves. From the fit to the end of the frame, lights have the bounds and biases that the shader gets.
+pub(crate) fn measure(
+    mut cameras: Query<(Entity, &Side, &Camera, &Projection, &GlobalTransform, &mut Measured)>,
     suns: Query<SunParts>,
+    shown: Res<Shown>,
     maps: Res<DirectionalLightShadowMap>,
 ) {
-    for (entity, side, camera, projection, transform) in &cameras {
-        let Some(sun) = suns.iter().find(|(sun, ..)| *sun == side) else { continue };
-        let (Some(size), Some(maps)) = (camera.physical_viewport_size(), light_maps(entity, sun, maps.size)) else {
+    for (entity, side, camera, projection, transform, mut measured) in &mut cameras {
+        let Some((_, toward, light, config, cascades)) = suns.iter().find(|(of, ..)| *of == side) else { continue };
+        let (Some(size), Some(cascades)) = (camera.physical_viewport_size(), cascades.cascades.get(&entity)) else {
             continue;
         };
         let Projection::Perspective(lens) = projection else { continue };
-        let shown = Shown { camera: pinhole(lens, transform, size), height: size.y, light: maps };
-        measured.update(*side, shown);
-    }
-}
-
-impl Measured {
-    fn update(&mut self, side: Side, shown: Shown) {
-        let half = &mut self.halves[side.index()];
-        if let Some(figures) = half.task.as_mut().and_then(check_ready) {
-            half.task = None;
-            half.figures = Some(figures);
-        }
-        let is_of_this = half.begun.as_ref().is_some_and(|(begun, _)| *begun == shown);
-        half.is_current = is_of_this && half.task.is_none();
-        let is_early = half.begun.as_ref().is_some_and(|(_, at)| at.elapsed() < INTERVAL);
-        if is_of_this || is_early || half.task.is_some() {
-            return;
-        }
-        half.begun = Some((shown.clone(), Instant::now()));
-        let (tracer, content) = (self.tracer.clone(), self.content.clone());
-        half.task = Some(AsyncComputeTaskPool::get().spawn(async move {
-            let tracer = tracer.get_or_init(|| rays::tracer(&content));
-            shown.measure(tracer, content.extent().into())
-        }));
+        let to_light = fit_glam::DVec3::from_array(toward.back().to_array().map(f64::from)).normalize();
+        let sun_maps = SunMaps::new(cascades, config, light);
+        let lookup = sun_maps.lookup(maps.size as u32, LookupFilter::Castano13, to_light);
+        measured.update(Subject { camera: pinhole(lens, transform, size), height: size.y, lookup }, &shown);
     }
 }
 
@@ -113,21 +93,38 @@ fn pinhole(lens: &PerspectiveProjection, transform: &GlobalTransform, size: UVec
     }
 }
 
-/// The maps of a sun in the view of a camera; `None` before the first ones are made.
-fn light_maps(camera: Entity, sun: SunParts<'_>, size: usize) -> Option<LightMaps> {
-    let (_, transform, light, config, cascades) = sun;
-    let map = |(cascade, bound): (&Cascade, &f32)| ShadowMap {
-        clip_from_world: fit_glam::DMat4::from_cols_array(&cascade.clip_from_world.to_cols_array().map(f64::from)),
-        texel: cascade.texel_size.into(),
-        bound: (*bound).into(),
-    };
-    let to_light = fit_glam::DVec3::from_array(transform.back().to_array().map(f64::from));
-    Some(LightMaps {
-        maps: cascades.cascades.get(&camera)?.iter().zip(&config.bounds).map(map).collect(),
-        size: size as u32,
-        overlap: config.overlap_proportion.into(),
-        depth_bias: light.shadow_depth_bias.into(),
-        normal_bias: light.shadow_normal_bias.into(),
-        to_light: to_light.normalize(),
-    })
+impl Measured {
+    fn update(&mut self, subject: Subject, shown: &Shown) {
+        if let Some(figures) = self.task.as_mut().and_then(check_ready) {
+            self.task = None;
+            self.figures = Some(figures);
+        }
+        let is_same = self.begun.as_ref().is_some_and(|(begun, _)| *begun == subject);
+        self.is_current = is_same && self.task.is_none();
+        let is_early = self.begun.as_ref().is_some_and(|(_, at)| at.elapsed() < INTERVAL);
+        if is_same || is_early || self.task.is_some() {
+            return;
+        }
+        self.begun = Some((subject.clone(), Instant::now()));
+        let content = shown.0.clone();
+        self.task = Some(AsyncComputeTaskPool::get().spawn(async move { subject.measure(&content) }));
+    }
+}
+
+impl Subject {
+    fn measure(&self, content: &Content) -> Figures {
+        let width = (PIXELS * self.camera.aspect).sqrt().round().max(1.0);
+        let size = [width, (PIXELS / width).round().max(1.0)].map(|side| side as u32);
+        let (camera, tracer) = (PixelCamera::new(self.camera, size), &content.rays().tracer);
+        let max_distance = self.lookup.maps.last().map_or(0.0, |map| map.bound);
+        let settings = TruthSettings { max_distance, ..TruthSettings::new(self.lookup.to_light) };
+        let truth = Truth::trace(tracer, &camera, &settings, &Truth::seen_by_rays(tracer, &camera));
+        let factors = self.lookup.factors(tracer, &truth, content.extent().into());
+        let maps = self.lookup.light_maps();
+        let figures = judge(tracer, &truth, &maps.picture_maps(), &factors, |_| true).tally.figures();
+        // A pixel of the measured picture is wider than a pixel of the window by this factor.
+        let scale = f64::from(self.height) / f64::from(size[1]);
+        let [_, texel, _] = figures.and_then(|figures| figures.pixels_per_texel).unwrap_or([f64::NAN; 3]);
+        Figures { pixels_per_texel: texel * scale, wrong: figures.map_or(f64::NAN, |figures| figures.wrong) }
+    }
 }

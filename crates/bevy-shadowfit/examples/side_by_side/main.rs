@@ -18,31 +18,29 @@
 //! | M | next size of the maps of both halves |
 //! | T | starts and stops a camera path |
 //!
-//! The figures are measured in the background: their light comes from a simulation of Bevy's look-up ([`lookup`]). The
-//! example `report` measures the pictures that Bevy draws.
+//! The figures are measured in the background: the report's look-up simulates Bevy's shader on the CPU. The example `report`
+//! measures the pictures that Bevy draws.
 
-mod content;
 mod figures;
 mod flight;
 mod halves;
-mod labels;
-mod lookup;
-mod measure;
-mod meshes;
-mod picture;
-mod rays;
+mod scene;
+#[path = "../shared/sun_maps.rs"]
+mod sun_maps;
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::Arc;
 
+use anyhow::Result;
 use bevy::light::DirectionalLightShadowMap;
 use bevy::prelude::*;
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured, save_to_disk};
 use bevy::window::WindowResolution;
 use bevy_shadowfit::ShadowfitPlugin;
 use clap::Parser;
 
-use content::Content;
+use figures::Measured;
+use scene::{Content, Shown};
 
 /// Width and height of the window, in pixels.
 const WINDOW_SIZE: [u32; 2] = [1280, 720];
@@ -60,40 +58,45 @@ struct Arguments {
     after: u32,
 }
 
-fn main() -> ExitCode {
+fn main() -> Result<AppExit> {
     let arguments = Arguments::parse();
-    let content = match Content::load(arguments.scene.as_deref()) {
-        Ok(content) => Arc::new(content),
-        Err(error) => {
-            eprintln!("error: {error}");
-            return ExitCode::FAILURE;
-        }
-    };
-    match app(&arguments, content).run() {
-        AppExit::Success => ExitCode::SUCCESS,
-        AppExit::Error(_) => ExitCode::FAILURE,
-    }
-}
-
-fn app(arguments: &Arguments, content: Arc<Content>) -> App {
-    let window = Window {
-        title: format!("{} - Bevy's cascades and shadowfit's", content.scene.name),
-        resolution: WindowResolution::from(WINDOW_SIZE),
-        ..default()
-    };
+    let content = Content::load(arguments.scene.as_deref())?;
+    let title = format!("{} - Bevy's cascades and shadowfit's", content.scene.name);
+    let window = Window { title, resolution: WindowResolution::from(WINDOW_SIZE), ..default() };
     let mut app = App::new();
     app.add_plugins(DefaultPlugins.set(WindowPlugin { primary_window: Some(window), ..default() }))
         .add_plugins(ShadowfitPlugin)
         .insert_resource(DirectionalLightShadowMap { size: 2048 })
         .insert_resource(ClearColor(Color::srgb(0.53, 0.70, 0.88)))
-        .insert_resource(GlobalAmbientLight { color: Color::srgb(0.75, 0.85, 1.0), brightness: 900.0, ..default() });
-    flight::plugin(&mut app, &content);
-    halves::plugin(&mut app, &content);
-    labels::plugin(&mut app);
-    figures::plugin(&mut app, content.clone());
-    meshes::plugin(&mut app, content);
-    if let Some(file) = &arguments.picture {
-        picture::plugin(&mut app, file.clone(), arguments.after);
+        .insert_resource(GlobalAmbientLight { color: Color::srgb(0.75, 0.85, 1.0), brightness: 900.0, ..default() })
+        .insert_resource(flight::Flight::new(&content))
+        .insert_resource(Shown(Arc::new(content)))
+        .add_systems(Startup, (halves::spawn, scene::spawn))
+        .add_systems(Update, (halves::divide, halves::choose, halves::write, flight::fly))
+        .add_systems(Last, figures::measure);
+    if let Some(file) = arguments.picture {
+        take_picture(&mut app, file, arguments.after);
     }
-    app
+    Ok(app.run())
+}
+
+/// Saves a picture after a number of frames, once the halves have their figures, and ends the app.
+fn take_picture(app: &mut App, file: PathBuf, after: u32) {
+    let (mut frames, mut is_taken) = (0, false);
+    let take = move |measured: Query<&Measured>, mut commands: Commands| {
+        frames += 1;
+        // The text of the frame before has shown the figures already.
+        if is_taken || frames <= after || !measured.iter().all(|measured| measured.is_current) {
+            return;
+        }
+        is_taken = true;
+        let mut save = save_to_disk(file.clone());
+        commands.spawn(Screenshot::primary_window()).observe(
+            move |captured: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
+                save(captured);
+                exit.write(AppExit::Success);
+            },
+        );
+    };
+    app.add_systems(First, take);
 }

@@ -15,10 +15,10 @@ use shadowfit::{
 };
 use shadowfit_render::passes::material_layout;
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer};
+use shadowfit_report::peers::Scenarios;
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_testing::pairs::all_pairs;
 use shadowfit_testing::{package_folder, renderer_gpu};
-use shadowfit_truth::peers::Scenarios;
 use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor};
 
 /// Size of the pictures, in pixels.

@@ -3,10 +3,10 @@
 use glam::{DVec2, DVec3};
 use shadowfit::selection::MapRead;
 use shadowfit_truth::MapReading;
-use shadowfit_truth::peers::FitMap;
 
 use super::At;
 use super::words::{count, length, number, percent, place};
+use crate::maps::NO_END;
 
 /// "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m to the left of it".
 pub(super) fn map_reason(at: &At<'_>) -> String {
@@ -66,7 +66,7 @@ fn by_view_depth(at: &At<'_>, main: usize) -> String {
     }
     let before = (0..main).rev().find(|map| maps[*map].split_far > 0.0);
     let begin = before.map(|map| (maps[map].split_far, map + 1));
-    let end = Some(maps[main].split_far).filter(|end| *end < FitMap::NO_END);
+    let end = Some(maps[main].split_far).filter(|end| *end < NO_END);
     match (begin, end) {
         (Some((begin, _)), Some(end)) => {
             format!("view depth {here} lies between {} and {}", length(begin), length(end))

@@ -58,8 +58,8 @@ pub struct MapGradients {
 }
 
 impl MapGradients {
-    /// Texels to the right and down that each of two steps in the world moves.
-    pub(crate) fn texels_per_step(&self, steps: [DVec3; 2]) -> [DVec2; 2] {
+    /// Returns the texels to the right and down that each of two steps in the world moves, in metres.
+    pub fn texels_per_step(&self, steps: [DVec3; 2]) -> [DVec2; 2] {
         steps.map(|step| DVec2::new(self.u.dot(step), self.v.dot(step)))
     }
 }

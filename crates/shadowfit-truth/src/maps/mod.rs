@@ -8,7 +8,7 @@ mod measured;
 mod picture;
 mod sampling;
 
-pub(crate) use choice::{MapSelection, OccluderPlace, choose};
+pub use choice::{OccluderPlace, SelectedMap};
 pub use measured::{MapGradients, MapPosition, MeasuredMap};
 pub use picture::{MapReading, PictureMaps};
-pub(crate) use sampling::{MIN_FACING, pixels_per_texel};
+pub use sampling::{MIN_FACING, pixels_per_texel};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 
-use super::choice::MapSelection;
+use super::choice::SelectedMap;
 use super::measured::MeasuredMap;
 
 /// Which of the maps of a picture a point reads; [`shadowfit::selection`] has the rules.
@@ -66,9 +66,9 @@ impl<'a> PictureMaps<'a> {
     }
 
     /// The map that weighs more of those that a point reads.
-    pub(crate) fn main(&self, view_depth: f64, point: DVec3) -> Option<MapSelection<'a>> {
+    pub(crate) fn main(&self, view_depth: f64, point: DVec3) -> Option<SelectedMap<'a>> {
         let index = self.read(view_depth, point)?.main();
         let map = &self.maps[index];
-        Some(MapSelection { index, map, position: map.project(point) })
+        Some(SelectedMap { index, map, position: map.project(point) })
     }
 }

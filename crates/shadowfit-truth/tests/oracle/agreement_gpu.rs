@@ -6,20 +6,19 @@ use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
 use shadowfit_testing::{TestGpu, open_test_gpu, test_gpu};
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
-use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     AlphaImage, Class, CutMaterial, CutOut, CutOuts, Judged, MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer,
     Truth, TruthLight, TruthPoint, TruthSettings, Wrap, judge,
 };
 
-use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
+use super::scenes::{PlainMap, Triangles, cuboid, level, looking_at, map_around, quad, sphere};
 
 /// A picture that both judge.
 pub(crate) struct Picture {
     pub(crate) tracer: Tracer,
     pub(crate) camera: PixelCamera,
     pub(crate) settings: TruthSettings,
-    pub(crate) maps: Vec<FitMap>,
+    pub(crate) maps: Vec<PlainMap>,
     pub(crate) reading: MapReading,
     depth_clamp: bool,
     /// What the GPU's triangles are relative to.
@@ -39,7 +38,7 @@ impl Picture {
     /// A scene under a light, with a near and a far map of 512 texels. No side of the picture is a whole
     /// number of workgroups.
     pub(crate) fn new(triangles: Triangles, eye: DVec3, to_light: DVec3) -> Self {
-        let near = FitMap { split_far: 6.0, ..map_around(DVec3::ZERO, to_light, 6.0, 4.0, 512) };
+        let near = PlainMap { split_far: 6.0, ..map_around(DVec3::ZERO, to_light, 6.0, 4.0, 512) };
         Self {
             tracer: Tracer::new(triangles),
             camera: looking_at(eye, DVec3::Y * 0.4, [203, 117]),
@@ -55,7 +54,7 @@ impl Picture {
     pub(crate) fn with_crossing_maps(blend: f32) -> Self {
         let around = |x: f64, width: f64, texels: u32| map_around(DVec3::X * x, sun(), width, 6.0, texels);
         let maps = vec![around(0.0, 24.0, 512), around(1.0, 3.0, 400), around(-1.5, 6.0, 300), around(0.5, 8.0, 512)];
-        let texel = |map: &FitMap| 1.0 / map.clip_from_world().row(0).truncate().length() / map.size().x;
+        let texel = |map: &PlainMap| 1.0 / map.clip_from_world.row(0).truncate().length() / f64::from(map.texels);
         let areas = maps.iter().enumerate().map(|(index, map)| (index != 1).then(|| texel(map).powi(2)));
         let order = MapOrder::by_area(areas);
         assert!(order.iter().eq([3, 2, 0]));
@@ -102,7 +101,7 @@ impl Picture {
 
     fn factor(&self, maps: &PictureMaps, point: &TruthPoint) -> f32 {
         let Some(index) = maps.read(point.view_depth, point.position).map(|read| read.main()) else { return 1.0 };
-        let (map, clip_from_world) = (&maps.maps[index], DMat4::from_cols_array(&self.maps[index].view_proj));
+        let (map, clip_from_world) = (&maps.maps[index], self.maps[index].clip_from_world);
         let texel = map.project(point.position).texel.floor() + 0.5;
         let ndc = (texel / map.size - 0.5) * DVec2::new(2.0, -2.0);
         let depth = clip_from_world.project_point3(point.position).z;
@@ -270,9 +269,9 @@ fn triangles_relative_to_another_origin_far_from_the_worlds_are_judged_alike() {
     let mut picture = Picture::new(moved, DVec3::new(-4.0, 3.0, 5.0), sun());
     picture.camera.eye += away.as_dvec3();
     picture.origin = away.as_dvec3() + DVec3::new(0.3, 0.1, -0.2);
-    let moved_map = |map: &FitMap| {
-        let clip_from_world = DMat4::from_cols_array(&map.view_proj) * DMat4::from_translation(-away.as_dvec3());
-        FitMap { view_proj: clip_from_world.to_cols_array(), ..map.clone() }
+    let moved_map = |map: &PlainMap| {
+        let clip_from_world = map.clip_from_world * DMat4::from_translation(-away.as_dvec3());
+        PlainMap { clip_from_world, ..*map }
     };
     picture.maps = picture.maps.iter().map(moved_map).collect();
     picture.judge().assert_agreement("away");
@@ -283,7 +282,7 @@ fn maps_of_reversed_depth_are_read_alike() {
     let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
     let turn = DMat4::from_translation(DVec3::Z) * DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
     for map in &mut picture.maps {
-        map.view_proj = (turn * map.clip_from_world()).to_cols_array();
+        map.clip_from_world = turn * map.clip_from_world;
     }
     let counts = picture.judge().assert_agreement("reversed");
     assert!(counts[Class::Hole as usize] >= 20, "{counts:?}");

@@ -2,13 +2,12 @@
 
 use glam::DVec3;
 use shadowfit::selection::MapOrder;
-use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     Class, Crawl, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthLight,
     TruthSettings, crawl, judge,
 };
 
-use super::scenes::{level, looking_down, map_around, shadow_map};
+use super::scenes::{PlainMap, level, looking_down, map_around, shadow_map};
 
 /// 40 by 10 pixels of a decimetre on the floor, seen from below the roof, which covers its left
 /// half (x < 0) at a height of 2 m; the light falls straight down.
@@ -135,7 +134,7 @@ fn points_outside_every_map_are_uncovered_and_holes_where_they_are_shadowed() {
 fn points_read_the_first_map_beyond_their_depth_and_classes_name_it() {
     let room = Room::new();
     let far = map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80);
-    let maps = [FitMap { split_far: 0.5, ..far.clone() }, map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80), far]
+    let maps = [PlainMap { split_far: 0.5, ..far }, map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80), far]
         .map(|map| map.measured(DVec3::Y));
     let seen = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
     let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
@@ -269,6 +268,6 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
     assert_eq!(compared(&beside).0, [10, 20]);
     // Or beyond its last split.
-    let short = FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
+    let short = PlainMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
     assert_eq!(compared(&[short.measured(DVec3::Y)]), ([0, 0], 0.0, 0));
 }

@@ -1,12 +1,11 @@
 //! What a picture's figures must not depend on: where the world's origin and axes are, and its unit.
 
 use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, Vec3};
-use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     MapReading, MeasuredMap, PictureMaps, PictureTally, PixelCamera, Tracer, Truth, TruthLight, TruthSettings, judge,
 };
 
-use super::scenes::{cuboid, lamp_image, level, looking_at, map_around, sphere};
+use super::scenes::{PlainMap, cuboid, lamp_image, level, looking_at, map_around, sphere};
 
 const LIGHTS: [Light; 2] = [Light::Sun, Light::Lamp];
 
@@ -25,8 +24,8 @@ fn light_and_map(light: Light, motion: DAffine3, world: DAffine3) -> (TruthLight
         Light::Sun => {
             let to_light = motion.transform_vector3(toward);
             let map = map_around(DVec3::ZERO, toward, 16.0, 3.0, 1024);
-            let clip_from_world = DMat4::from_cols_array(&map.view_proj) * from_world;
-            let map = FitMap { view_proj: clip_from_world.to_cols_array(), ..map }.measured(to_light);
+            let clip_from_world = map.clip_from_world * from_world;
+            let map = PlainMap { clip_from_world, ..map }.measured(to_light);
             (TruthLight::sun(to_light), map)
         }
         Light::Lamp => {

@@ -3,7 +3,6 @@
 use glam::dcamera::rh::proj::directx::{orthographic, perspective};
 use glam::dcamera::rh::view::{look_at_mat4, look_to_mat4};
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MeasuredMap, PixelCamera};
 
 pub(crate) type Triangles = Vec<[Vec3; 3]>;
@@ -86,20 +85,28 @@ pub(crate) fn looking_down(height: f64, pixel: f64, size: [u32; 2]) -> PixelCame
     }
 }
 
+/// A square map whose matrix tests change before it is measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlainMap {
+    pub(crate) clip_from_world: DMat4,
+    pub(crate) texels: u32,
+    pub(crate) split_far: f64,
+}
+
+impl PlainMap {
+    pub(crate) fn measured(&self, to_light: DVec3) -> MeasuredMap {
+        MeasuredMap::new(&self.clip_from_world, DVec2::splat(self.texels.into()), self.split_far, to_light)
+    }
+}
+
 /// A square orthographic map around `centre`: `width` metres wide, from `before` metres before it to
 /// as many behind it.
-pub(crate) fn map_around(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> FitMap {
+pub(crate) fn map_around(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> PlainMap {
     let up = if to_light.y.abs() > 0.9 { DVec3::NEG_Z } else { DVec3::Y };
     let light_from_world: DMat4 = look_to_mat4(centre + to_light * before, -to_light, up);
     let half = width * 0.5;
-    let view_proj = orthographic(-half, half, -half, half, 0.0, 2.0 * before) * light_from_world;
-    FitMap {
-        view_proj: view_proj.to_cols_array(),
-        resolution: texels,
-        resolution_xy: None,
-        split_near: 0.0,
-        split_far: 1e9,
-    }
+    let clip_from_world = orthographic(-half, half, -half, half, 0.0, 2.0 * before) * light_from_world;
+    PlainMap { clip_from_world, texels, split_far: 1e9 }
 }
 
 /// The same, made ready.

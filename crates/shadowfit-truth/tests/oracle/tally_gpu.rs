@@ -3,13 +3,12 @@
 use glam::{DVec3, Vec3};
 use shadowfit_testing::{TestGpu, test_gpu};
 use shadowfit_truth::gpu::{GpuBefore, GpuJudge, GpuJudgeInput, GpuPixel, GpuTally, GpuTracer, GpuTruthError};
-use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     Class, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, crawl, judge,
 };
 
 use super::agreement_gpu::{Picture, boxes, seen_texture, sun};
-use super::scenes::map_around;
+use super::scenes::{PlainMap, map_around};
 
 /// A bin of pixels per texel, in octaves.
 const BIN: f64 = 1.0 / 32.0;
@@ -275,7 +274,7 @@ fn a_picture_in_which_nothing_is_judged_has_no_figures() {
 fn before_of(seen: &Picture) -> Picture {
     let mut before = picture();
     before.reading = seen.reading;
-    let moved = |(width, split_far): (f64, f64)| FitMap {
+    let moved = |(width, split_far): (f64, f64)| PlainMap {
         split_far,
         ..map_around(DVec3::new(0.5, 0.0, 0.1), sun(), width, 6.0, 300)
     };

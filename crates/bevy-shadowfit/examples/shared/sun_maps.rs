@@ -1,0 +1,56 @@
+//! The maps of a sun in a view, in the report's form of a look-up.
+
+use bevy::light::cascade::Cascade;
+use bevy::light::{CascadeShadowConfig, DirectionalLight};
+use shadowfit::glam::{DMat4, DVec3};
+use shadowfit::settings::MapSelection;
+use shadowfit_report::contestant::{LookupBlend, LookupFilter, LookupMap, ShadowLookup};
+
+/// Cascades, bounds and biases of a light in a view.
+#[derive(Clone)]
+pub(crate) struct SunMaps {
+    pub(crate) cascades: Vec<Cascade>,
+    pub(crate) config: CascadeShadowConfig,
+    /// Bias toward the light, in metres.
+    pub(crate) depth_bias: f32,
+    /// Bias along the normal, in diagonals of a texel.
+    pub(crate) normal_bias: f32,
+}
+
+impl SunMaps {
+    /// Copies the maps of a light.
+    pub(crate) fn new(cascades: &[Cascade], config: &CascadeShadowConfig, light: &DirectionalLight) -> Self {
+        Self {
+            cascades: cascades.to_vec(),
+            config: config.clone(),
+            depth_bias: light.shadow_depth_bias,
+            normal_bias: light.shadow_normal_bias,
+        }
+    }
+
+    /// Returns the look-up of Bevy's shader (`shadows.wesl` and `shadow_sampling.wesl` of `bevy_pbr` 0.20). For windows it
+    /// is the look-up that the plugin adds (`windows.wesl`). Maps have `size` texels across and down.
+    pub(crate) fn lookup(&self, size: u32, filter: LookupFilter, to_light: DVec3) -> ShadowLookup {
+        let CascadeShadowConfig { bounds, overlap_proportion, .. } = &self.config;
+        let map = |(cascade, bound): (&Cascade, &f32)| LookupMap {
+            clip_from_world: DMat4::from_cols_array(&cascade.clip_from_world.to_cols_array().map(f64::from)),
+            texel: cascade.texel_size.into(),
+            bound: (*bound).into(),
+        };
+        // Windows all end where shadows do, and come finest first.
+        let has_windows = bounds.len() > 1 && bounds.iter().all(|bound| *bound == bounds[0]);
+        ShadowLookup {
+            maps: self.cascades.iter().zip(bounds).map(map).collect(),
+            size,
+            blend: if has_windows {
+                LookupBlend::Coverage { reach: filter.reach().into(), blend: MapSelection::DEFAULT_BLEND.into() }
+            } else {
+                LookupBlend::ViewDepth { overlap: (*overlap_proportion).into() }
+            },
+            depth_bias: self.depth_bias.into(),
+            normal_bias: self.normal_bias.into(),
+            to_light,
+            filter,
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Judges the sun shadows of any renderer against rays: of a game engine, of a page in a browser, or of matrices alone.
+//!
+//! A renderer implements [`Contestant`]. [`Judging`] walks the paths of a file of scenarios ([`crate::peers`]) with each
+//! of its techniques, compares every pixel with rays toward the light, and draws each frame once more with the maps of the
+//! frame before, which shows the shadow edges that crawl:
+//!
+//! ```no_run
+//! use shadowfit_report::contestant::{Contestant, JudgeSettings, Judging};
+//! use shadowfit_report::geometry::Source;
+//! use shadowfit_report::peers::Scenarios;
+//!
+//! # fn judge(mut renderer: impl Contestant, source: &Source) -> anyhow::Result<()> {
+//! let scenarios = Scenarios::read("peers/scenarios.json".as_ref())?;
+//! let mut judging = Judging::new(&renderer, JudgeSettings::default());
+//! for (index, scene) in scenarios.scenes.iter().enumerate() {
+//!     let frames: Vec<_> = scenarios.frames.iter().filter(|frame| frame.scene == index).collect();
+//!     judging.judge_scene(&mut renderer, &scene.name, &source.read(scene)?, &frames, |_| Ok(()))?;
+//! }
+//! println!("{}", judging.results().to_markdown(Some(0)));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! [`Results::to_run`] makes the [`Run`](crate::run::Run) that tables, plots and the page are made of.
+
+mod lookup;
+mod measure;
+mod results;
+mod sums;
+mod surfaces;
+
+use anyhow::Result;
+use glam::DVec3;
+use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
+
+pub use lookup::{LookupBlend, LookupFilter, LookupMap, ShadowLookup};
+pub use measure::{JudgeSettings, JudgeTimes, JudgedPicture, Judging};
+pub use results::{FrameResult, Results, RunFacts};
+pub use sums::Sums;
+pub use surfaces::LitSurface;
+
+use crate::geometry::Corners;
+use crate::peers::Frame;
+
+/// A renderer whose sun shadows are judged, with one or more techniques.
+///
+/// The scene is plain: every triangle is white, fully rough and opaque, and casts and receives shadows on both sides. The
+/// light is a sun without a radius, and nothing else lights the scene. Pictures have one number for each pixel, in rows
+/// from the top, before any tone mapping.
+pub trait Contestant {
+    /// The maps of a frame, in the renderer's own form.
+    type Maps;
+
+    /// Returns the names of the techniques. Each gets a row in the tables.
+    fn techniques(&self) -> Vec<String>;
+
+    /// Replaces the scene. `objects` has the triangles of each object.
+    ///
+    /// # Errors
+    ///
+    /// If the renderer cannot take the scene.
+    fn set_scene(&mut self, objects: &[Vec<Corners>]) -> Result<()>;
+
+    /// Begins a path with one of the techniques: takes the light of its first frame, and forgets all earlier frames.
+    ///
+    /// # Errors
+    ///
+    /// If the renderer cannot take the light.
+    fn begin_path(&mut self, technique: usize, first: &Frame) -> Result<()>;
+
+    /// Fits maps to the next frame of the path and draws it.
+    ///
+    /// # Errors
+    ///
+    /// If the frame cannot be drawn.
+    fn draw(&mut self, frame: &Frame) -> Result<Drawn<Self::Maps>>;
+
+    /// Draws a frame again, and fits nothing. `None` if the renderer cannot do this: its pictures must be light factors
+    /// then, and crawl is not measured.
+    ///
+    /// # Errors
+    ///
+    /// If the frame cannot be drawn.
+    fn redraw(&mut self, _redraw: &Redraw<'_, Self::Maps>) -> Result<Option<Vec<f32>>> {
+        Ok(None)
+    }
+
+    /// Describes the maps of a frame. `to_light` is the unit direction toward the light, world axes.
+    fn light_maps(&self, maps: &Self::Maps, to_light: DVec3) -> LightMaps;
+
+    /// Returns the brightness of a surface without shadows, in any unit. Pixels of another brightness show another
+    /// surface than rays find, so they are left out. Lambert's law unless the renderer's own law differs.
+    fn brightness(&self, surface: &LitSurface) -> f64 {
+        surface.normal.dot(surface.to_light).max(0.0)
+    }
+}
+
+/// A drawn frame.
+#[derive(Clone, Debug)]
+pub struct Drawn<Maps> {
+    /// Shadows of the frame.
+    pub shadows: Shadows,
+    /// Maps that they came from.
+    pub maps: Maps,
+}
+
+/// Shadows of a frame, in one of the forms that renderers can give.
+#[derive(Clone, Debug)]
+pub enum Shadows {
+    /// Brightness of each pixel. It is divided by the brightness without shadows, for which [`Contestant::redraw`] is
+    /// called.
+    Brightness(Vec<f32>),
+    /// Share of the light that reaches each pixel, 0..=1.
+    Factors(Vec<f32>),
+    /// Matrices and the rules of a look-up alone. Rays find the depths that the maps would hold.
+    Lookup(ShadowLookup),
+}
+
+/// A frame that is drawn again.
+#[derive(Clone, Copy, Debug)]
+pub struct Redraw<'a, Maps> {
+    /// Camera and light.
+    pub frame: &'a Frame,
+    /// Maps in place of new ones; `None` draws without shadows.
+    pub maps: Option<&'a Maps>,
+    /// Frame whose view depths select among the maps, if that is another frame.
+    pub view_depths_of: Option<&'a Frame>,
+}
+
+/// The maps of a frame in the form that is measured.
+#[derive(Clone, Debug)]
+pub struct LightMaps {
+    /// Maps; by view depth they are in order of their splits.
+    pub maps: Vec<MeasuredMap>,
+    /// Rule by which a point selects among the maps.
+    pub reading: MapReading,
+    /// Reach of the filter: greatest distance per axis, in texels, from the sample point to the centre of a texel of
+    /// non-zero weight.
+    pub reach: f32,
+    /// Whether the maps also hold casters before their near plane.
+    pub depth_clamp: bool,
+    /// Whether a point that lies outside of the map of its view depth reads a later one. If not, it is lit.
+    pub reads_later_maps: bool,
+}
+
+impl LightMaps {
+    /// Returns the maps in the form that a picture is judged with.
+    pub fn picture_maps(&self) -> PictureMaps<'_> {
+        PictureMaps { maps: &self.maps, reading: self.reading, reach: self.reach, depth_clamp: self.depth_clamp }
+    }
+
+    /// Returns whether a map that a point reads holds it.
+    fn holds(&self, position: DVec3, view_depth: f64) -> bool {
+        let is_inside = |map: &MeasuredMap| map.is_inside(&map.project(position));
+        if matches!(self.reading, MapReading::Coverage { .. }) {
+            return self.maps.iter().any(is_inside);
+        }
+        let mut read = self.maps.iter().skip_while(|map| view_depth >= map.split_far);
+        if self.reads_later_maps { read.any(is_inside) } else { read.next().is_some_and(is_inside) }
+    }
+}
