@@ -50,6 +50,7 @@ mod source;
 mod uniform;
 mod view;
 
+pub use crate::pixels::DepthBufferError;
 pub use any_hit::AnyHit;
 pub use error::ResolveError;
 pub use pass::ResolvePass;
