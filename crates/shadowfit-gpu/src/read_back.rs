@@ -59,7 +59,7 @@ impl<T> ReadBackRing<T> {
     }
 
     /// Records the copy of the first bytes of `source`, with the value that [`Self::take`] returns beside them. Returns
-    /// whether it was recorded: nothing is while all buffers are on their way.
+    /// `false`, and records no copy, while all buffers are on their way.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer, value: T) -> bool {
         let Some(free) = self.free() else { return false };
         self.recordings += 1;

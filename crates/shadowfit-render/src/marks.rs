@@ -90,7 +90,8 @@ impl MarkPasses {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         marks: &Marks,
-        (judged, no_depth): (&wgpu::BindGroup, &wgpu::TextureView),
+        judged: &wgpu::BindGroup,
+        no_depth: &wgpu::TextureView,
         target: &RenderTarget,
     ) -> PreparedMarks {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&MarksUniform::new(marks)));

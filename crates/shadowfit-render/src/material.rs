@@ -56,7 +56,7 @@ impl<'a> Uploader<'a> {
         let levels = LevelMaker::new(device);
         let pixel = Image { name: String::new(), width: 1, height: 1, rgba: vec![255; 4] };
         // Without memory for a single pixel, nothing of it is used.
-        let white = upload_image(upload, &levels, &pixel, (false, side)).unwrap_or_else(|| single_pixel(device));
+        let white = upload_image(upload, &levels, &pixel, false, side).unwrap_or_else(|| single_pixel(device));
         Self { upload, scene, side, levels, views: HashMap::new(), white }
     }
 
@@ -66,7 +66,7 @@ impl<'a> Uploader<'a> {
             return self.white.clone();
         };
         let (upload, levels, side, white) = (self.upload, &self.levels, self.side, &self.white);
-        let view = || upload_image(upload, levels, image, (srgb, side)).unwrap_or_else(|| white.clone());
+        let view = || upload_image(upload, levels, image, srgb, side).unwrap_or_else(|| white.clone());
         self.views.entry((index, srgb)).or_insert_with(view).clone()
     }
 
@@ -114,7 +114,8 @@ fn upload_image(
     upload: &Upload<'_>,
     levels: &LevelMaker,
     image: &Image,
-    (srgb, side): (bool, u32),
+    srgb: bool,
+    side: u32,
 ) -> Option<wgpu::TextureView> {
     let image = &halved_to_fit(image, side);
     let format = if srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm };

@@ -76,7 +76,8 @@ impl Part {
         upload: &Upload<'_>,
         scene: &Scene,
         primitive: &Primitive,
-        (mirrored, deforms): (bool, bool),
+        mirrored: bool,
+        deforms: bool,
     ) -> Self {
         let material = &scene.materials[primitive.material];
         let casting = scene.casting(primitive);
@@ -90,12 +91,8 @@ impl Part {
         let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
         // Blended surfaces are not probed.
         let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(device) == Numbering::Vertices;
-        let each = [
-            Some(vertices[0]),
-            Some(vertices[1]),
-            has.tangents.then_some(vertices[2]),
-            has.surface.then_some(vertices[3]),
-        ];
+        let is_each = [true, true, has.tangents, has.surface];
+        let each = [0, 1, 2, 3].map(|stream| is_each[stream].then_some(vertices[stream]));
         // What casts nothing is not cut, and neither is what deforms.
         let is_whole = deforms || casting == Casting::Nothing;
         let (caster_indices, clusters) = clustered(positions, indices, is_whole);

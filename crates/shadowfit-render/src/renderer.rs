@@ -25,7 +25,7 @@ use crate::uniform::{FrameUniform, InsetVertex, LineVertex, QuadVertex};
 use crate::vertex_buffer::VertexBuffer;
 use crate::{Gpu, Inset, Line, Quad, bindings};
 
-use edges::Edges;
+use edges::{Edges, Extent};
 use known::KnownMaps;
 use plan::Plan;
 
@@ -174,10 +174,10 @@ impl Renderer {
     ) -> Result<Statistics, ShadowMapError> {
         let frame = &self.with_known_maps(scene, frame);
         self.timer.begin_picture(gpu, frame.maps_stay);
-        let plan = self.prepare(gpu, scene, (frame, Drawn::Shaded(frame.overlay)), target.size)?;
+        let plan = self.prepare(gpu, scene, frame, Drawn::Shaded(frame.overlay), target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        self.resolve_edges(gpu, &mut encoder, scene, (frame, &plan), (target.size, self.samples));
+        self.resolve_edges(gpu, &mut encoder, scene, frame, &plan, Extent { size: target.size, samples: self.samples });
         self.scene_pass(gpu, &mut encoder, scene, &plan, target);
         self.over_pass(gpu, &mut encoder, frame, &plan, target);
         if let (Some(encoding), Some(encoded)) = (&self.pipelines.encoding, &target.encoded) {
@@ -220,11 +220,11 @@ impl Renderer {
     ) -> Result<(), ProbeError> {
         // A probe shows no overlay.
         let frame = Frame { overlay: crate::Overlay::None, ..self.with_known_maps(scene, frame) };
-        let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;
+        let plan = self.prepare(gpu, scene, &frame, Drawn::Probe, targets.size)?;
         self.timer.begin_probe(gpu, frame.maps_stay);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        self.resolve_edges(gpu, &mut encoder, scene, (&frame, &plan), (targets.size, 1));
+        self.resolve_edges(gpu, &mut encoder, scene, &frame, &plan, Extent { size: targets.size, samples: 1 });
         self.probe_pass(&mut encoder, scene, &plan, targets, true);
         self.timer.resolve(&mut encoder);
         gpu.submit([encoder.finish()]);
@@ -236,7 +236,8 @@ impl Renderer {
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
-        (frame, drawn): (&Frame<'_>, Drawn),
+        frame: &Frame<'_>,
+        drawn: Drawn,
         size: [u32; 2],
     ) -> Result<Plan, ShadowMapError> {
         let eye = frame.camera.eye;
@@ -253,7 +254,7 @@ impl Renderer {
         let insets = if self.sun.maps().is_empty() { &[] } else { frame.insets };
         self.insets.write(gpu, &insets.iter().map(Inset::vertex).collect::<Vec<InsetVertex>>());
         self.quads.write(gpu, &frame.quads.iter().map(Quad::vertex).collect::<Vec<QuadVertex>>());
-        Ok(self.plan(gpu, scene, frame, (&uniform, size)))
+        Ok(self.plan(gpu, scene, frame, &uniform, size))
     }
 }
 

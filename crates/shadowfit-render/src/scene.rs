@@ -74,7 +74,7 @@ impl GpuScene {
     ///
     /// [`DeviceFault`] if the device has no memory for it.
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, pose: &Pose) -> Result<Self, DeviceFault> {
-        Self::with_textures(gpu, layout, (scene, pose), u32::MAX)
+        Self::with_textures(gpu, layout, scene, pose, u32::MAX)
     }
 
     /// The same within the device's memory: where there is not enough, textures are halved until there is. Returns the most
@@ -89,7 +89,7 @@ impl GpuScene {
         scene: &Scene,
         pose: &Pose,
     ) -> Result<(Self, Option<u32>), DeviceFault> {
-        let make = |side| Self::with_textures(gpu, layout, (scene, pose), side);
+        let make = |side| Self::with_textures(gpu, layout, scene, pose, side);
         let fault = match make(u32::MAX) {
             Ok(made) => return Ok((made, None)),
             Err(fault) => fault,
@@ -111,30 +111,13 @@ impl GpuScene {
     fn with_textures(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        (scene, pose): (&Scene, &Pose),
+        scene: &Scene,
+        pose: &Pose,
         side: u32,
     ) -> Result<Self, DeviceFault> {
         let upload = Upload::new(gpu);
         let instances: Vec<Instance> = scene.instances();
-        let mut parts: Vec<Part> = Vec::new();
-        let (mut shared, mut twins) = (HashMap::new(), HashMap::new());
-        for (index, instance) in instances.iter().enumerate() {
-            let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-            let mirrored = pose.is_mirrored(scene, instance);
-            let deforms = is_deformed(scene, instance);
-            let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
-            let part = *shared.entry(key).or_insert_with(|| {
-                let twin = TwinKey::of(scene, primitive);
-                let known = twins.get(&twin).filter(|_| !deforms).map(|&known: &usize| &parts[known]);
-                let part = known.map(|known| known.twin(scene, primitive, mirrored));
-                parts.push(part.unwrap_or_else(|| Part::new(&upload, scene, primitive, (mirrored, deforms))));
-                if !deforms {
-                    twins.entry(twin).or_insert(parts.len() - 1);
-                }
-                parts.len() - 1
-            });
-            parts[part].members.push(index);
-        }
+        let parts = parts(&upload, scene, pose, &instances);
         let count = instances.len();
         let casters = casters(scene, &instances, &parts);
         let gpu_scene = Self {
@@ -387,6 +370,30 @@ impl GpuScene {
     pub fn bounds(&self) -> Option<Aabb> {
         self.instances.iter().map(|instance| instance.bounds).filter(|bounds| !bounds.is_empty()).reduce(Aabb::union)
     }
+}
+
+/// Uploads the parts of all instances: one for each primitive, and one for each instance that deforms.
+fn parts(upload: &Upload<'_>, scene: &Scene, pose: &Pose, instances: &[Instance]) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    let (mut shared, mut twins) = (HashMap::new(), HashMap::new());
+    for (index, instance) in instances.iter().enumerate() {
+        let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+        let mirrored = pose.is_mirrored(scene, instance);
+        let deforms = is_deformed(scene, instance);
+        let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
+        let part = *shared.entry(key).or_insert_with(|| {
+            let twin = TwinKey::of(scene, primitive);
+            let known = twins.get(&twin).filter(|_| !deforms).map(|&known: &usize| &parts[known]);
+            let part = known.map(|known| known.twin(scene, primitive, mirrored));
+            parts.push(part.unwrap_or_else(|| Part::new(upload, scene, primitive, mirrored, deforms)));
+            if !deforms {
+                twins.entry(twin).or_insert(parts.len() - 1);
+            }
+            parts.len() - 1
+        });
+        parts[part].members.push(index);
+    }
+    parts
 }
 
 /// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes

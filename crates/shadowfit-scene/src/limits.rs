@@ -4,6 +4,6 @@
 /// three coordinates, as in a volume, is still finite in f32.
 pub(crate) const MAX_COORDINATE: f32 = 1e12;
 
-/// Greatest weight of a morph target. With it, displacements that are as long as files may have them, moved by matrices
-/// as large as poses have them, stay far from the end of f32.
+/// Greatest weight of a morph target. The longest accepted displacement, times this weight and the largest matrix of a pose,
+/// stays far below the largest f32.
 pub(crate) const MAX_MORPH_WEIGHT: f32 = 1e6;

@@ -96,22 +96,29 @@ impl Segment {
             Interpolation::Linear => Some(blend(at(self.from)?, at(self.to)?, self.fraction)),
             Interpolation::CubicSpline if self.from == self.to => at(3 * self.from + 1),
             Interpolation::CubicSpline => {
-                let start = (at(3 * self.from + 1)?, at(3 * self.from + 2)?);
-                let end = (at(3 * self.to + 1)?, at(3 * self.to)?);
+                let start = Key { value: at(3 * self.from + 1)?, tangent: at(3 * self.from + 2)? };
+                let end = Key { value: at(3 * self.to + 1)?, tangent: at(3 * self.to)? };
                 Some(hermite(start, end, self.fraction, self.length))
             }
         }
     }
 }
 
-/// Cubic Hermite spline between two (value, tangent) pairs; tangents are per second.
-fn hermite<T>(start: (T, T), end: (T, T), s: f32, length: f32) -> T
+/// A key of a cubic spline.
+struct Key<T> {
+    value: T,
+    /// Change of the value per second, on the side of the other key.
+    tangent: T,
+}
+
+/// Cubic Hermite spline between two keys that are `length` seconds apart, at `s` of the way, 0..1.
+fn hermite<T>(start: Key<T>, end: Key<T>, s: f32, length: f32) -> T
 where
     T: Add<Output = T> + Mul<f32, Output = T>,
 {
     let (s2, s3) = (s * s, s * s * s);
-    start.0 * (2.0 * s3 - 3.0 * s2 + 1.0)
-        + start.1 * (length * (s3 - 2.0 * s2 + s))
-        + end.0 * (3.0 * s2 - 2.0 * s3)
-        + end.1 * (length * (s3 - s2))
+    start.value * (2.0 * s3 - 3.0 * s2 + 1.0)
+        + start.tangent * (length * (s3 - 2.0 * s2 + s))
+        + end.value * (3.0 * s2 - 2.0 * s3)
+        + end.tangent * (length * (s3 - s2))
 }

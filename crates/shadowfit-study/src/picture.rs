@@ -81,7 +81,7 @@ impl JudgeJob {
             judged.tally.area = area(&rays.tracer, truth, &judged.counted, &factors, self.judging.area);
         }
         if let Some(counts) = &self.traced {
-            judged.tally.add_traced((counts.traced.into(), counts.facing.into()));
+            judged.tally.add_traced(counts.traced.into(), counts.facing.into());
         }
         if let Some(before) = &self.before {
             let measured = measure(&before.maps);

@@ -55,7 +55,8 @@ struct Area {
 pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], side: u32) -> AreaTally {
     let of_pixel = |pixel: usize| {
         let point = truth.points[pixel].filter(|_| counted[pixel])?;
-        let area = seen(tracer, (&truth.camera, &truth.settings), pixel, (point.position, point.normal), side)?;
+        let centre = Plane { point: point.position, normal: point.normal };
+        let area = seen(tracer, &truth.camera, &truth.settings, pixel, &centre, side)?;
         let error = (f64::from(factors[pixel]).clamp(0.0, 1.0) - area.lit).abs();
         Some(if area.is_single {
             AreaTally { single: 1, single_error: error, ..AreaTally::default() }
@@ -71,16 +72,24 @@ pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], s
     })
 }
 
-/// What the points of a pixel show; `None` where they see nothing. `plane`: of what its centre shows.
+/// The plane of the surface at the centre of a pixel.
+struct Plane {
+    /// A point of it, world space, metres.
+    point: DVec3,
+    normal: DVec3,
+}
+
+/// Computes the lit share of a pixel from `side` × `side` points; `None` where the points see nothing.
 fn seen(
     tracer: &Tracer,
-    (camera, settings): (&PixelCamera, &TruthSettings),
+    camera: &PixelCamera,
+    settings: &TruthSettings,
     pixel: usize,
-    (on_plane, normal): (DVec3, DVec3),
+    centre: &Plane,
     side: u32,
 ) -> Option<Area> {
     let ray = camera.ray_of(pixel);
-    let width = 2.0 * camera.half_size.y / f64::from(camera.size[1]) * camera.spread(camera.view_depth(on_plane));
+    let width = 2.0 * camera.half_size.y / f64::from(camera.size[1]) * camera.spread(camera.view_depth(centre.point));
     let [right, down] = camera.pixel_axes();
     let (mut points, mut free, mut is_single) = (0_u32, 0_u32, true);
     let rays = settings.light.with_rays(side * side).rays();
@@ -95,7 +104,8 @@ fn seen(
         let depth = tracer.refine(hit, plane, through.origin, through.direction);
         let position = through.at(depth);
         let facing = if plane.dot(through.direction) > 0.0 { -plane } else { plane };
-        is_single &= (position - on_plane).dot(normal).abs() <= width && facing.dot(normal) >= SAME_SURFACE;
+        is_single &=
+            (position - centre.point).dot(centre.normal).abs() <= width && facing.dot(centre.normal) >= SAME_SURFACE;
         points += 1;
         let is_facing = facing.dot(settings.light.ray_from(position).direction) > 0.0;
         // Neighbouring points of the pixel have points of the sun that are no neighbours.

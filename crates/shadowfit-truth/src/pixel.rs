@@ -59,7 +59,7 @@ impl PixelTruth<'_> {
         }
         let triangle = seen_by_ray(self.tracer, self.camera, pixel)?;
         let rays = self.settings.light.rays();
-        Some(truth::point(self.tracer, (self.camera, self.settings), &rays, pixel, triangle))
+        Some(truth::point(self.tracer, self.camera, self.settings, &rays, pixel, triangle))
     }
 
     /// Everything between a judged point and the light, along a ray that is blocked, in no order; nothing where every ray

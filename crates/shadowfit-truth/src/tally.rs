@@ -168,10 +168,10 @@ impl PictureTally {
         self.change_compared += crawl.change_compared;
     }
 
-    /// Adds what a renderer counted: pixels that took rays, and facing ones.
-    pub fn add_traced(&mut self, (traced, of): (u64, u64)) {
+    /// Adds the counts of a renderer: pixels that took rays, and pixels that face the light.
+    pub fn add_traced(&mut self, traced: u64, facing: u64) {
         self.traced += traced;
-        self.traced_of += of;
+        self.traced_of += facing;
     }
 
     /// Whether no pixel was judged: the sky alone, or only surfaces that face away from the light or

@@ -124,7 +124,7 @@ impl Truth {
             .enumerate()
             .map(|(pixel, seen)| {
                 let triangle = seen.filter(|triangle| (*triangle as usize) < tracer.len() && goes_on())?;
-                Some(point(tracer, (camera, settings), &rays, pixel, triangle))
+                Some(point(tracer, camera, settings, &rays, pixel, triangle))
             })
             .collect();
         let mut truth = Self { camera: *camera, settings: *settings, points, transition_squares: Vec::new() };
@@ -193,7 +193,8 @@ pub(crate) fn is_within(square: u32, width: f32) -> bool {
 /// What a pixel shows of a triangle, and how much light reaches it. `rays` are those of the settings' light.
 pub(crate) fn point(
     tracer: &Tracer,
-    (camera, settings): (&PixelCamera, &TruthSettings),
+    camera: &PixelCamera,
+    settings: &TruthSettings,
     rays: &LightRays,
     pixel: usize,
     triangle: u32,

@@ -56,6 +56,7 @@ mod pass;
 mod reference;
 mod view;
 
+pub use crate::pixels::DepthBufferError;
 pub use error::{DemandPassError, Unsupported};
 pub(crate) use pass::supported;
 pub use pass::{DemandPass, demand_wgsl};

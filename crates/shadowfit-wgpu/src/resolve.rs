@@ -51,6 +51,7 @@ mod uniform;
 mod verdict;
 mod view;
 
+pub use crate::pixels::DepthBufferError;
 pub use any_hit::AnyHit;
 pub use error::ResolveError;
 pub use pass::ResolvePass;

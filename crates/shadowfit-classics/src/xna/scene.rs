@@ -31,7 +31,7 @@ pub(super) fn build() -> Scene {
     floor::build(&mut builder);
     let root = figure_at_ease(&mut builder);
     builder.scene.nodes[root].rest.scale = Vec3::splat(UNITS_PER_METRE).as_dvec3();
-    builder.view((EYE, EYE + FORWARD), LENS);
+    builder.view(EYE, EYE + FORWARD, LENS);
     let mut scene = builder.scene;
     let turn = rotations(root, TURN, TURN_KEYS, Quat::from_rotation_y);
     scene.animations.push(looped("turn", TURN, vec![turn]));

@@ -25,7 +25,7 @@ impl MeshRanges {
         }
     }
 
-    /// Whether a mesh has exactly as many records.
+    /// Whether the records of a mesh fill the ranges exactly.
     pub(crate) fn fit(&self, mesh: &RayMesh) -> bool {
         [self.nodes.len(), self.triangles.len(), self.cut_outs.len()]
             == [mesh.hierarchy.nodes.len(), mesh.triangles.len(), mesh.cut_outs.len()]

@@ -74,11 +74,8 @@ impl RayScene {
         let pools = [&nodes, &triangles, &cut_outs, &images].map(|pool| pool.records.buffer());
         let bound = [pools[0], instance_records.buffer(), pools[1], pools[2], pools[3]];
         let bound = bound.map(Clone::clone);
-        let (layout, group) = caught(device, || {
-            let layout = rays_layout(device);
-            let group = bind(device, &layout, &bound);
-            (layout, group)
-        })?;
+        let layout = caught(device, || rays_layout(device))?;
+        let group = caught(device, || bind(device, &layout, &bound))?;
         let mut scene = Self {
             device: device.clone(),
             queue: queue.clone(),

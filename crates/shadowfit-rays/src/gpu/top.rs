@@ -199,14 +199,14 @@ impl TopLevel {
     pub(crate) fn upload(&mut self, nodes: &Records, instances: &Records) -> u64 {
         let (root, others) = self.nodes.split_at(WIDTH);
         let (changed_root, changed) = self.changed_nodes.split_at_mut(WIDTH);
-        upload((nodes, 0), root, changed_root)
-            + upload((nodes, self.base), others, changed)
-            + upload((instances, 0), &self.records, &mut self.changed_records)
+        upload(nodes, 0, root, changed_root)
+            + upload(nodes, self.base, others, changed)
+            + upload(instances, 0, &self.records, &mut self.changed_records)
     }
 }
 
-/// Uploads the changed ones of records, in runs, to a place in a buffer.
-fn upload<T: bytemuck::Pod>((target, base): (&Records, u32), records: &[T], changed: &mut [bool]) -> u64 {
+/// Uploads the changed ones of records, in runs, to `target` from place `base` on. Returns their bytes.
+fn upload<T: bytemuck::Pod>(target: &Records, base: u32, records: &[T], changed: &mut [bool]) -> u64 {
     let mut bytes = 0;
     let mut from = 0;
     while let Some(skipped) = changed[from..].iter().position(|changed| *changed) {

@@ -58,7 +58,7 @@ impl MapPipelines {
         // What neither is cut out nor computes a depth or a colour needs no fragment stage.
         let plain_entry = Some(entry).filter(|entry| *entry != "fs_caster");
         let caster_pipeline =
-            |entry, masked, surface| maker.caster(&caster_layout, &caster, (entry, masked, surface), map);
+            |entry, masked, surface| maker.caster(&caster_layout, &caster, entry, masked, surface, map);
         Self {
             inset: maker.inset(layouts, map),
             caster: caster_pipeline(plain_entry, false, false),
@@ -74,9 +74,11 @@ impl MapPipelines {
     pub(crate) fn add(
         &mut self,
         device: &wgpu::Device,
-        (layouts, judged): (&Layouts, &wgpu::BindGroupLayout),
+        layouts: &Layouts,
+        judged: &wgpu::BindGroupLayout,
         map: &ShadowMap,
-        (drawn, parts): (Drawn, &[Part]),
+        drawn: Drawn,
+        parts: &[Part],
     ) {
         let maker = Maker { device, samples: self.samples };
         let is_judged = matches!(drawn, Drawn::Shaded(overlay) if overlay.is_judged());
@@ -93,7 +95,7 @@ impl MapPipelines {
         }
         let module = &*self.modules.entry(drawn).or_insert_with(|| maker.drawn(drawn, map));
         let layout = maker.layout(groups);
-        let make = |key: &PartKey| maker.part(&layout, module, (drawn, *key));
+        let make = |key: &PartKey| maker.part(&layout, module, drawn, *key);
         let made = making(|| make_at_once(device, &keys, make));
         self.parts.extend(keys.into_iter().map(|key| (drawn, key)).zip(made));
     }
@@ -134,7 +136,8 @@ impl Maker<'_> {
         &self,
         layout: &wgpu::PipelineLayout,
         module: &wgpu::ShaderModule,
-        (drawn, key): (Drawn, PartKey),
+        drawn: Drawn,
+        key: PartKey,
     ) -> wgpu::RenderPipeline {
         let entry = match drawn {
             Drawn::Shaded(Overlay::None) => "fs_scene",
@@ -171,7 +174,9 @@ impl Maker<'_> {
         &self,
         layout: &wgpu::PipelineLayout,
         module: &wgpu::ShaderModule,
-        (entry, masked, surface): (Option<&str>, bool, bool),
+        entry: Option<&str>,
+        masked: bool,
+        surface: bool,
         map: &ShadowMap,
     ) -> wgpu::RenderPipeline {
         let color = [map.color_target()];

@@ -26,10 +26,19 @@ pub(super) struct Edges {
     result: EdgeResult,
 }
 
+/// Pixels and samples of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Extent {
+    /// Width and height, in pixels.
+    pub(super) size: [u32; 2],
+    /// Samples per pixel.
+    pub(super) samples: u32,
+}
+
 /// The textures of a picture's surfaces.
 #[derive(Debug)]
 struct Surfaces {
-    key: ([u32; 2], u32),
+    extent: Extent,
     depth: wgpu::TextureView,
     normals: wgpu::TextureView,
     /// What normals of several samples are drawn into.
@@ -49,7 +58,8 @@ impl Edges {
 }
 
 impl Surfaces {
-    fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
+    fn new(device: &wgpu::Device, extent: Extent) -> Self {
+        let Extent { size, samples } = extent;
         let texture = |format, sample_count| {
             let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
             let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -65,7 +75,7 @@ impl Surfaces {
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
         Self {
-            key: (size, samples),
+            extent,
             depth: texture(DEPTH_FORMAT, samples),
             normals: texture(NORMAL_FORMAT, 1),
             multisampled: (samples > 1).then(|| texture(NORMAL_FORMAT, samples)),
@@ -98,13 +108,14 @@ impl Renderer {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         scene: &GpuScene,
-        (frame, plan): (&Frame<'_>, &Plan),
-        (size, samples): ([u32; 2], u32),
+        frame: &Frame<'_>,
+        plan: &Plan,
+        extent: Extent,
     ) {
         let unresolved = EdgeResult::Filtered(WhyFiltered::Picture);
         self.edges.result = match self.why_unresolved(scene, frame) {
             Some(why) => EdgeResult::Filtered(why),
-            None => self.resolve(gpu, encoder, scene, (frame, plan), (size, samples)).unwrap_or(unresolved),
+            None => self.resolve(gpu, encoder, scene, frame, plan, extent).unwrap_or(unresolved),
         };
         if self.edges.result != self.edges.pass.result() {
             self.edges.pass.skip();
@@ -134,12 +145,13 @@ impl Renderer {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         scene: &GpuScene,
-        (frame, plan): (&Frame<'_>, &Plan),
-        (size, samples): ([u32; 2], u32),
+        frame: &Frame<'_>,
+        plan: &Plan,
+        extent: Extent,
     ) -> Result<EdgeResult, ResolveError> {
-        self.prepare_parts(gpu, scene, Drawn::Surfaces(samples));
-        let kept = self.edges.surfaces.take().filter(|surfaces| surfaces.key == (size, samples));
-        let surfaces = kept.unwrap_or_else(|| Surfaces::new(&gpu.device, size, samples));
+        self.prepare_parts(gpu, scene, Drawn::Surfaces(extent.samples));
+        let kept = self.edges.surfaces.take().filter(|surfaces| surfaces.extent == extent);
+        let surfaces = kept.unwrap_or_else(|| Surfaces::new(&gpu.device, extent));
         self.surfaces_pass(encoder, scene, plan, &surfaces);
         let camera = frame.camera;
         let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
@@ -169,7 +181,7 @@ impl Renderer {
             ..Default::default()
         });
         set_part(&mut pass, plan);
-        self.draw_scene(&mut pass, scene, &plan.opaque, Drawn::Surfaces(surfaces.key.1));
+        self.draw_scene(&mut pass, scene, &plan.opaque, Drawn::Surfaces(surfaces.extent.samples));
         drop(pass);
         self.timer.end(query, encoder);
     }

@@ -48,6 +48,6 @@ impl Renderer {
         let marks = frame.marks.filter(|marks| marks.strength > 0.0 && frame.judged.is_some())?;
         let judged = plan.judged.as_ref()?;
         let passes = self.marks.get_or_insert_with(|| MarkPasses::new(&gpu.device, &self.judged, self.samples));
-        Some(passes.prepare(gpu, encoder, &marks, (judged, self.judged.no_depth()), target))
+        Some(passes.prepare(gpu, encoder, &marks, judged, self.judged.no_depth(), target))
     }
 }

@@ -19,8 +19,8 @@ const JUDGED_GROUP: u32 = 3;
 impl Renderer {
     /// Makes what the scene's parts need to be drawn that is not there yet.
     pub(super) fn prepare_parts(&mut self, gpu: &Gpu, scene: &GpuScene, drawn: Drawn) {
-        let layouts = (&self.layouts, &self.judged.layout);
-        self.pipelines.of_map.add(&gpu.device, layouts, self.sun.map(), (drawn, &scene.parts));
+        let Self { layouts, judged, sun, .. } = self;
+        self.pipelines.of_map.add(&gpu.device, layouts, &judged.layout, sun.map(), drawn, &scene.parts);
     }
 
     pub(super) fn scene_pass(

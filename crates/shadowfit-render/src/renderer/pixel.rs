@@ -1,6 +1,7 @@
 //! The facts of one pixel.
 
 use super::Renderer;
+use super::edges::Extent;
 use crate::attachment::cleared;
 use crate::frame::Frame;
 use crate::pipelines::Drawn;
@@ -34,13 +35,14 @@ impl Renderer {
             scissor: Some([x, y, 1, 1]),
             ..Frame::new(frame.camera, frame.direction, &[], frame.atmosphere)
         };
-        let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;
+        let plan = self.prepare(gpu, scene, &frame, Drawn::Probe, targets.size)?;
         let block = query.texels.filter(|block| block.map < self.sun.maps().len());
         let read = PixelRead::new(&gpu.device, *query, block.is_some());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.resolve_edges(gpu, &mut encoder, scene, (&frame, &plan), (targets.size, 1));
+        self.resolve_edges(gpu, &mut encoder, scene, &frame, &plan, Extent { size: targets.size, samples: 1 });
         self.probe_pass(&mut encoder, scene, &plan, &targets, false);
-        copy(&mut encoder, (&targets.texture, [x, y], [1, 1]), (read.buffer(), 0));
+        let pixel = Texels { texture: &targets.texture, corner: [x, y], size: [1, 1] };
+        pixel.copy(&mut encoder, read.buffer(), 0);
         if let Some(block) = block {
             self.block_pass(gpu, &mut encoder, &block, read.buffer());
         }
@@ -74,27 +76,33 @@ impl Renderer {
         pass.set_bind_group(1, self.sun.map().receiver_group(), &[]);
         pass.draw(0..3, 0..1);
         drop(pass);
-        copy(encoder, (&texture, [0, 0], [side; 2]), (buffer, u64::from(ROW)));
+        Texels { texture: &texture, corner: [0, 0], size: [side; 2] }.copy(encoder, buffer, u64::from(ROW));
     }
 }
 
-/// Copies a part of a texture, from a pixel on, to a buffer, in rows of [`ROW`] bytes.
-fn copy(
-    encoder: &mut wgpu::CommandEncoder,
-    (texture, [x, y], [width, height]): (&wgpu::Texture, [u32; 2], [u32; 2]),
-    (buffer, offset): (&wgpu::Buffer, u64),
-) {
-    encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo {
-            texture,
-            mip_level: 0,
-            origin: wgpu::Origin3d { x, y, z: 0 },
-            aspect: wgpu::TextureAspect::All,
-        },
-        wgpu::TexelCopyBufferInfo {
-            buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset, bytes_per_row: Some(ROW), rows_per_image: None },
-        },
-        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-    );
+/// A part of a texture, from its left top pixel on.
+struct Texels<'a> {
+    texture: &'a wgpu::Texture,
+    corner: [u32; 2],
+    size: [u32; 2],
+}
+
+impl Texels<'_> {
+    /// Copies them to a buffer, in rows of [`ROW`] bytes from an offset on.
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, offset: u64) {
+        let Self { texture, corner: [x, y], size: [width, height] } = *self;
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x, y, z: 0 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            wgpu::TexelCopyBufferInfo {
+                buffer,
+                layout: wgpu::TexelCopyBufferLayout { offset, bytes_per_row: Some(ROW), rows_per_image: None },
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+    }
 }

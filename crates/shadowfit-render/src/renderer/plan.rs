@@ -35,7 +35,8 @@ impl Renderer {
         gpu: &Gpu,
         scene: &mut GpuScene,
         frame: &Frame<'_>,
-        (uniform, size): (&FrameUniform, [u32; 2]),
+        uniform: &FrameUniform,
+        size: [u32; 2],
     ) -> Plan {
         scene.begin_frame(frame.camera.eye);
         let shadow = (!frame.maps_stay).then(|| self.plan_maps(scene));

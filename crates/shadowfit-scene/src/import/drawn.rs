@@ -5,16 +5,22 @@ use crate::Mesh;
 use crate::error::Problem;
 
 /// Triangles that a scene may draw.
-const MAX_TRIANGLES: u64 = 1 << 26;
+const TRIANGLES: Limit = Limit { max: 1 << 26, kind: "triangles" };
 
 /// Primitives that a scene may draw, counted at each node. Each takes a few hundred bytes in memory and on the GPU.
-const MAX_PRIMITIVES: u64 = 1 << 21;
+const PRIMITIVES: Limit = Limit { max: 1 << 21, kind: "primitives" };
 
 /// Rows that tables of instances may have in all. Each becomes a node.
-const MAX_ROWS: u64 = 1 << 20;
+const ROWS: Limit = Limit { max: 1 << 20, kind: "rows of tables" };
 
 /// Primitives with morph targets that rows may draw. Each has its own vertices, in its own GPU buffers.
-const MAX_MORPHED: u64 = 1 << 14;
+const MORPHED: Limit = Limit { max: 1 << 14, kind: "primitives with morph targets by tables" };
+
+/// The greatest amount of a kind that a scene may draw.
+struct Limit {
+    max: u64,
+    kind: &'static str,
+}
 
 /// Counts the meshes that nodes draw, before anything is stored for them.
 pub(super) struct Drawn<'a> {
@@ -36,8 +42,8 @@ impl<'a> Drawn<'a> {
         let triangles = mesh.primitives.iter().map(|primitive| primitive.indices.len() as u64 / 3).sum();
         // A mesh without primitives still takes a node each time.
         let primitives = mesh.primitives.len().max(1) as u64;
-        count(&mut self.triangles, (triangles, times), (MAX_TRIANGLES, "triangles"), element)?;
-        count(&mut self.primitives, (primitives, times), (MAX_PRIMITIVES, "primitives"), element)?;
+        TRIANGLES.count(&mut self.triangles, triangles, times, element)?;
+        PRIMITIVES.count(&mut self.primitives, primitives, times, element)?;
         self.reader.spend(mesh.targets().saturating_mul(times), &format!("{element}, morph weights"))
     }
 
@@ -45,25 +51,22 @@ impl<'a> Drawn<'a> {
     pub(super) fn add_rows(&mut self, mesh: &Mesh, rows: usize, element: &str) -> Result<(), Problem> {
         let morphed = || mesh.primitives.iter().filter(|primitive| !primitive.morphs.is_empty());
         let primitives = morphed().count() as u64;
-        count(&mut self.rows, (1, rows), (MAX_ROWS, "rows of tables"), element)?;
-        count(
-            &mut self.morphed,
-            (primitives, rows),
-            (MAX_MORPHED, "primitives with morph targets by tables"),
-            element,
-        )?;
+        ROWS.count(&mut self.rows, 1, rows, element)?;
+        MORPHED.count(&mut self.morphed, primitives, rows, element)?;
         let vertices = morphed().map(|primitive| primitive.positions.len()).fold(0, usize::saturating_add);
         self.reader.spend(vertices.saturating_mul(rows), element)?;
         self.add(mesh, rows.saturating_sub(1), element)
     }
 }
 
-/// Adds an amount, drawn `times` times, to a sum. Refuses a sum above `max`.
-fn count(sum: &mut u64, (amount, times): (u64, usize), (max, kind): (u64, &str), element: &str) -> Result<(), Problem> {
-    *sum = sum.saturating_add(amount.saturating_mul(times as u64));
-    if *sum <= max {
-        return Ok(());
+impl Limit {
+    /// Adds an amount, drawn `times` times, to a sum. Refuses a sum above the limit.
+    fn count(&self, sum: &mut u64, amount: u64, times: usize, element: &str) -> Result<(), Problem> {
+        *sum = sum.saturating_add(amount.saturating_mul(times as u64));
+        if *sum <= self.max {
+            return Ok(());
+        }
+        let reason = format!("with it the scene draws more than {} {}", self.max, self.kind);
+        Err(Problem::new(element, reason).hint("Split or simplify the scene"))
     }
-    let reason = format!("with it the scene draws more than {max} {kind}");
-    Err(Problem::new(element, reason).hint("Split or simplify the scene"))
 }

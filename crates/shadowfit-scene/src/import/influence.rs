@@ -17,7 +17,8 @@ pub(crate) fn load(
     reader: &Reader,
     json: &mesh::Primitive,
     element: &str,
-    (count, vertices): (usize, Elements<'_>),
+    count: usize,
+    vertices: Elements<'_>,
 ) -> Result<Influences, Problem> {
     let mut strongest: Vec<[(u16, f32); 4]> = Vec::new();
     for set in 0..MAX_SETS {

@@ -17,7 +17,7 @@ use super::nodes::Tree;
 use super::notes::Notes;
 use super::transforms::rotation;
 use crate::error::Problem;
-use crate::{Animation, Channel, ChannelValues, Node, Scene, Transform};
+use crate::{Animation, Channel, ChannelValues, Mesh, Node, Scene, Transform};
 
 /// Attributes of a table that place its instances.
 const TRANSFORMS: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
@@ -39,7 +39,8 @@ fn table(json: &JsonNode) -> Option<&Value> {
 
 /// Adds the instances of all nodes with a table and a mesh. Animated morph weights of such a node move its instances.
 pub(super) fn expand(
-    (root, reader): (&Root, &Reader),
+    root: &Root,
+    reader: &Reader,
     tree: &mut Tree,
     scene: &mut Scene,
     drawn: &mut Drawn,
@@ -51,14 +52,8 @@ pub(super) fn expand(
         let index = tree.file_index[node];
         let (Some(table), Some(mesh)) = (table(&root.nodes[index]), nodes[node].mesh) else { continue };
         let element = format!("nodes[{index}].extensions.EXT_mesh_gpu_instancing.attributes");
-        let has_joints = || scene.meshes[mesh].primitives.iter().any(|primitive| !primitive.joints.is_empty());
-        if nodes[node].skin.is_some() && has_joints() {
-            // Joints place a skinned mesh, so that all instances would coincide.
-            let rows = declared(root, &root.nodes[index]);
-            notes.add(format!(
-                "{element}: ignored: joints place the mesh, which is drawn once instead of {rows} times, also its parts \
-                 without joints"
-            ));
+        if nodes[node].skin.is_some() && has_joints(&scene.meshes[mesh]) {
+            note_joints(&element, declared(root, &root.nodes[index]), notes);
             continue;
         }
         if table.as_object().is_some_and(|table| table.keys().any(|name| !TRANSFORMS.contains(&name.as_str()))) {
@@ -71,21 +66,26 @@ pub(super) fn expand(
         let mut morph_weights = nodes[node].morph_weights.clone();
         morph_weights.truncate(scene.meshes[mesh].targets());
         let first = nodes.len();
-        let mesh = nodes[node].mesh.take();
-        let instance = |rest: Transform| Node {
-            rest,
-            mesh,
-            parent: Some(node),
-            morph_weights: morph_weights.clone(),
-            // Rows have no name, so that a long one is not copied a million times. Their parent has it.
-            ..Node::default()
-        };
-        let instances: Vec<Node> = transforms.into_iter().map(instance).collect();
-        tree.file_index.extend(instances.iter().map(|_| index));
-        nodes.extend(instances);
+        nodes[node].mesh = None;
+        // Rows have no name, so that a long one is not copied a million times. Their parent has it.
+        let instance = Node { mesh: Some(mesh), parent: Some(node), morph_weights, ..Node::default() };
+        tree.file_index.extend(transforms.iter().map(|_| index));
+        nodes.extend(transforms.into_iter().map(|rest| Node { rest, ..instance.clone() }));
         rows.insert(node, (first..nodes.len(), element));
     }
     scene.animations.iter_mut().try_for_each(|animation| move_weights(reader, animation, &rows))
+}
+
+fn has_joints(mesh: &Mesh) -> bool {
+    mesh.primitives.iter().any(|primitive| !primitive.joints.is_empty())
+}
+
+/// Notes a table that is ignored. Joints place a skinned mesh, so that all instances would coincide.
+fn note_joints(element: &str, rows: u64, notes: &mut Notes) {
+    notes.add(format!(
+        "{element}: ignored: joints place the mesh, which is drawn once instead of {rows} times, also its parts without \
+         joints"
+    ));
 }
 
 /// Replaces the channels that animate the morph weights of nodes with tables by one for each of their rows. `rows` has,

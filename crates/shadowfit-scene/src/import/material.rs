@@ -118,9 +118,7 @@ impl<'a> Materials<'a> {
         }
         material.base_color_texture = base_color_texture;
         material.normal_texture = normal_texture;
-        if material.alpha == AlphaMode::Blend {
-            self.blended += 1;
-        }
+        self.blended += usize::from(material.alpha == AlphaMode::Blend);
         self.loaded.push(material);
         let uv_from_texcoord = normal_texture.map(|texture| texture.uv_from_texcoord);
         Ok(Look { material: self.loaded.len() - 1, uv_set, uv_from_texcoord, is_hidden: is_hidden(json) })

@@ -87,7 +87,7 @@ impl<'a> Geometries<'a> {
         let geometry = if let Some(known) = self.known.get(&key) {
             Arc::clone(known)
         } else {
-            let made = Arc::new(self.decode((json, element), (mode, positions), look, notes)?);
+            let made = Arc::new(self.decode(json, element, mode, positions, look, notes)?);
             self.known.insert(key, Arc::clone(&made));
             made
         };
@@ -96,8 +96,10 @@ impl<'a> Geometries<'a> {
 
     fn decode(
         &mut self,
-        (json, element): (&mesh::Primitive, &str),
-        (mode, positions): (Mode, Index<Accessor>),
+        json: &mesh::Primitive,
+        element: &str,
+        mode: Mode,
+        positions: Index<Accessor>,
         look: &Look,
         notes: &mut Notes,
     ) -> Result<Geometry, Problem> {
@@ -105,7 +107,7 @@ impl<'a> Geometries<'a> {
         let name = format!("{element}.attributes.POSITION");
         check_plain(reader, json, positions, element)?;
         let count = reader.checked_count(positions, &name, 3)?;
-        let mut indices = indices(reader, json, element, (mode, count))?;
+        let mut indices = indices(reader, json, element, mode, count)?;
         let used = self.used.compact(&mut indices, count);
         let vertices = used.as_deref().map_or(Elements::All, Elements::Listed);
         let attributes = Attributes { reader, json, element, count, vertices };
@@ -119,7 +121,7 @@ impl<'a> Geometries<'a> {
             morphs: attributes.morphs()?,
             ..Geometry::default()
         };
-        (geometry.joints, geometry.weights) = influence::load(reader, json, element, (count, vertices))?;
+        (geometry.joints, geometry.weights) = influence::load(reader, json, element, count, vertices)?;
         if geometry.normals.is_empty() {
             // Flat normals give each target a position and a normal at each corner.
             let copied = geometry.indices.len().saturating_mul(2).saturating_mul(geometry.morphs.len());
@@ -149,7 +151,8 @@ fn indices(
     reader: &Reader,
     json: &mesh::Primitive,
     element: &str,
-    (mode, count): (Mode, usize),
+    mode: Mode,
+    count: usize,
 ) -> Result<Vec<u32>, Problem> {
     // Strips and fans have up to three indices for each corner.
     let spend = |corners: usize| {

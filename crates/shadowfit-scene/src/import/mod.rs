@@ -101,7 +101,8 @@ pub fn load_gltf_with_progress(
         hint: "Check the path and its permissions",
     })?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    load(path, (&bytes, Folder::Disk(folder), &decode_image), scene, size, progress)
+    let source = File { bytes: &bytes, folder: Folder::Disk(folder), decode: &decode_image };
+    load(path, &source, scene, size, progress)
 }
 
 /// Loads scene number `scene` of the file `name` (`None`: its default one) without a file system, such as in a browser:
@@ -126,7 +127,8 @@ pub fn load_gltf_from_memory(
     })?;
     let size = SceneSize::of_file(bytes.len() as u64);
     progress(LoadStep::Read, &size);
-    load(path, (bytes, Folder::Memory(files), decode), scene, size, progress)
+    let source = File { bytes, folder: Folder::Memory(files), decode };
+    load(path, &source, scene, size, progress)
 }
 
 /// The encoded images of a file that [`load_gltf_from_memory`] would load, to be decoded before that: what is missing or
@@ -140,13 +142,21 @@ pub fn gltf_images(name: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<Vec<u8>
     images.filter_map(|(index, json)| Some(image::encoded(json, index, folder, &reader).ok()?.into_owned())).collect()
 }
 
+/// The content of a file, and the way to the files and images that it refers to.
+struct File<'a> {
+    bytes: &'a [u8],
+    folder: Folder<'a>,
+    decode: DecodeImage<'a>,
+}
+
 fn load(
     path: &Path,
-    (bytes, folder, decode): (&[u8], Folder<'_>, DecodeImage<'_>),
+    file: &File<'_>,
     scene: Option<usize>,
     mut size: SceneSize,
     progress: &dyn Fn(LoadStep, &SceneSize),
 ) -> Result<Scene, SceneError> {
+    let File { bytes, folder, decode } = *file;
     let mut source = container::parse(path, bytes, |json| {
         size.json = json;
         progress(LoadStep::Parse, &size);
@@ -206,7 +216,7 @@ fn import<'a>(
     let (materials, images) = materials.finish(&mut notes);
     let nodes = std::mem::take(&mut tree.nodes);
     let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, suns, ..Scene::default() };
-    instancing::expand((root, reader), &mut tree, &mut scene, &mut drawn, &mut notes)?;
+    instancing::expand(root, reader, &mut tree, &mut scene, &mut drawn, &mut notes)?;
     origin::place(&mut scene, &tree, reader, &mut notes)?;
     let rest = scene.pose(None, 0.0);
     scene.sun = scene.sun_of(&rest);

@@ -40,7 +40,7 @@ pub(crate) fn collect(root: &Root, transforms: &[Transform], scene: Option<usize
         tree.file_index.push(index.value());
         tree.hidden.push(!is_visible(json) || parent.is_some_and(|parent| tree.hidden[parent]));
         let rest = transforms.get(index.value()).copied().unwrap_or_default();
-        tree.nodes.push(node(index.value(), json, (parent, rest))?);
+        tree.nodes.push(node(index.value(), json, parent, rest)?);
         let children = json.children.iter().flatten().rev();
         pending.extend(children.map(|&child| (child, Some(own))));
     }
@@ -76,7 +76,7 @@ fn is_visible(json: &scene::Node) -> bool {
     extension.and_then(|own| own.get("visible")).and_then(Value::as_bool).unwrap_or(true)
 }
 
-fn node(index: usize, json: &scene::Node, (parent, rest): (Option<usize>, Transform)) -> Result<Node, Problem> {
+fn node(index: usize, json: &scene::Node, parent: Option<usize>, rest: Transform) -> Result<Node, Problem> {
     if !rest.matrix().as_mat4().is_finite() {
         return Err(Problem::new(format!("nodes[{index}]"), "its transform is not finite"));
     }

@@ -7,7 +7,9 @@ use gltf::json::mesh::Mode;
 pub(crate) fn triangle_list(mode: Mode, corners: &[u32]) -> Vec<u32> {
     match mode {
         Mode::Triangles => corners[..corners.len() / 3 * 3].to_vec(),
-        Mode::TriangleStrip => corners.windows(3).enumerate().flat_map(strip_triangle).collect(),
+        Mode::TriangleStrip => {
+            corners.windows(3).enumerate().flat_map(|(number, corners)| strip_triangle(number, corners)).collect()
+        }
         Mode::TriangleFan => {
             let rim = corners.get(1..).unwrap_or_default();
             rim.windows(2).flat_map(|edge| [edge[0], edge[1], corners[0]]).collect()
@@ -17,7 +19,7 @@ pub(crate) fn triangle_list(mode: Mode, corners: &[u32]) -> Vec<u32> {
 }
 
 /// Every second triangle of a strip is turned round: (i, i + 1 + i % 2, i + 2 - i % 2).
-fn strip_triangle((number, corners): (usize, &[u32])) -> [u32; 3] {
+fn strip_triangle(number: usize, corners: &[u32]) -> [u32; 3] {
     let odd = number % 2;
     [corners[0], corners[1 + odd], corners[2 - odd]]
 }

@@ -93,12 +93,12 @@ impl Builder {
 
     /// Adds the start view: a camera at `eye` that looks at `target`, world positions in metres, with a vertical field
     /// of view in radians and a far plane in metres.
-    pub fn start_view(&mut self, view: (Vec3, Vec3), fov_y: f32, far: f32) {
-        self.view(view, Lens::Perspective { fov_y, near: NEAR, far: Some(far) });
+    pub fn start_view(&mut self, eye: Vec3, target: Vec3, fov_y: f32, far: f32) {
+        self.view(eye, target, Lens::Perspective { fov_y, near: NEAR, far: Some(far) });
     }
 
     /// Adds the start view with a given lens.
-    pub fn view(&mut self, (eye, target): (Vec3, Vec3), lens: Lens) {
+    pub fn view(&mut self, eye: Vec3, target: Vec3, lens: Lens) {
         let back = (eye - target).normalize();
         let right = Vec3::Y.cross(back).normalize();
         let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));

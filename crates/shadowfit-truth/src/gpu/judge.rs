@@ -92,41 +92,21 @@ impl GpuJudge {
     ) -> Result<&wgpu::Texture, GpuTruthError> {
         let size = input.camera.size;
         let seen_before = input.before.map_or(seen, |before| before.seen);
-        let [here, before] = [seen, seen_before].map(|view| [view.texture().width(), view.texture().height()]);
-        if here != size {
-            return Err(GpuTruthError::Size { seen: here, camera: size });
-        }
-        if before != size {
-            return Err(GpuTruthError::BeforeSize { before, camera: size });
-        }
+        check_sizes(seen, seen_before, size)?;
         let uniform = input.uniform(tracer.origin(), tracer.triangles())?;
         let target = match self.target.take() {
             Some(target) if target.size == size => target,
             _ => Target::new(device, size)?,
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        let resources = [
-            self.uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(seen),
-            target.pixels.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&target.view),
-        ];
-        let group = group(device, "judged picture", &self.layout, &resources);
-        let squares = size.map(|side| side.div_ceil(SQUARE));
+        let group = self.bind(device, seen, &target);
         self.pictures += 1;
         let is_summed = self.tally.has_room();
         self.tally.clear(encoder);
         let timestamp_writes = input.timestamp_writes.clone();
         let mut pass =
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("judge"), timestamp_writes });
-        let [scene, slots] = tracer.groups();
-        for (number, group) in (0..).zip([scene, &group, slots]) {
-            pass.set_bind_group(number, group, &[]);
-        }
-        for (pipeline, [x, y]) in self.pipelines.iter().zip([squares, [size[1], 1], squares]) {
-            pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(x, y, 1);
-        }
+        self.record_steps(&mut pass, tracer, &group, size);
         let (uniform, target) = (&self.uniform, &*self.target.insert(target));
         let (pixels, classes) = (&target.pixels, &target.view);
         if is_summed {
@@ -138,6 +118,35 @@ impl GpuJudge {
             self.tally.read_back(encoder, self.pictures);
         }
         Ok(&target.classes)
+    }
+
+    fn bind(&self, device: &wgpu::Device, seen: &wgpu::TextureView, target: &Target) -> wgpu::BindGroup {
+        let resources = [
+            self.uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(seen),
+            target.pixels.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&target.view),
+        ];
+        group(device, "judged picture", &self.layout, &resources)
+    }
+
+    /// Records the three steps that judge a picture of a size.
+    fn record_steps(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        tracer: &GpuTracer,
+        picture: &wgpu::BindGroup,
+        size: [u32; 2],
+    ) {
+        let [scene, slots] = tracer.groups();
+        for (number, group) in (0..).zip([scene, picture, slots]) {
+            pass.set_bind_group(number, group, &[]);
+        }
+        let squares = size.map(|side| side.div_ceil(SQUARE));
+        for (pipeline, [x, y]) in self.pipelines.iter().zip([squares, [size[1], 1], squares]) {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(x, y, 1);
+        }
     }
 
     /// Number of pictures that were recorded, which is also the number of the last one.
@@ -176,6 +185,18 @@ impl GpuJudge {
         let words = bytemuck::pod_collect_to_vec(&copy.texels().map_err(|_| GpuTruthError::Read)?);
         Ok(words.into_iter().map(GpuPixel::from_bits).collect())
     }
+}
+
+/// Refuses pictures of another size than the camera's.
+fn check_sizes(seen: &wgpu::TextureView, before: &wgpu::TextureView, camera: [u32; 2]) -> Result<(), GpuTruthError> {
+    let [seen, before] = [seen, before].map(|view| [view.texture().width(), view.texture().height()]);
+    if seen != camera {
+        return Err(GpuTruthError::Size { seen, camera });
+    }
+    if before != camera {
+        return Err(GpuTruthError::BeforeSize { before, camera });
+    }
+    Ok(())
 }
 
 impl Target {

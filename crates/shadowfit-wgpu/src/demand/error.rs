@@ -2,7 +2,9 @@
 
 use core::fmt;
 
-use shadowfit::{DepthConvention, FitError};
+use shadowfit::FitError;
+
+use crate::pixels::DepthBufferError;
 
 /// Why a [`DemandPass`](super::DemandPass) could not be made, or could not count a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,30 +14,8 @@ pub enum DemandPassError {
     Unsupported(Unsupported),
     /// The view, the light or the distance.
     Fit(FitError),
-    /// A depth convention that wgpu's clip space does not have.
-    Depth(DepthConvention),
-    /// The matrix has another depth convention than this one, which it was said to have.
-    OtherDepth(DepthConvention),
-    /// The matrix has no inverse, or one that is not finite.
-    SingularMatrix,
-    /// The depth texture is of another format, sample count or usage than the pass reads.
-    Texture {
-        /// Format of the texture.
-        format: wgpu::TextureFormat,
-        /// Its samples per pixel.
-        samples: u32,
-        /// Its usages.
-        usage: wgpu::TextureUsages,
-        /// Samples per pixel that the pass was made for.
-        expected_samples: u32,
-    },
-    /// The picture is empty or reaches out of the texture.
-    Rectangle {
-        /// Left, top, width and height of the picture, in pixels.
-        rectangle: [u32; 4],
-        /// Width and height of the texture, in pixels.
-        texture: [u32; 2],
-    },
+    /// The depth buffer of the view.
+    DepthBuffer(DepthBufferError),
     /// The device refused to make a resource, for example because it is out of memory; with its own words.
     Device(String),
     /// Counts could not be read back: the device is lost.
@@ -65,26 +45,7 @@ impl fmt::Display for DemandPassError {
                 write!(f, "what is visible cannot be counted here, since this device cannot {what}: fit from boxes")
             }
             Self::Fit(error) => error.fmt(f),
-            Self::Depth(depth) => {
-                write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
-            }
-            Self::OtherDepth(depth) => write!(
-                f,
-                "clip_from_world has another depth convention than {depth:?}: give the one that the depth buffer was \
-                 drawn with"
-            ),
-            Self::SingularMatrix => {
-                write!(f, "clip_from_world has no finite inverse: give the matrix that the depth buffer was drawn with")
-            }
-            Self::Texture { format, samples, usage, expected_samples } => write!(
-                f,
-                "the depth texture has format {format:?}, {samples} samples and usage {usage:?}: a depth format with \
-                 {expected_samples} samples and usage TEXTURE_BINDING is needed"
-            ),
-            Self::Rectangle { rectangle: [x, y, width, height], texture: [columns, rows] } => write!(
-                f,
-                "a picture of {width} × {height} pixels at ({x}, {y}) does not lie in a depth texture of {columns} × {rows}"
-            ),
+            Self::DepthBuffer(error) => error.fmt(f),
             Self::Device(message) => {
                 write!(f, "what is visible cannot be counted, since the device refused it: {message}")
             }
@@ -98,5 +59,11 @@ impl core::error::Error for DemandPassError {}
 impl From<FitError> for DemandPassError {
     fn from(error: FitError) -> Self {
         Self::Fit(error)
+    }
+}
+
+impl From<DepthBufferError> for DemandPassError {
+    fn from(error: DepthBufferError) -> Self {
+        Self::DepthBuffer(error)
     }
 }

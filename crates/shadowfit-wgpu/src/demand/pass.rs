@@ -7,7 +7,7 @@ use shadowfit_gpu::{ReadBackRing, catch_errors, compute_pipeline, wgsl_module};
 
 use super::error::{DemandPassError, Unsupported};
 use super::view::{DemandUniform, DemandView};
-use crate::pixels::lies_in;
+use crate::pixels::check;
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
 /// is being recorded.
@@ -94,7 +94,7 @@ impl DemandPass {
         view: &DemandView,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) -> Result<bool, DemandPassError> {
-        self.check_texture(depth.texture(), view.rectangle)?;
+        check(depth.texture(), &[self.samples], view.rectangle)?;
         // One whose depths make no sense is refused below.
         let is_view = view.frustum.near <= view.frustum.far;
         if is_view && !view.frustum.begins_before(view.max_distance) {
@@ -152,17 +152,6 @@ impl DemandPass {
     fn newest(&mut self) -> Result<Option<Seen>, DemandPassError> {
         let taken = self.read_backs.take(bytemuck::pod_collect_to_vec).map_err(|_| DemandPassError::Lost)?;
         taken.map(|(space, counts)| Seen::from_counts(space, counts).ok_or(DemandPassError::Lost)).transpose()
-    }
-
-    /// Refuses a texture that cannot be bound.
-    fn check_texture(&self, texture: &wgpu::Texture, rectangle: [u32; 4]) -> Result<(), DemandPassError> {
-        let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
-        let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) && format.has_depth_aspect();
-        if !is_readable || samples != self.samples {
-            return Err(DemandPassError::Texture { format, samples, usage, expected_samples: self.samples });
-        }
-        let size = [texture.width(), texture.height()];
-        if lies_in(rectangle, size) { Ok(()) } else { Err(DemandPassError::Rectangle { rectangle, texture: size }) }
     }
 }
 

@@ -7,7 +7,7 @@ use shadowfit::glam::{DMat4, DVec3, DVec4};
 
 use super::error::DemandPassError;
 use super::view::DemandView;
-use crate::pixels::lies_in;
+use crate::pixels::check_rectangle;
 
 /// Share of a pixel over which movements are measured.
 const SHARE: f64 = 1e-3;
@@ -33,13 +33,11 @@ struct Picture<'a> {
 ///
 /// # Errors
 ///
-/// [`DemandPassError::Rectangle`] for a rectangle beyond the depths, and [`DemandPassError::Fit`] for a view or light that
+/// [`DemandPassError::DepthBuffer`] for a rectangle beyond the depths, and [`DemandPassError::Fit`] for a view or light that
 /// makes no sense.
 pub fn count_on_cpu(view: &DemandView, depths: &Depths) -> Result<Seen, DemandPassError> {
     let texture = [depths.width, (depths.values.len() as u32).checked_div(depths.width).unwrap_or(0)];
-    if !lies_in(view.rectangle, texture) {
-        return Err(DemandPassError::Rectangle { rectangle: view.rectangle, texture });
-    }
+    check_rectangle(view.rectangle, texture)?;
     let picture = Picture { view, depths, world_from_clip: view.clip_from_world.as_dmat4().inverse() };
     let mut seen = Seen::new(view.space()?);
     let [_, _, width, height] = view.rectangle;

@@ -8,7 +8,7 @@ use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
 use super::error::DemandPassError;
-use crate::pixels::world_from_pixel;
+use crate::pixels::{DepthBufferError, world_from_pixel};
 
 /// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
 /// as long for any resolution. In the courtyard with 1080 rows, every fourth pixel counts at most 1.1% of the points in
@@ -97,7 +97,7 @@ impl DemandView {
     /// The uniform of the shader.
     pub(super) fn uniform(&self, space: &SeenSpace) -> Result<DemandUniform, DemandPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
-            return Err(DemandPassError::Depth(self.depth));
+            return Err(DepthBufferError::Depth(self.depth).into());
         }
         self.check_depth()?;
         let SeenSpace { demand: space, near, far } = *space;
@@ -127,7 +127,7 @@ impl DemandView {
     }
 
     /// Refuses a matrix in which depth runs the other way than the convention says.
-    fn check_depth(&self) -> Result<(), DemandPassError> {
+    fn check_depth(&self) -> Result<(), DepthBufferError> {
         let clip_from_world = self.clip_from_world.as_dmat4();
         let depth_of = |corners: &[Vec3]| {
             let middle = corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() * 0.25;
@@ -137,14 +137,14 @@ impl DemandView {
         let (near, far) = (depth_of(&self.frustum.corners[..4]), depth_of(&self.frustum.corners[4..]));
         // What is not a number is refused as a singular matrix.
         let is_other = if self.depth == DepthConvention::Reversed { near < far } else { near > far };
-        if is_other { Err(DemandPassError::OtherDepth(self.depth)) } else { Ok(()) }
+        if is_other { Err(DepthBufferError::OtherDepth(self.depth)) } else { Ok(()) }
     }
 
     /// From a pixel's column and row, and its depth minus the far plane's, to positions relative to the eye.
-    fn world_from_pixel(&self) -> Result<Mat4, DemandPassError> {
+    fn world_from_pixel(&self) -> Result<Mat4, DepthBufferError> {
         let [_, _, width, height] = self.rectangle;
         let matrix = world_from_pixel(&self.clip_from_world, [width, height], self.depth);
-        matrix.map(|matrix| matrix.as_mat4()).filter(Mat4::is_finite).ok_or(DemandPassError::SingularMatrix)
+        matrix.map(|matrix| matrix.as_mat4()).filter(Mat4::is_finite).ok_or(DepthBufferError::SingularMatrix)
     }
 
     /// The plane whose distance from a position relative to the eye is its view depth, in metres.

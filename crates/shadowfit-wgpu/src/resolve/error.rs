@@ -2,27 +2,15 @@
 
 use core::fmt;
 
-use shadowfit::DepthConvention;
 use shadowfit::glam::DVec3;
+
+use crate::pixels::DepthBufferError;
 
 /// Why a picture cannot be resolved; nothing is recorded then, and the filter decides everywhere.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResolveError {
-    /// A depth convention that wgpu's clip space does not have.
-    Depth(DepthConvention),
-    /// The matrix has another depth convention than this one, which it was said to have.
-    OtherDepth(DepthConvention),
-    /// The matrix has no inverse, or one that is not finite.
-    SingularMatrix,
-    /// The depth texture has another format, sample count or usage than the pass reads.
-    Texture {
-        /// Format of the texture.
-        format: wgpu::TextureFormat,
-        /// Its samples per pixel.
-        samples: u32,
-        /// Its usages.
-        usage: wgpu::TextureUsages,
-    },
+    /// The depth buffer of the view.
+    DepthBuffer(DepthBufferError),
     /// The texture of normals has another size or sample count than the pass reads, or is no float texture.
     Normals {
         /// Format of the texture.
@@ -31,13 +19,6 @@ pub enum ResolveError {
         size: [u32; 2],
         /// Those of the depth texture.
         expected: [u32; 2],
-    },
-    /// The picture is empty or reaches out of the texture.
-    Rectangle {
-        /// Left, top, width and height of the picture, in pixels.
-        rectangle: [u32; 4],
-        /// Width and height of the texture, in pixels.
-        texture: [u32; 2],
     },
     /// A distance of the rays' start that is not a finite number, or is negative.
     RayOffset(f32),
@@ -55,30 +36,11 @@ pub enum ResolveError {
 impl fmt::Display for ResolveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Depth(depth) => {
-                write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
-            }
-            Self::OtherDepth(depth) => write!(
-                f,
-                "clip_from_eye has another depth convention than {depth:?}: give the one that the depth buffer was \
-                 drawn with"
-            ),
-            Self::SingularMatrix => {
-                write!(f, "clip_from_eye has no finite inverse: give the matrix that the depth buffer was drawn with")
-            }
-            Self::Texture { format, samples, usage } => write!(
-                f,
-                "the depth texture has format {format:?}, {samples} samples and usage {usage:?}: a depth format of 24 or \
-                 32 bits with 1 or 4 samples and usage TEXTURE_BINDING is needed"
-            ),
+            Self::DepthBuffer(error) => error.fmt(f),
             Self::Normals { format, size: [width, height], expected: [columns, rows] } => write!(
                 f,
                 "the texture of normals has format {format:?} and {width} × {height} pixels: a float format with one \
                  sample, usage TEXTURE_BINDING and the depth texture's {columns} × {rows} pixels is needed"
-            ),
-            Self::Rectangle { rectangle: [x, y, width, height], texture: [columns, rows] } => write!(
-                f,
-                "a picture of {width} × {height} pixels at ({x}, {y}) does not lie in a depth texture of {columns} × {rows}"
             ),
             Self::RayOffset(offset) => {
                 write!(f, "rays start {offset} m above the surface: give a finite distance that is not negative")
@@ -94,6 +56,12 @@ impl fmt::Display for ResolveError {
 }
 
 impl core::error::Error for ResolveError {}
+
+impl From<DepthBufferError> for ResolveError {
+    fn from(error: DepthBufferError) -> Self {
+        Self::DepthBuffer(error)
+    }
+}
 
 /// The message for a view and a pass of which one lacks what the other has of an engine's own test of hits.
 fn any_hit_group(has_layout: bool) -> &'static str {

@@ -14,7 +14,7 @@ use super::source::Source;
 use super::uniform::ResolveUniform;
 use super::view::ResolveView;
 use crate::demand::{Unsupported, supported};
-use crate::pixels::lies_in;
+use crate::pixels::check;
 use crate::{FadingUniform, ShadowMapDescriptor, SunShadows};
 
 /// Name of the passes and their resources, for debuggers.
@@ -472,11 +472,7 @@ fn picture_layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu:
 /// Refuses textures that cannot be bound, and a picture that does not lie in them.
 fn check_textures(view: &ResolveView<'_>) -> Result<(), ResolveError> {
     let texture = view.depth.texture();
-    let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
-    let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING);
-    if !is_readable || !format.has_depth_aspect() || !matches!(samples, 1 | 4) {
-        return Err(ResolveError::Texture { format, samples, usage });
-    }
+    check(texture, &[1, 4], view.part())?;
     let size = [texture.width(), texture.height()];
     if let Some(normals) = view.normals.map(|normals| normals.view.texture()) {
         let format = normals.format();
@@ -487,6 +483,5 @@ fn check_textures(view: &ResolveView<'_>) -> Result<(), ResolveError> {
             return Err(ResolveError::Normals { format, size: found, expected: size });
         }
     }
-    let rectangle = view.part();
-    if lies_in(rectangle, size) { Ok(()) } else { Err(ResolveError::Rectangle { rectangle, texture: size }) }
+    Ok(())
 }

@@ -6,7 +6,7 @@ use shadowfit::{Aabb, DepthConvention, FittedMap};
 use super::error::ResolveError;
 use super::uniform::{MAX_UNKNOWN, ResolveUniform, UnknownUniform, points};
 use super::view::ResolveView;
-use crate::pixels::world_from_pixel;
+use crate::pixels::{DepthBufferError, world_from_pixel};
 use crate::{MapView, SunShadows};
 
 /// Texels around the footprint of a filter by which the boxes of unknown casters are widened: the rasteriser rounds by
@@ -73,7 +73,7 @@ fn farthest_vertex(sun: &SunShadows) -> f32 {
 /// Positions relative to the eye from pixels, refused where it makes no sense.
 fn checked_matrix(view: &ResolveView<'_>, [_, _, width, height]: [u32; 4]) -> Result<DMat4, ResolveError> {
     if view.convention == DepthConvention::NegativeOneToOne {
-        return Err(ResolveError::Depth(view.convention));
+        return Err(DepthBufferError::Depth(view.convention).into());
     }
     if !view.eye.is_finite() {
         return Err(ResolveError::Eye(view.eye));
@@ -83,10 +83,13 @@ fn checked_matrix(view: &ResolveView<'_>, [_, _, width, height]: [u32; 4]) -> Re
     }
     let to_world = world_from_pixel(&view.clip_from_eye, [width, height], view.convention)
         .filter(|matrix| matrix.as_mat4().is_finite())
-        .ok_or(ResolveError::SingularMatrix)?;
+        .ok_or(DepthBufferError::SingularMatrix)?;
     let ray = MiddleRay::new(&to_world, [width, height], view.convention);
     let is_reversed = view.convention == DepthConvention::Reversed;
-    if ray.depth_grows() == is_reversed { Err(ResolveError::OtherDepth(view.convention)) } else { Ok(to_world) }
+    if ray.depth_grows() == is_reversed {
+        return Err(DepthBufferError::OtherDepth(view.convention).into());
+    }
+    Ok(to_world)
 }
 
 /// The ray through the middle of the picture, homogeneous. The far plane, and with it a part of the ray, may lie behind

@@ -6,7 +6,7 @@ use shadowfit::glam::{DVec3, DVec4, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_testing::subpixel_step;
-use shadowfit_wgpu::demand::{DemandPassError, DemandView, count_on_cpu};
+use shadowfit_wgpu::demand::{DemandPassError, DemandView, DepthBufferError, count_on_cpu};
 
 use super::demand_picture::{Counts, Drawing, cuboid, demand_pass, draw, infinite, quad, read, record, seen};
 use super::engine::Engine;
@@ -342,20 +342,36 @@ fn what_cannot_be_counted_is_an_error_that_says_why() {
     };
     let rectangle = [1, 0, SIZE[0], SIZE[1]];
     let error = refused(DemandView { rectangle, ..good }, &texture);
-    assert_eq!(error, DemandPassError::Rectangle { rectangle, texture: SIZE });
+    assert_eq!(error, DepthBufferError::Rectangle { rectangle, texture: SIZE }.into());
     let rectangle = [0, 0, 0, SIZE[1]];
-    assert!(matches!(refused(DemandView { rectangle, ..good }, &texture), DemandPassError::Rectangle { .. }));
-    assert!(matches!(refused(good, &multisampled), DemandPassError::Texture { samples: 4, expected_samples: 1, .. }));
+    assert!(matches!(
+        refused(DemandView { rectangle, ..good }, &texture),
+        DemandPassError::DepthBuffer(DepthBufferError::Rectangle { .. })
+    ));
+    assert!(matches!(
+        refused(good, &multisampled),
+        DemandPassError::DepthBuffer(DepthBufferError::Texture { samples: 4, expected_samples, .. })
+            if expected_samples == [1]
+    ));
     let depth = DepthConvention::NegativeOneToOne;
-    assert_eq!(refused(DemandView { depth, ..good }, &texture), DemandPassError::Depth(depth));
+    assert_eq!(
+        refused(DemandView { depth, ..good }, &texture),
+        DemandPassError::DepthBuffer(DepthBufferError::Depth(depth))
+    );
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
         let other = DemandView { clip_from_world: camera().clip_from_world(depth), ..good };
         let told =
             if depth == DepthConvention::Reversed { DepthConvention::ZeroToOne } else { DepthConvention::Reversed };
-        assert_eq!(refused(DemandView { depth: told, ..other }, &texture), DemandPassError::OtherDepth(told));
+        assert_eq!(
+            refused(DemandView { depth: told, ..other }, &texture),
+            DemandPassError::DepthBuffer(DepthBufferError::OtherDepth(told))
+        );
     }
     for clip_from_world in [Mat4::ZERO, Mat4::NAN] {
-        assert_eq!(refused(DemandView { clip_from_world, ..good }, &texture), DemandPassError::SingularMatrix);
+        assert_eq!(
+            refused(DemandView { clip_from_world, ..good }, &texture),
+            DemandPassError::DepthBuffer(DepthBufferError::SingularMatrix)
+        );
     }
     for direction in [Vec3::ZERO, Vec3::NAN] {
         assert!(matches!(refused(DemandView { direction, ..good }, &texture), DemandPassError::Fit(_)));

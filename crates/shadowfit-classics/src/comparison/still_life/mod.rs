@@ -33,7 +33,7 @@ pub(super) fn build() -> Scene {
     room::build(&mut builder, group);
     stones::build(&mut builder, group);
     chess::build(&mut builder, group);
-    builder.start_view(VIEW, FRAC_PI_4, FAR);
+    builder.start_view(VIEW.0, VIEW.1, FRAC_PI_4, FAR);
     let mut scene = builder.scene;
     scene.sun = Some(sunlight(SUN.0, SUN.1));
     scene

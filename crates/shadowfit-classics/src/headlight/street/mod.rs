@@ -52,7 +52,7 @@ pub(super) fn build() -> Scene {
     for at in LAMP_POSTS {
         builder.node("lamp post", None, placed(at, 0.0, LAMP_POST_SCALE), Some(lamp_post));
     }
-    builder.start_view(VIEW, FRAC_PI_4, 200.0);
+    builder.start_view(VIEW.0, VIEW.1, FRAC_PI_4, 200.0);
     let mut scene = builder.scene;
     scene.cameras[0].lens = Lens::Perspective { fov_y: FRAC_PI_4, near: 1.0, far: Some(200.0) };
     scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));

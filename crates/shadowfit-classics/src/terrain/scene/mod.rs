@@ -33,7 +33,7 @@ pub(super) fn build() -> Scene {
     let mut builder = Builder::new("terrain", palette::Paint::all(), vec![land::image()]);
     land::build(&mut builder);
     let vehicles = vehicles::build(&mut builder);
-    builder.view(VIEW, LENS);
+    builder.view(VIEW.0, VIEW.1, LENS);
     let mut scene = builder.scene;
     scene.subject = Some(vehicles);
     scene.sun = Some(Sun { direction: (LIGHT.1 - LIGHT.0).normalize(), color: Vec3::ONE, intensity: 80_000.0 });

@@ -34,7 +34,7 @@ pub(super) fn build() -> Scene {
     columns::build(&mut builder);
     garden::build(&mut builder);
     let (urn, swing) = furniture::build(&mut builder);
-    builder.start_view((Vec3::new(0.28, 1.6, 4.3), Vec3::new(-0.2, 1.68, -4.0)), FOV_Y, FAR);
+    builder.start_view(Vec3::new(0.28, 1.6, 4.3), Vec3::new(-0.2, 1.68, -4.0), FOV_Y, FAR);
     let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
     Scene { subject: Some(urn), animations: vec![looped("swing", furniture::SWING_TIME, swing)], sun, ..builder.scene }
 }

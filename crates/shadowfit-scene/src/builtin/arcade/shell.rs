@@ -69,52 +69,61 @@ fn barrel(share: f32) -> f32 {
     RISE * (1.0 - share * share).max(0.0).sqrt()
 }
 
-/// The groin vault: where two barrels cross, the higher one bounds the room. Flat above, so that nothing leaks through.
-fn vault() -> Solid {
+/// Places across and along the vault.
+const COLUMNS: usize = SEGMENTS + 1;
+const ROWS: usize = SEGMENTS * BAYS + 1;
+
+/// Returns the places of the vault by row, and the two edges of its flat top for each row.
+fn vault_positions() -> Vec<Vec3> {
     // Places along a half circle crowd where it is steep, so that its segments are even.
     let share = |step: usize| -(step as f32 / SEGMENTS as f32 * PI).cos();
-    let (columns, rows) = (SEGMENTS + 1, SEGMENTS * BAYS + 1);
-    let mut solid = Solid::default();
-    for row in 0..rows {
+    let mut positions = Vec::new();
+    for row in 0..ROWS {
         let along = share(row % SEGMENTS);
         let z = START - BAY * ((row / SEGMENTS) as f32 + 0.5 * (along + 1.0));
-        for column in 0..columns {
+        for column in 0..COLUMNS {
             let across = share(column);
             // The edges stand in the walls.
             let x = across * (HALF + 0.05);
-            solid.positions.push(Vec3::new(x, SPRING + barrel(across).max(barrel(along)), z));
+            positions.push(Vec3::new(x, SPRING + barrel(across).max(barrel(along)), z));
         }
     }
-    let below = solid.positions.len() as u32;
-    for row in 0..rows {
-        for column in [0, columns - 1] {
-            let edge = solid.positions[row * columns + column];
-            solid.positions.push(edge.with_y(WALL - 0.12));
+    for row in 0..ROWS {
+        for column in [0, COLUMNS - 1] {
+            let edge = positions[row * COLUMNS + column];
+            positions.push(edge.with_y(WALL - 0.12));
         }
     }
+    positions
+}
+
+/// Builds the groin vault: where two barrels cross, the higher one bounds the room. Flat above, so that nothing leaks
+/// through.
+fn vault() -> Solid {
+    let mut solid = Solid { positions: vault_positions(), ..Solid::default() };
     let triangles = &mut solid.triangles;
-    let at = |row: usize, column: usize| (row * columns + column) as u32;
-    let top = |row: usize, side: u32| below + 2 * row as u32 + side;
-    for row in 0..rows - 1 {
-        for column in 0..columns - 1 {
+    let at = |row: usize, column: usize| (row * COLUMNS + column) as u32;
+    let top = |row: usize, side: u32| at(ROWS, 0) + 2 * row as u32 + side;
+    for row in 0..ROWS - 1 {
+        for column in 0..COLUMNS - 1 {
             let [a, b, c, d] = [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
             // Diagonals follow the groins, which cross in the middle of a bay.
             let is_even = (row % SEGMENTS < SEGMENTS / 2) == (column < SEGMENTS / 2);
             triangles.extend(if is_even { [[a, d, c], [a, c, b]] } else { [[b, a, d], [b, d, c]] });
         }
-        let (left, right) = ([at(row, 0), at(row + 1, 0)], [at(row, columns - 1), at(row + 1, columns - 1)]);
+        let (left, right) = ([at(row, 0), at(row + 1, 0)], [at(row, COLUMNS - 1), at(row + 1, COLUMNS - 1)]);
         let [a, b, c, d] = [top(row, 0), top(row, 1), top(row + 1, 1), top(row + 1, 0)];
         triangles.extend([[a, b, c], [a, c, d], [left[0], a, d], [left[0], d, left[1]]]);
         triangles.extend([[right[0], right[1], c], [right[0], c, b]]);
     }
     // Each half of an end's arch is seen from the upper corner at its side.
-    for column in 0..columns - 1 {
-        let side = u32::from(column >= columns / 2);
+    for column in 0..COLUMNS - 1 {
+        let side = u32::from(column >= COLUMNS / 2);
         triangles.push([top(0, side), at(0, column), at(0, column + 1)]);
-        triangles.push([top(rows - 1, side), at(rows - 1, column + 1), at(rows - 1, column)]);
+        triangles.push([top(ROWS - 1, side), at(ROWS - 1, column + 1), at(ROWS - 1, column)]);
     }
-    triangles.push([top(0, 0), at(0, columns / 2), top(0, 1)]);
-    triangles.push([top(rows - 1, 0), top(rows - 1, 1), at(rows - 1, columns / 2)]);
+    triangles.push([top(0, 0), at(0, COLUMNS / 2), top(0, 1)]);
+    triangles.push([top(ROWS - 1, 0), top(ROWS - 1, 1), at(ROWS - 1, COLUMNS / 2)]);
     solid
 }
 

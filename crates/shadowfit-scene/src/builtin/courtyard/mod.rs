@@ -28,7 +28,8 @@ pub(super) fn build() -> Scene {
     let (figure, animations) = wanderer(&mut builder, palette::worn);
     architecture::build(&mut builder);
     garden::build(&mut builder);
-    builder.start_view(start_view(), FOV_Y, FAR);
+    let (eye, target) = start_view();
+    builder.start_view(eye, target, FOV_Y, FAR);
     let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
     Scene { subject: Some(figure), animations, sun, ..builder.scene }
 }

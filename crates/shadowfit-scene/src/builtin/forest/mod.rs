@@ -31,7 +31,7 @@ pub(super) fn build() -> Scene {
     let stump = floor::build(&mut builder);
     let sway = trees::build(&mut builder);
     undergrowth::build(&mut builder);
-    builder.start_view((Vec3::new(-0.7, 1.55, 4.6), Vec3::new(0.15, 1.95, -4.0)), FOV_Y, FAR);
+    builder.start_view(Vec3::new(-0.7, 1.55, 4.6), Vec3::new(0.15, 1.95, -4.0), FOV_Y, FAR);
     let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
     Scene { subject: Some(stump), animations: vec![looped("wind", trees::WIND_TIME, sway)], sun, ..builder.scene }
 }

@@ -40,7 +40,7 @@ pub(super) fn build() -> Scene {
     tower::build(&mut builder);
     far::build(&mut builder);
     let eye = on_land(0.2, 2.5) + Vec3::Y * EYE;
-    builder.start_view((eye, eye + Vec3::new(-0.05, -0.115, -1.0)), FOV_Y, FAR);
+    builder.start_view(eye, eye + Vec3::new(-0.05, -0.115, -1.0), FOV_Y, FAR);
     let animations = vec![looped("turn", mill::TURN_TIME, vec![sails])];
     let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
     Scene { subject: Some(hut), animations, sun, ..builder.scene }

@@ -4,7 +4,7 @@ use shadowfit::glam::{DVec3, Mat4};
 use shadowfit::{Boxes, DepthConvention};
 use shadowfit_rays::RayScene;
 use shadowfit_wgpu::demand::Unsupported;
-use shadowfit_wgpu::resolve::{EdgeResult, ResolveError, ResolvePass, ResolveView, WhyFiltered};
+use shadowfit_wgpu::resolve::{DepthBufferError, EdgeResult, ResolveError, ResolvePass, ResolveView, WhyFiltered};
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
 
 use super::pass_gpu::{SIZE, assert_filtered, look, stage, technique};
@@ -49,7 +49,7 @@ fn textures_that_the_pass_cannot_read_are_refused_with_what_they_are() {
         let error = refused(&mut stage, &drawn, |view| view.normals = None, &words);
         let texture = drawn.depth.texture();
         let (format, usage) = (texture.format(), texture.usage());
-        assert_eq!(error, ResolveError::Texture { format, samples: 1, usage });
+        assert_eq!(error, DepthBufferError::Texture { format, samples: 1, usage, expected_samples: vec![1, 4] }.into());
     }
     let (float, whole) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Rgba8Uint);
     let normals = [
@@ -88,7 +88,7 @@ fn rectangles_outside_the_texture_are_refused_with_both_sizes() {
         let words = [format!("{across} × {down}"), format!("({x}, {y})"), "160 × 90".to_owned()];
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let error = refused(&mut stage, &drawn, |view| view.rectangle = Some(rectangle), &words);
-        assert_eq!(error, ResolveError::Rectangle { rectangle, texture: SIZE });
+        assert_eq!(error, DepthBufferError::Rectangle { rectangle, texture: SIZE }.into());
     }
 }
 
@@ -98,17 +98,17 @@ fn views_that_make_no_sense_are_refused_with_their_values() {
     let drawn = stage.draw(&look());
     for matrix in [Mat4::ZERO, Mat4::NAN, Mat4::from_diagonal(shadowfit::glam::Vec4::new(1.0, 1.0, 0.0, 1.0))] {
         let error = refused(&mut stage, &drawn, |view| view.clip_from_eye = matrix, &["no finite inverse"]);
-        assert_eq!(error, ResolveError::SingularMatrix);
+        assert_eq!(error, ResolveError::DepthBuffer(DepthBufferError::SingularMatrix));
     }
     let (plain, reversed) = (DepthConvention::ZeroToOne, DepthConvention::Reversed);
     let error = refused(&mut stage, &drawn, |view| view.convention = plain, &["ZeroToOne", "drawn with"]);
-    assert_eq!(error, ResolveError::OtherDepth(plain));
+    assert_eq!(error, ResolveError::DepthBuffer(DepthBufferError::OtherDepth(plain)));
     let other = look().camera.clip_from_world(plain);
     let error = refused(&mut stage, &drawn, |view| view.clip_from_eye = other, &["Reversed", "drawn with"]);
-    assert_eq!(error, ResolveError::OtherDepth(reversed));
+    assert_eq!(error, ResolveError::DepthBuffer(DepthBufferError::OtherDepth(reversed)));
     let opengl = DepthConvention::NegativeOneToOne;
     let error = refused(&mut stage, &drawn, |view| view.convention = opengl, &["NegativeOneToOne", "0..1"]);
-    assert_eq!(error, ResolveError::Depth(opengl));
+    assert_eq!(error, ResolveError::DepthBuffer(DepthBufferError::Depth(opengl)));
     for (offset, word) in [(-0.5, "-0.5"), (f32::NAN, "NaN"), (f32::INFINITY, "inf")] {
         let error = refused(&mut stage, &drawn, |view| view.ray_offset = offset, &[word, "not negative"]);
         assert!(matches!(error, ResolveError::RayOffset(found) if found.to_bits() == offset.to_bits()));
