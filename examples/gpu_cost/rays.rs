@@ -41,7 +41,7 @@ pub(crate) fn time(bench: &Bench, files: &[PathBuf]) -> Result<Table> {
         let mut live = LiveTruth::new(gpu, &prepared)?;
         let repeats = bench.frames.clamp(1, 100) as u32;
         let triangles = prepared.casting_triangles();
-        let time = evaluator.time_live(gpu, &mut prepared, &view, &maps, (&mut live, repeats))?;
+        let time = evaluator.time_live(gpu, &mut prepared, &view, &maps, &mut live, repeats)?;
         rows.push(vec![name, format!("{triangles}"), ms(time)]);
     }
     Ok(Table {

@@ -58,7 +58,7 @@ impl Bench {
         camera: &PerspectiveCamera,
         target: &RenderTarget,
     ) -> Vec<[u8; 4]> {
-        let drawn = self.drawer.draw(&self.gpu, &mut self.scene, (self.sample, values), camera, target);
+        let drawn = self.drawer.draw(&self.gpu, &mut self.scene, self.sample, values, camera, target);
         assert_eq!(drawn.expect("a picture"), SampleOutcome::Drawn { message: None });
         target.read(&self.gpu).expect("pixels").as_chunks().0.to_vec()
     }

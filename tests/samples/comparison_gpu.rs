@@ -35,8 +35,7 @@ fn outside_of_the_lamps_image_everything_is_lit() {
     let [shadowed, lit] = ["source", "off"].map(|shadows| {
         let values = bench.values(None, &[("shadows", shadows)]);
         let target = RenderTarget::new(&bench.gpu.device, SIZE, 1);
-        let asked = (bench.sample, &values);
-        drawer.draw(&bench.gpu, &mut bench.scene, asked, &camera, &target).expect("a picture");
+        drawer.draw(&bench.gpu, &mut bench.scene, bench.sample, &values, &camera, &target).expect("a picture");
         target.read(&bench.gpu).expect("pixels").as_chunks::<4>().0.to_vec()
     });
     let world_from_clip = camera.clip_from_world(DepthConvention::ZeroToOne).as_dmat4().inverse();

@@ -61,7 +61,8 @@ impl SampleDrawer {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        (sample, values): (&Sample, &SampleValues),
+        sample: &Sample,
+        values: &SampleValues,
         camera: &PerspectiveCamera,
         target: &RenderTarget,
     ) -> Result<SampleOutcome> {
@@ -74,14 +75,14 @@ impl SampleDrawer {
                 let behind = |pass: &mut wgpu::RenderPass<'_>| sky.iter().for_each(|sky| sky.draw(pass));
                 let inset = inset(sample, values, target.size);
                 let extras = FrameExtras { behind: Some(&behind), casts: casts.as_deref(), inset };
-                let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, (&frame, extras), target);
+                let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, extras, target);
                 self.sky = sky.or(self.sky.take());
                 drawn?;
                 message
             }
             SampleDrawing::Occlusion { frame, is_traced } => {
                 check_formats(gpu)?;
-                self.draw_occlusion(gpu, scene, (&frame, is_traced, camera), target)
+                self.draw_occlusion(gpu, scene, &frame, is_traced, camera, target)
             }
         };
         Ok(SampleOutcome::Drawn { message })
@@ -104,12 +105,14 @@ impl SampleDrawer {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        (frame, is_traced, camera): (&OcclusionFrame, bool, &PerspectiveCamera),
+        frame: &OcclusionFrame,
+        is_traced: bool,
+        camera: &PerspectiveCamera,
         target: &RenderTarget,
     ) -> Option<String> {
         let passes = self.occlusion.get_or_insert_with(|| OcclusionPasses::new(gpu, self.samples));
         let given = if is_traced { self.traced.occlusion(scene, camera, target.size, self.waits) } else { None };
-        passes.draw(gpu, &mut scene.gpu_scene, (frame, camera), given, target);
+        passes.draw(gpu, &mut scene.gpu_scene, frame, camera, given, target);
         let is_missing = is_traced && given.is_none();
         is_missing.then(|| "Rays are being traced; until then this is screen space".to_owned())
     }
@@ -119,13 +122,14 @@ impl SampleDrawer {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        (frame, camera): (&OcclusionFrame, &PerspectiveCamera),
+        frame: &OcclusionFrame,
+        camera: &PerspectiveCamera,
         size: [u32; 2],
     ) -> Result<Vec<f32>> {
         check_formats(gpu)?;
         let target = RenderTarget::new(&gpu.device, size, self.samples);
         let passes = self.occlusion.get_or_insert_with(|| OcclusionPasses::new(gpu, self.samples));
-        passes.draw(gpu, &mut scene.gpu_scene, (frame, camera), None, &target);
+        passes.draw(gpu, &mut scene.gpu_scene, frame, camera, None, &target);
         Ok(passes.read_occlusion(gpu).await?)
     }
 
@@ -147,7 +151,7 @@ impl SampleDrawer {
         let casts = casts(sample, scene.scene());
         let extras = FrameExtras { casts: casts.as_deref(), ..FrameExtras::default() };
         let frame = possible(gpu, *frame).0;
-        let probe = self.renderer.probe(gpu, &mut scene.gpu_scene, (&frame, extras), &targets).await?;
+        let probe = self.renderer.probe(gpu, &mut scene.gpu_scene, &frame, extras, &targets).await?;
         self.targets = Some(targets);
         Ok(probe?)
     }

@@ -170,7 +170,7 @@ impl Bench<'_> {
             }
             let SampleDrawing::Occlusion { frame, .. } = self.sample.drawing(&values, self.camera)? else { continue };
             let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));
-            let occlusion = drawer.occlusion(&self.gpu, scene, (&frame, self.camera), self.size).await?;
+            let occlusion = drawer.occlusion(&self.gpu, scene, &frame, self.camera, self.size).await?;
             errors.push((name, truth.mean_absolute_error(&occlusion).context("nothing but sky is seen")?));
         }
         Ok(errors)

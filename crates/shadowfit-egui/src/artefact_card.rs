@@ -1,6 +1,6 @@
 //! The part of the panel that shows and fixes artefacts.
 
-use egui::{Align, Button, Label, Layout, RichText, Ui};
+use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
 use crate::theme::{Palette, has_arrows};
 use crate::widgets::{Icon, KeyButton, at_least, caption, card, icon_button, main_button};
@@ -40,15 +40,9 @@ fn card_of(ui: &mut Ui, shown: &ShownArtefact<'_>, is_brief: bool) -> Option<Com
     let accent = if fixed { palette.success } else { palette.warning };
     let mut command = None;
     card(ui, Some(accent), |ui| {
-        ui.horizontal(|ui| {
-            let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
-            ui.label(RichText::new(title).color(accent));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if icon_button(ui, Icon::X, "Close the artefact", "Ends the demonstration.").clicked() {
-                    command = Some(Command::CloseArtefact);
-                }
-            });
-        });
+        if head(ui, shown, accent) {
+            command = Some(Command::CloseArtefact);
+        }
         let is_to_be_seen = !(is_brief && fixed);
         if is_to_be_seen && !narration.is_empty() {
             ui.add(Label::new(RichText::new(narration).strong()).wrap());
@@ -74,6 +68,18 @@ fn card_of(ui: &mut Ui, shown: &ShownArtefact<'_>, is_brief: bool) -> Option<Com
         }
     });
     command
+}
+
+/// The title of the card, and the button that closes it. Returns whether the button was clicked.
+fn head(ui: &mut Ui, shown: &ShownArtefact<'_>, accent: Color32) -> bool {
+    let label = shown.artefact.label();
+    let title = if shown.fixed { format!("{label}: fixed") } else { label.to_owned() };
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(title).color(accent));
+        let close = |ui: &mut Ui| icon_button(ui, Icon::X, "Close the artefact", "Ends the demonstration.").clicked();
+        ui.with_layout(Layout::right_to_left(Align::Center), close).inner
+    })
+    .inner
 }
 
 /// What was changed, a line each.

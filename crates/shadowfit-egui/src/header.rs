@@ -71,14 +71,23 @@ fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Optio
     ];
     menu(ui, Icon::RotateCcw, "Reset", "Goes back to where settings and camera began.", items, command);
     if panel.has(Part::Undo) {
-        for (icon, name, what, asked) in
-            [(Icon::Redo2, "Redo", changes.redo, Command::Redo), (Icon::Undo2, "Undo", changes.undo, Command::Undo)]
-        {
-            let help =
-                what.map_or_else(|| format!("Nothing to {}", name.to_lowercase()), |what| format!("{name}: {what}"));
-            ui.add_enabled_ui(what.is_some(), |ui| button(ui, icon, name, &help, asked, command));
-        }
+        change_button(ui, Icon::Redo2, "Redo", changes.redo, Command::Redo, command);
+        change_button(ui, Icon::Undo2, "Undo", changes.undo, Command::Undo, command);
     }
+}
+
+/// A button that undoes or redoes a change, by its name.
+fn change_button(
+    ui: &mut Ui,
+    icon: Icon,
+    name: &str,
+    change: Option<&str>,
+    asked: Command,
+    command: &mut Option<Command>,
+) {
+    let help =
+        change.map_or_else(|| format!("Nothing to {}", name.to_lowercase()), |change| format!("{name}: {change}"));
+    ui.add_enabled_ui(change.is_some(), |ui| button(ui, icon, name, &help, asked, command));
 }
 
 /// A button that asks for a command, with the command's keys behind its help.

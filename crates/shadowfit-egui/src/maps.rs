@@ -23,7 +23,7 @@ fn colours(map: usize) -> (Color32, Color32) {
 /// The number of a map on its tint.
 pub(crate) fn badge_of(ui: &mut Ui, map: usize) -> Response {
     let (tint, text) = colours(map);
-    badge(ui, &(map + 1).to_string(), [tint, text], &format!("Map {}", map + 1))
+    badge(ui, &(map + 1).to_string(), tint, text, &format!("Map {}", map + 1))
 }
 
 /// A button for each of `count` maps, with the one of `selected` filled; returns the index of the one

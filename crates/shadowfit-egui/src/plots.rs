@@ -104,41 +104,20 @@ impl Plots {
     fn plot(&self, ui: &mut Ui, choice: &Choice, lines: &[(usize, Color32)]) {
         let greatest =
             lines.iter().flat_map(|(series, _)| self.history.points(*series)).map(|[_, y]| y).fold(0.0, f64::max);
-        let seconds = self.history.seconds().max(LEAST_SECONDS);
         let unit = SERIES[lines[0].0].unit;
         let has_limit = unit == "ms";
         let top = if has_limit { (1.1 * greatest).max(1.2 * SMOOTH_MS) } else { (1.1 * greatest).max(1e-3) };
         let weak = ui.visuals().weak_text_color();
-        let line = ui.visuals().widgets.noninteractive.bg_stroke.color;
-        Plot::new(("plot", choice.name))
-            .height(HEIGHT)
-            .width(ui.available_width() - RIGHT_MARGIN)
-            .allow_drag(false)
-            .allow_zoom(false)
-            .allow_scroll(false)
-            .allow_boxed_zoom(false)
-            .allow_axis_zoom_drag(false)
-            .set_margin_fraction(Vec2::ZERO)
-            .default_x_bounds(-seconds, 0.0)
-            .default_y_bounds(0.0, top)
-            .auto_bounds(false)
-            .reset()
-            .y_axis_min_width(34.0)
-            .label_formatter(move |hover| Some(hovered(hover, unit)))
-            .x_grid_spacer(move |_| grid(-seconds))
-            .y_grid_spacer(move |_| grid(top))
-            .grid_color(line.gamma_multiply(0.8))
-            .x_axis_formatter(move |mark, _| time_value(mark.value, seconds))
-            .y_axis_formatter(move |mark, _| axis_value(mark.value, unit))
-            .show(ui, |plot| {
-                if has_limit {
-                    plot.hline(HLine::new("60 Hz", SMOOTH_MS).color(weak).allow_hover(false));
-                }
-                for (series, color) in lines {
-                    let points: PlotPoints<'_> = self.history.points(*series).collect();
-                    plot.line(Line::new(SERIES[*series].name, points).color(*color).width(1.5));
-                }
-            });
+        let seconds = self.history.seconds().max(LEAST_SECONDS);
+        fixed_plot(ui, choice.name, seconds, top, unit).show(ui, |plot| {
+            if has_limit {
+                plot.hline(HLine::new("60 Hz", SMOOTH_MS).color(weak).allow_hover(false));
+            }
+            for (series, color) in lines {
+                let points: PlotPoints<'_> = self.history.points(*series).collect();
+                plot.line(Line::new(SERIES[*series].name, points).color(*color).width(1.5));
+            }
+        });
         if self.history.is_empty() {
             caption(ui, "Nothing was measured yet.");
         }
@@ -163,6 +142,31 @@ impl Plots {
             }
         });
     }
+}
+
+/// Returns an empty plot of the last `seconds`, with values in `unit` from 0 to `top`, that cannot be moved.
+fn fixed_plot(ui: &Ui, name: &str, seconds: f64, top: f64, unit: &'static str) -> Plot<'static> {
+    let line = ui.visuals().widgets.noninteractive.bg_stroke.color;
+    Plot::new(("plot", name))
+        .height(HEIGHT)
+        .width(ui.available_width() - RIGHT_MARGIN)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .set_margin_fraction(Vec2::ZERO)
+        .default_x_bounds(-seconds, 0.0)
+        .default_y_bounds(0.0, top)
+        .auto_bounds(false)
+        .reset()
+        .y_axis_min_width(34.0)
+        .label_formatter(move |hover| Some(hovered(hover, unit)))
+        .x_grid_spacer(move |_| grid(-seconds))
+        .y_grid_spacer(move |_| grid(top))
+        .grid_color(line.gamma_multiply(0.8))
+        .x_axis_formatter(move |mark, _| time_value(mark.value, seconds))
+        .y_axis_formatter(move |mark, _| axis_value(mark.value, unit))
 }
 
 /// Lines of a grid from 0 to a range that may be negative: three to six of them, at round numbers.

@@ -121,20 +121,10 @@ impl Menu {
         let title = name.clone().unwrap_or_else(|| self.changed(side));
         let mut chosen = None;
         ui.horizontal(|ui| {
-            let kept = if saved.is_some() { 30.0 } else { 0.0 };
-            let width = ui.available_width() - kept;
+            let width = ui.available_width() - if saved.is_some() { 30.0 } else { 0.0 };
             let height = HEIGHT * ui.ctx().content_rect().height();
             let list = ComboBox::from_id_salt("technique").width(width).height(height).selected_text(title).truncate();
-            let list = list.show_ui(ui, |ui| {
-                ui.set_width(WIDTH);
-                ui.spacing_mut().item_spacing.y = 0.0;
-                ui.spacing_mut().button_padding.y = 1.0;
-                for entry in self.entries(presets) {
-                    if line(ui, &entry, name.as_deref() == Some(entry.name), command) {
-                        chosen = Some((entry.name.to_owned(), entry.technique));
-                    }
-                }
-            });
+            let list = list.show_ui(ui, |ui| chosen = self.list(ui, presets, name.as_deref(), command));
             rename(ui, &list.response, "Technique".to_owned());
             list.response.on_hover_text(help);
             let help = "Saves the technique under a name of its own.";
@@ -147,6 +137,26 @@ impl Menu {
             self.chosen[side] = name;
             *technique = of_scene(&preset, &now);
         }
+    }
+
+    /// The lines of the menu. Returns the technique that was chosen, with its name.
+    fn list(
+        &self,
+        ui: &mut Ui,
+        presets: &[UserPreset],
+        current: Option<&str>,
+        command: &mut Option<Command>,
+    ) -> Option<(String, Technique)> {
+        ui.set_width(WIDTH);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.spacing_mut().button_padding.y = 1.0;
+        let mut chosen = None;
+        for entry in self.entries(presets) {
+            if line(ui, &entry, current == Some(entry.name), command) {
+                chosen = Some((entry.name.to_owned(), entry.technique));
+            }
+        }
+        chosen
     }
 
     /// The field for the name that the technique is saved under, while it is asked for.

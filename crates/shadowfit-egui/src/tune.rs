@@ -21,22 +21,10 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, command: &mut Option<Command>) 
         Tune::Failed(_) => Some(palette.error),
     };
     card(ui, accent, |ui| match *tune {
-        Tune::Idle => {
-            ui.horizontal(|ui| {
-                ui.vertical(|ui| {
-                    ui.set_width(ui.available_width() - 110.0);
-                    title(ui, "Auto-tune").on_hover_text(HELP);
-                    caption(ui, "Finds the settings with the least error in this view.");
-                });
-                start(ui, "Auto-tune", command);
-            });
-        }
+        Tune::Idle => idle(ui, command),
         Tune::Running { tried, at_most, start_error, best_error, what } => {
             title(ui, "Auto-tune: searching").on_hover_text(HELP);
-            let share = tried as f32 / at_most.max(1) as f32;
-            let bar = ProgressBar::new(share).desired_height(8.0).fill(palette.accent_fill);
-            let response = ui.add(bar);
-            crate::accessibility::rename(ui, &response, "Progress of the search".to_owned());
+            progress(ui, tried as f32 / at_most.max(1) as f32);
             if start_error.is_finite() {
                 ui.label(RichText::new(from_to(ui, start_error, best_error)).strong());
                 caption(ui, &format!("{tried} of at most {at_most} tried; now {what}"));
@@ -47,7 +35,7 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, command: &mut Option<Command>) 
                 *command = Some(Command::CancelTune);
             }
         }
-        Tune::Done { before, after, changes, is_applied } => done(ui, [&before, &after], changes, is_applied, command),
+        Tune::Done { before, after, changes, is_applied } => done(ui, &before, &after, changes, is_applied, command),
         Tune::Failed(reason) => {
             ui.label(RichText::new("Auto-tune failed").color(palette.error));
             ui.add(Label::new(reason).wrap());
@@ -56,9 +44,28 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, command: &mut Option<Command>) 
     });
 }
 
+fn idle(ui: &mut Ui, command: &mut Option<Command>) {
+    ui.horizontal(|ui| {
+        ui.vertical(|ui| {
+            ui.set_width(ui.available_width() - 110.0);
+            title(ui, "Auto-tune").on_hover_text(HELP);
+            caption(ui, "Finds the settings with the least error in this view.");
+        });
+        start(ui, "Auto-tune", command);
+    });
+}
+
+/// The progress bar of a search. `share` is done, 0..=1.
+fn progress(ui: &mut Ui, share: f32) {
+    let bar = ProgressBar::new(share).desired_height(8.0).fill(Palette::of(ui).accent_fill);
+    let response = ui.add(bar);
+    crate::accessibility::rename(ui, &response, "Progress of the search".to_owned());
+}
+
 fn done(
     ui: &mut Ui,
-    [before, after]: [&JudgedFigures; 2],
+    before: &JudgedFigures,
+    after: &JudgedFigures,
     changes: &[String],
     is_applied: bool,
     command: &mut Option<Command>,

@@ -96,7 +96,7 @@ pub async fn check_device_async(
         report.rows[index].state = CheckState::Running;
         progress(&report);
         let begin = Instant::now();
-        let ended = run(gpu, is_cancelled, (&mut bench, check)).await;
+        let ended = run(gpu, is_cancelled, &mut bench, check).await;
         let row = &mut report.rows[index];
         row.seconds = begin.elapsed().as_secs_f64();
         let goes_on = note(row, ended);
@@ -138,7 +138,7 @@ enum Ended {
 
 /// Runs a check, and looks for what became of the device.
 #[cfg_attr(not(target_family = "wasm"), expect(clippy::unused_async, reason = "only browsers wait"))]
-async fn run<'a>(gpu: &'a Gpu, is_cancelled: &'a AtomicBool, (bench, check): (&mut Option<Bench<'a>>, Check)) -> Ended {
+async fn run<'a>(gpu: &'a Gpu, is_cancelled: &'a AtomicBool, bench: &mut Option<Bench<'a>>, check: Check) -> Ended {
     let work = async {
         let bench = match bench {
             Some(bench) => bench,

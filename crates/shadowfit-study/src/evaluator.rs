@@ -43,6 +43,15 @@ struct Before {
     forward: Vec3,
 }
 
+/// A view that is drawn as a probe.
+#[derive(Clone, Copy, Debug)]
+struct Probed<'a> {
+    view: &'a View,
+    maps: &'a [FittedMap],
+    /// The eye and the forward direction that choose among the maps, if they are not the camera's.
+    choice: Option<(DVec3, Vec3)>,
+}
+
 impl Evaluator {
     /// An evaluator that has judged nothing yet.
     pub fn new(renderer: Renderer, judging: Judging) -> Self {
@@ -190,7 +199,7 @@ impl Evaluator {
         if view.is_first {
             self.before = None;
         }
-        let seen = self.draw_probe(gpu, scene, view, maps, None)?;
+        let seen = self.draw_probe(gpu, scene, &Probed { view, maps, choice: None })?;
         let pixels = seen.arrive(gpu).await?.pixels;
         let traced = self.renderer.edge_result() == EdgeResult::Traced;
         let traced = self.renderer.take_edge_counts().filter(|_| traced);
@@ -215,7 +224,8 @@ impl Evaluator {
         let Some(Before { maps, eye, forward }) = self.before.take().filter(|_| self.judging.crawl) else {
             return Ok(None);
         };
-        let factors = factors(&self.probe(gpu, scene, view, &maps, Some((eye, forward))).await?);
+        let probed = Probed { view, maps: &maps, choice: Some((eye, forward)) };
+        let factors = factors(&self.probe(gpu, scene, &probed).await?);
         Ok(Some(FrameBefore { maps, eye, forward, factors }))
     }
 
@@ -232,7 +242,7 @@ impl Evaluator {
         maps: &[FittedMap],
         live: &mut LiveTruth,
     ) -> Result<Vec<GpuPixel>> {
-        self.with_live_input(gpu, scene, (view, maps, None), |input| live.judge(gpu, input))
+        self.with_live_input(gpu, scene, view, maps, None, |input| live.judge(gpu, input))
     }
 
     /// Mean time of judging a view on the GPU, without drawing it, in milliseconds.
@@ -246,9 +256,10 @@ impl Evaluator {
         scene: &mut PreparedScene,
         view: &View,
         maps: &[FittedMap],
-        (live, repeats): (&mut LiveTruth, u32),
+        live: &mut LiveTruth,
+        repeats: u32,
     ) -> Result<f64> {
-        self.with_live_input(gpu, scene, (view, maps, None), |input| live.time(gpu, input, repeats))
+        self.with_live_input(gpu, scene, view, maps, None, |input| live.time(gpu, input, repeats))
     }
 
     /// Draws a view's maps and its probe, and records the passes that judge it on the GPU, without waiting:
@@ -268,7 +279,7 @@ impl Evaluator {
         live: &mut LiveTruth,
     ) -> Result<()> {
         let before = self.before.take().filter(|_| self.judging.crawl && !view.is_first);
-        self.with_live_input(gpu, scene, (view, maps, before.as_ref()), |input| live.submit(gpu, input))?;
+        self.with_live_input(gpu, scene, view, maps, before.as_ref(), |input| live.submit(gpu, input))?;
         self.note_view(view, maps);
         Ok(())
     }
@@ -295,17 +306,20 @@ impl Evaluator {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        (view, maps, before): (&View, &[FittedMap], Option<&Before>),
+        view: &View,
+        maps: &[FittedMap],
+        before: Option<&Before>,
         judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
     ) -> Result<T> {
         let targets = match before {
             Some(Before { maps, eye, forward }) => {
                 let targets = self.targets_before.take();
-                Some(self.draw_probe_into(gpu, scene, (view, maps, Some((*eye, *forward))), targets)?)
+                let probed = Probed { view, maps, choice: Some((*eye, *forward)) };
+                Some(self.draw_probe_into(gpu, scene, &probed, targets)?)
             }
             None => None,
         };
-        let seen = self.draw_probe(gpu, scene, view, maps, None)?;
+        let seen = self.draw_probe(gpu, scene, &Probed { view, maps, choice: None })?;
         let descriptor = self.renderer.shadow_map().descriptor();
         let measure = |maps: &[FittedMap]| measured(maps, descriptor, view.direction, scene.origin());
         let here = measure(maps);
@@ -328,33 +342,23 @@ impl Evaluator {
         judged
     }
 
-    /// Triangle and shadow factor of each pixel. `choice` is the eye and the forward direction that choose the maps, if
-    /// they are not the camera's.
+    /// Triangle and shadow factor of each pixel.
     async fn probe(
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        view: &View,
-        maps: &[FittedMap],
-        choice: Option<(DVec3, Vec3)>,
+        probed: &Probed<'_>,
     ) -> Result<Vec<Option<ProbePixel>>> {
-        let targets = self.draw_probe(gpu, scene, view, maps, choice)?;
+        let targets = self.draw_probe(gpu, scene, probed)?;
         let probe = targets.arrive(gpu).await;
         self.targets = Some(targets);
         Ok(probe?.pixels)
     }
 
     /// Draws a probe into targets that the caller gives back.
-    fn draw_probe(
-        &mut self,
-        gpu: &Gpu,
-        scene: &mut PreparedScene,
-        view: &View,
-        maps: &[FittedMap],
-        choice: Option<(DVec3, Vec3)>,
-    ) -> Result<ProbeTargets> {
+    fn draw_probe(&mut self, gpu: &Gpu, scene: &mut PreparedScene, probed: &Probed<'_>) -> Result<ProbeTargets> {
         let kept = self.targets.take();
-        self.draw_probe_into(gpu, scene, (view, maps, choice), kept)
+        self.draw_probe_into(gpu, scene, probed, kept)
     }
 
     /// The same into these targets where they have the right size, otherwise into new ones.
@@ -362,11 +366,12 @@ impl Evaluator {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        (view, maps, choice): (&View, &[FittedMap], Option<(DVec3, Vec3)>),
+        probed: &Probed<'_>,
         targets: Option<ProbeTargets>,
     ) -> Result<ProbeTargets> {
         let kept = targets.filter(|targets| targets.size == self.judging.size);
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
+        let Probed { view, maps, choice } = *probed;
         let atmosphere = view.atmosphere();
         let frame = Frame { choice, ..self.frame(view, maps, &atmosphere) };
         self.make_rays(gpu, scene)?;

@@ -196,7 +196,7 @@ impl Interface {
         let figures = Some(&self.figures).filter(|_| has_legend);
         let picture = CentralPanel::default()
             .frame(Frame::NONE)
-            .show(ui, |ui| self.pictures.show(ui, stage, (input, figures), output));
+            .show(ui, |ui| self.pictures.show(ui, stage, input, figures, output));
         if self.drawer_open {
             self.show_drawer(ui, stage, input, output);
         } else if is_narrow && !self.bare {

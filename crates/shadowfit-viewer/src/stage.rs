@@ -392,7 +392,7 @@ impl Stage {
     pub fn draw(&mut self, target: &RenderTarget) {
         self.follow_casters();
         if self.sample.is_some() {
-            self.side.shown = None;
+            self.side.forget_picture();
             self.draw_sample(target);
         } else {
             self.draw_side(target);
@@ -441,10 +441,9 @@ impl Stage {
     pub fn draw_beside(&mut self, target: &RenderTarget) {
         let (side, mut shot) = self.shot(target.size);
         let Some(fitted) = side.fitted.clone() else { return };
-        side.shown = None;
-        let maps = fitted.maps.to_vec();
+        side.forget_picture();
         let statistics = side.statistics;
-        side.draw_outside(&mut shot, (&fitted, &maps, true), target);
+        side.draw_outside(&mut shot, &fitted, true, target);
         side.statistics = statistics;
     }
 

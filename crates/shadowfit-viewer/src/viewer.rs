@@ -18,7 +18,7 @@ use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use egui::{Event, RawInput};
 use shadowfit_egui::{Changes, Chord, Command, UserPreset};
 use shadowfit_params::tool::Settings;
@@ -43,7 +43,7 @@ use input::Input;
 
 #[cfg(not(target_family = "wasm"))]
 pub(crate) use faults::Renewals;
-use saving::Saving;
+use saving::{Destination, Saving};
 pub(crate) use start::Start;
 
 /// Seconds between two writes of the saved settings.
@@ -87,8 +87,8 @@ pub(crate) struct Viewer {
     commands: VecDeque<Request>,
     /// The line of the script that asked for the command being run.
     line: Option<String>,
-    /// Pictures of the whole window to be saved, and the lines of the script that asked for them.
-    shots: Vec<(PathBuf, Option<String>)>,
+    /// Pictures of the whole window to be saved.
+    shots: Vec<Destination>,
     /// Pictures whose pixels are on their way.
     saving: Vec<Saving>,
     /// Where random actions save, so that they do not fill the user's folder; removed at the end.
@@ -286,8 +286,8 @@ impl Viewer {
     /// Paints a frame that was laid out to `target` of `size` pixels, and saves it if a command asked for that.
     pub(crate) fn paint(&mut self, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
         self.interface.paint(&self.stage, layout, target, size);
-        for (path, line) in std::mem::take(&mut self.shots) {
-            self.save_window(layout, (path, line), size);
+        for destination in std::mem::take(&mut self.shots) {
+            self.save_window(layout, destination, size);
         }
     }
 
@@ -373,6 +373,15 @@ impl Viewer {
             format!("{error:#}")
         });
         self.say(text);
+    }
+
+    /// Returns the error that the viewer or its script ends with.
+    pub(crate) fn outcome(&mut self) -> Result<()> {
+        match self.failure.take() {
+            Some(failure) => Err(failure),
+            None if self.player.failed => Err(anyhow!("the script did not end as it should")),
+            None => Ok(()),
+        }
     }
 
     /// Shows a message for a while.

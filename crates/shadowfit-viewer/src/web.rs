@@ -91,34 +91,21 @@ impl Page {
             page::tell("panic", &panic.to_string());
             hook(panic);
         }));
-        Self::new(canvas, scale, kept, (page, fragment)).await.map_err(|error| JsError::new(&format!("{error:#}")))
+        Self::new(canvas, scale, kept, page, fragment).await.map_err(|error| JsError::new(&format!("{error:#}")))
     }
 
     async fn new(
         canvas: OffscreenCanvas,
         scale: f32,
         kept: Option<String>,
-        (page, fragment): (String, String),
+        page: String,
+        fragment: String,
     ) -> Result<Self> {
-        let instance = Gpu::instance();
-        let target = wgpu::SurfaceTarget::OffscreenCanvas(canvas.clone());
-        let surface = instance.create_surface(target).context("the page cannot be drawn on")?;
-        let gpu = Gpu::for_surface(&AdapterChoice::Any, &instance, &surface).await?;
-        watch(&gpu);
-        let mut configuration = surface
-            .get_default_config(&gpu.adapter, canvas.width().max(1), canvas.height().max(1))
-            .ok_or_else(|| anyhow!("{} cannot draw on this page", gpu.name()))?;
-        // The interface blends encoded colours, so the surface must not encode them again.
-        configuration.format = configuration.format.remove_srgb_suffix();
-        surface.configure(&gpu.device, &configuration);
+        let (surface, gpu, configuration) = open_surface(&canvas).await?;
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::empty(gpu, samples)?;
         stage.read_depths();
-        let (start, problem) = match Start::new(&Arguments { link: link_of(fragment), ..Arguments::default() }) {
-            Ok(start) => (start, None),
-            // A link that makes no sense opens the viewer as if there were none, and is told.
-            Err(error) => (Start::new(&Arguments::default())?, Some(error)),
-        };
+        let (start, problem) = start_of(fragment)?;
         let mut viewer = Viewer::new(stage, configuration.format, start, Some(Store::new(StateFile::of_text(kept))));
         viewer.page = Some(page);
         if let Some(problem) = problem {
@@ -366,6 +353,31 @@ impl Page {
         if let Some(failure) = self.viewer.failure.take() {
             page::tell("failure", &format!("{failure:#}"));
         }
+    }
+}
+
+/// Opens a graphics device that draws on a canvas, and configures the surface for it.
+async fn open_surface(canvas: &OffscreenCanvas) -> Result<(wgpu::Surface<'static>, Gpu, wgpu::SurfaceConfiguration)> {
+    let instance = Gpu::instance();
+    let target = wgpu::SurfaceTarget::OffscreenCanvas(canvas.clone());
+    let surface = instance.create_surface(target).context("the page cannot be drawn on")?;
+    let gpu = Gpu::for_surface(&AdapterChoice::Any, &instance, &surface).await?;
+    watch(&gpu);
+    let mut configuration = surface
+        .get_default_config(&gpu.adapter, canvas.width().max(1), canvas.height().max(1))
+        .ok_or_else(|| anyhow!("{} cannot draw on this page", gpu.name()))?;
+    // The interface blends encoded colours, so the surface must not encode them again.
+    configuration.format = configuration.format.remove_srgb_suffix();
+    surface.configure(&gpu.device, &configuration);
+    Ok((surface, gpu, configuration))
+}
+
+/// Returns the start that a page's fragment asks for. A link that makes no sense opens the viewer as if there were none; its
+/// problem is returned, too.
+fn start_of(fragment: String) -> Result<(Start, Option<anyhow::Error>)> {
+    match Start::new(&Arguments { link: link_of(fragment), ..Arguments::default() }) {
+        Ok(start) => Ok((start, None)),
+        Err(problem) => Ok((Start::new(&Arguments::default())?, Some(problem))),
     }
 }
 

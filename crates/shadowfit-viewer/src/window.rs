@@ -129,11 +129,7 @@ impl App {
     fn stop(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
         if let Some(mut running) = self.running.take() {
             running.viewer.save();
-            self.result = match running.viewer.failure.take() {
-                Some(failure) => Err(failure),
-                None if running.viewer.player.failed => Err(anyhow!("the script did not end as it should")),
-                None => result,
-            };
+            self.result = running.viewer.outcome().and(result);
             if let Some(log) = &running.log {
                 log.end();
             }

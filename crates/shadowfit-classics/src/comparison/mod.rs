@@ -189,7 +189,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         compares_linearly: is_linear,
         ..SampleMapSettings::new(MAP, SampleFormat::Depth32)
     };
-    let (map, test) = lamp.shadows(values, (map, test(is_linear, is_front)), true)?;
+    let (map, test) = lamp.shadows(values, map, test(is_linear, is_front), true)?;
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(LightImage::Square),

@@ -41,7 +41,8 @@ impl Lamp {
     pub(crate) fn shadows(
         &self,
         values: &SampleValues,
-        (map, test): (SampleMapSettings, ShadowTest),
+        map: SampleMapSettings,
+        test: ShadowTest,
         lit_outside: bool,
     ) -> Result<(SampleMapSettings, ShadowTest), FitError> {
         Ok(match values.choice(SHADOWS.id) {

@@ -17,11 +17,11 @@ impl LightImage {
     fn light(self, x: f32, y: f32) -> f32 {
         let beam = |at: f32| {
             let distance = ((x - at) / BEAM[0]).hypot(y / BEAM[1]);
-            falling(distance, [0.98, 0.62])
+            falling(distance, 0.98, 0.62)
         };
         match self {
             Self::Square => 1.0,
-            Self::Round => falling(x.hypot(y), ROUND),
+            Self::Round => falling(x.hypot(y), ROUND[0], ROUND[1]),
             // Light adds up where the beams cross, to no more than white.
             Self::Headlights => (beam(-BEAM_AT) + beam(BEAM_AT)).min(1.0),
         }
@@ -48,8 +48,8 @@ impl LightImage {
     }
 }
 
-/// 0 from the first distance on, 1 up to the second one, smoothly between.
-fn falling(distance: f32, [none, full]: [f32; 2]) -> f32 {
+/// Returns 0 from the distance `none` on, 1 up to the distance `full`, and smooth values between.
+fn falling(distance: f32, none: f32, full: f32) -> f32 {
     let t = ((none - distance) / (none - full)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

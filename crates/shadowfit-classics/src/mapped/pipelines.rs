@@ -83,7 +83,7 @@ impl SamplePipelines {
             })
         };
         match purpose {
-            Use::Caster(cull_mode, streams) => self.caster(&maker, frame, (cull_mode, streams)),
+            Use::Caster(cull_mode, streams) => self.caster(&maker, frame, cull_mode, streams),
             Use::Shaded(faces, streams) => {
                 let shader = ("sample", shaders::shaded(frame), ["vs_sample", "fs_shaded"]);
                 seen(ENCODED_FORMAT, (faces, streams), self.samples, shader)
@@ -109,7 +109,8 @@ impl SamplePipelines {
         &self,
         maker: &Maker<'_>,
         frame: &SampleFrame,
-        (cull_mode, streams): (Option<wgpu::Face>, Streams),
+        cull_mode: Option<wgpu::Face>,
+        streams: Streams,
     ) -> wgpu::RenderPipeline {
         let format = frame.map.format;
         let module = maker.module("sample's casters", shaders::caster());

@@ -76,23 +76,24 @@ impl SampleRenderer {
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
-        (frame, extras): (&SampleFrame, FrameExtras<'_>),
+        frame: &SampleFrame,
+        extras: FrameExtras<'_>,
         target: &RenderTarget,
     ) -> Result<(), SampleError> {
-        let plan = self.prepare(gpu, scene, (frame, extras))?;
+        let plan = self.prepare(gpu, scene, frame, extras)?;
         let shaded = |key: PartKey| Use::Shaded(seen_faces(frame, key), key.streams);
         self.add(gpu, frame, &plan.seen, shaded);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.map_pass(gpu, &mut encoder, scene, (frame, &plan.casters));
+        self.map_pass(gpu, &mut encoder, scene, frame, &plan.casters);
         let background = frame.background.map(|value| f64::from(value) / 255.0);
         let mut pass = target.begin_encoded(&mut encoder, "sample", background);
-        self.draw_scene(&mut pass, scene, (frame, &plan.seen), shaded);
+        self.draw_scene(&mut pass, scene, frame, &plan.seen, shaded);
         if let Some(behind) = extras.behind {
             behind(&mut pass);
         }
         drop(pass);
         if let Some(inset) = extras.inset {
-            self.inset_pass(gpu, &mut encoder, frame, (target, inset));
+            self.inset_pass(gpu, &mut encoder, frame, target, inset);
         }
         gpu.submit([encoder.finish()]);
         Ok(())
@@ -107,21 +108,22 @@ impl SampleRenderer {
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
-        (frame, extras): (&SampleFrame, FrameExtras<'_>),
+        frame: &SampleFrame,
+        extras: FrameExtras<'_>,
         targets: &ProbeTargets,
     ) -> Result<Result<Probe, ProbeError>, SampleError> {
-        let plan = self.prepare(gpu, scene, (frame, extras))?;
+        let plan = self.prepare(gpu, scene, frame, extras)?;
         let probed = |key: PartKey| Use::Probe(seen_faces(frame, key), key.streams);
         self.add(gpu, frame, &plan.seen, probed);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.map_pass(gpu, &mut encoder, scene, (frame, &plan.casters));
+        self.map_pass(gpu, &mut encoder, scene, frame, &plan.casters);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("sample's probe"),
             color_attachments: &[Some(cleared(&targets.view, None, wgpu::Color::TRANSPARENT))],
             depth_stencil_attachment: Some(depth(targets.depth_view())),
             ..Default::default()
         });
-        self.draw_scene(&mut pass, scene, (frame, &plan.seen), probed);
+        self.draw_scene(&mut pass, scene, frame, &plan.seen, probed);
         drop(pass);
         gpu.submit([encoder.finish()]);
         Ok(targets.arrive(gpu).await.map_err(ProbeError::from))
@@ -143,7 +145,8 @@ impl SampleRenderer {
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
-        (frame, extras): (&SampleFrame, FrameExtras<'_>),
+        frame: &SampleFrame,
+        extras: FrameExtras<'_>,
     ) -> Result<Plan, SampleError> {
         check(gpu, frame)?;
         let (settings, image) = (frame.map, frame.light.image);
@@ -178,7 +181,8 @@ impl SampleRenderer {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         scene: &GpuScene,
-        (frame, casters): (&SampleFrame, &[Draw]),
+        frame: &SampleFrame,
+        casters: &[Draw],
     ) {
         let purpose = |key: PartKey| {
             let left_out = match frame.map.faces {
@@ -202,7 +206,8 @@ impl SampleRenderer {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         scene: &GpuScene,
-        (frame, draws): (&SampleFrame, &[Draw]),
+        frame: &SampleFrame,
+        draws: &[Draw],
         purpose: impl Fn(PartKey) -> Use,
     ) {
         pass.set_bind_group(0, &self.group, &[]);
@@ -223,7 +228,8 @@ impl SampleRenderer {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         frame: &SampleFrame,
-        (target, inset): (&RenderTarget, [u32; 4]),
+        target: &RenderTarget,
+        inset: [u32; 4],
     ) {
         let [x, y, width, height] = part(inset, target.size);
         self.pipelines.add(gpu, Use::Inset, frame);

@@ -55,7 +55,8 @@ impl OcclusionPasses {
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
-        (frame, camera): (&OcclusionFrame, &PerspectiveCamera),
+        frame: &OcclusionFrame,
+        camera: &PerspectiveCamera,
         given: Option<&[f32]>,
         target: &RenderTarget,
     ) {
@@ -63,13 +64,13 @@ impl OcclusionPasses {
         scene.begin_frame(camera.eye);
         let [opaque, blended] = scene.seen(camera.clip_from_world(shadowfit::DepthConvention::Reversed));
         scene.end_frame(gpu);
-        self.prepare(gpu, (frame, camera), [&opaque, &blended], target.size);
+        self.prepare(gpu, frame, camera, &opaque, &blended, target.size);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         match given {
             Some(given) => self.take(gpu, given),
             None => self.occlusion_passes(&mut encoder, scene, frame, &opaque),
         }
-        self.picture_pass(&mut encoder, scene, frame, ([&opaque, &blended], target));
+        self.picture_pass(&mut encoder, scene, frame, &opaque, &blended, target);
         gpu.submit([encoder.finish()]);
     }
 
@@ -90,8 +91,10 @@ impl OcclusionPasses {
     fn prepare(
         &mut self,
         gpu: &Gpu,
-        (frame, camera): (&OcclusionFrame, &PerspectiveCamera),
-        [opaque, blended]: [&[Draw]; 2],
+        frame: &OcclusionFrame,
+        camera: &PerspectiveCamera,
+        opaque: &[Draw],
+        blended: &[Draw],
         size: [u32; 2],
     ) {
         let settings = frame.settings.unwrap_or_default();
@@ -144,9 +147,9 @@ impl OcclusionPasses {
     ) {
         let Some(targets) = &self.targets else { return };
         if let Some(settings) = &frame.settings {
-            self.part_pass(encoder, (scene, opaque), Drawn::Surface, targets);
+            self.part_pass(encoder, scene, opaque, Drawn::Surface, targets);
             if settings.reads_backs() {
-                self.part_pass(encoder, (scene, opaque), Drawn::Back, targets);
+                self.part_pass(encoder, scene, opaque, Drawn::Back, targets);
             }
         }
         let mut pass = screen_pass(encoder, &targets.raw_view);
@@ -173,7 +176,8 @@ impl OcclusionPasses {
     fn part_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        scene: (&GpuScene, &[Draw]),
+        scene: &GpuScene,
+        draws: &[Draw],
         drawn: Drawn,
         targets: &Targets,
     ) {
@@ -188,7 +192,7 @@ impl OcclusionPasses {
             depth_stencil_attachment: Some(depth(&targets.depth)),
             ..Default::default()
         });
-        self.draw_parts(&mut pass, scene, drawn);
+        self.draw_parts(&mut pass, scene, draws, drawn);
     }
 
     /// The picture from the occlusion.
@@ -197,7 +201,9 @@ impl OcclusionPasses {
         encoder: &mut wgpu::CommandEncoder,
         scene: &GpuScene,
         frame: &OcclusionFrame,
-        ([opaque, blended], target): ([&[Draw]; 2], &RenderTarget),
+        opaque: &[Draw],
+        blended: &[Draw],
+        target: &RenderTarget,
     ) {
         let Some(targets) = &self.targets else { return };
         let background = frame.background.as_dvec3().to_array();
@@ -209,11 +215,11 @@ impl OcclusionPasses {
             return;
         };
         pass.set_bind_group(OCCLUSION_GROUP, targets.shown(self.is_blurred), &[]);
-        self.draw_parts(&mut pass, (scene, opaque), drawn);
-        self.draw_parts(&mut pass, (scene, blended), drawn);
+        self.draw_parts(&mut pass, scene, opaque, drawn);
+        self.draw_parts(&mut pass, scene, blended, drawn);
     }
 
-    fn draw_parts(&self, pass: &mut wgpu::RenderPass<'_>, (scene, draws): (&GpuScene, &[Draw]), drawn: Drawn) {
+    fn draw_parts(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draws: &[Draw], drawn: Drawn) {
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.uniforms[0].1, &[]);
         for draw in draws {

@@ -139,7 +139,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         clear: 0,
         ..SampleMapSettings::new(size, SampleFormat::of(values.choice("format")))
     };
-    let (map, test) = lamp.shadows(values, (map, test(values)), true)?;
+    let (map, test) = lamp.shadows(values, map, test(values), true)?;
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(LightImage::Square),

@@ -29,7 +29,7 @@ fn probes_of_samples_without_the_primitive_index_are_those_with_it() {
             let targets = ProbeTargets::new(&gpu.device, SIZE);
             let extras = FrameExtras::default();
             let mut renderer = SampleRenderer::new(gpu, 1);
-            let probe = renderer.probe(gpu, &mut gpu_scene, (&frame, extras), &targets);
+            let probe = renderer.probe(gpu, &mut gpu_scene, &frame, extras, &targets);
             pollster::block_on(probe).expect("a map").expect("a probe")
         };
         let [indexed, unrolled] = devices.each_ref().map(probe);

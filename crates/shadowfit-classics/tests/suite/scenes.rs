@@ -88,7 +88,7 @@ impl Pictures {
     }
 
     pub(crate) fn draw(&mut self, camera: &PerspectiveCamera, frame: &OcclusionFrame) -> Vec<[u8; 3]> {
-        self.passes.draw(&self.gpu, &mut self.scene, (frame, camera), None, &self.target);
+        self.passes.draw(&self.gpu, &mut self.scene, frame, camera, None, &self.target);
         self.read()
     }
 

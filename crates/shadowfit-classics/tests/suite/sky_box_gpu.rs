@@ -37,7 +37,7 @@ fn seen(pictures: &mut Pictures, sky: &SkyBox, camera: &PerspectiveCamera) -> Ve
     let behind = |pass: &mut wgpu::RenderPass<'_>| sky.draw(pass);
     let extras = FrameExtras { behind: Some(&behind), ..FrameExtras::default() };
     let mut renderer = SampleRenderer::new(&pictures.gpu, 1);
-    renderer.draw(&pictures.gpu, &mut pictures.scene, (&frame, extras), &pictures.target).expect("a picture");
+    renderer.draw(&pictures.gpu, &mut pictures.scene, &frame, extras, &pictures.target).expect("a picture");
     pictures.read()
 }
 

@@ -98,7 +98,7 @@ impl ValueRow<'_> {
 }
 
 /// A short text on a patch of colour.
-pub(crate) fn badge(ui: &mut Ui, text: &str, [fill, on_fill]: [Color32; 2], name: &str) -> Response {
+pub(crate) fn badge(ui: &mut Ui, text: &str, fill: Color32, on_fill: Color32, name: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(22.0, 16.0), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
     if ui.is_rect_visible(rect) {

@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         for outcome in outcomes {
             let pixels = evaluator.judge_live(gpu, scene, &frame.view, &outcome.maps, &mut live)?;
             let repeats = if gpu.is_software() { 1 } else { REPEATS };
-            times.push(evaluator.time_live(gpu, scene, &frame.view, &outcome.maps, (&mut live, repeats))?);
+            times.push(evaluator.time_live(gpu, scene, &frame.view, &outcome.maps, &mut live, repeats)?);
             sum.add(&outcome.judged, &pixels);
         }
     }

@@ -70,7 +70,7 @@ async fn run_with(
     let mut compared = Compared::default();
     for filter in filters {
         bench.pause().await?;
-        compare(bench, (&view, &points), filter, &on_cpu, &mut compared).await?;
+        compare(bench, &view, &points, filter, &on_cpu, &mut compared).await?;
     }
     let Compared { factors, partly, wrong, worst } = compared;
     let is_within = wrong == 0 && partly * 100 > factors;
@@ -82,7 +82,8 @@ async fn run_with(
 
 async fn compare(
     bench: &mut Bench<'_>,
-    (view, points): (&View, &[Point]),
+    view: &View,
+    points: &[Point],
     filter: FilterKind,
     on_cpu: &impl Fn(FittedMap) -> FittedMap,
     compared: &mut Compared,

@@ -9,8 +9,14 @@ use shadowfit_egui::CardFigure;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::in_background_async;
 
-/// Input of a measurement: a sample by its values, a camera, and the time of its animation, in seconds.
-pub(crate) type Task = (&'static Sample, SampleValues, PerspectiveCamera, f32);
+/// Input of a measurement.
+pub(crate) struct SampleView {
+    pub(crate) sample: &'static Sample,
+    pub(crate) values: SampleValues,
+    pub(crate) camera: PerspectiveCamera,
+    /// Time of the animation, in seconds.
+    pub(crate) seconds: f32,
+}
 
 /// A measurement on its way, or the result of the last one.
 #[derive(Debug, Default)]
@@ -21,9 +27,10 @@ pub(crate) struct Measuring {
 
 impl Measuring {
     /// Begins a measurement; the result of one that is under way is dropped.
-    pub(crate) fn start(&mut self, adapter: AdapterChoice, (sample, values, camera, seconds): Task) {
+    pub(crate) fn start(&mut self, adapter: AdapterChoice, view: SampleView) {
         let (sender, result) = channel();
         let work = move || async move {
+            let SampleView { sample, values, camera, seconds } = view;
             let measured = match Gpu::headless(&adapter).await {
                 Ok(gpu) => SampleFigures::measure_async(gpu, sample, &values, &camera, seconds).await,
                 Err(error) => Err(error.into()),

@@ -13,7 +13,7 @@ use crate::platform::output;
 ///
 /// # Errors
 ///
-/// When there is no such adapter or it cannot be opened, or the report cannot be written.
+/// If the adapter is missing or cannot be opened, or the report cannot be written.
 pub(crate) fn run(adapter: &AdapterChoice) -> Result<bool> {
     let gpu = pollster::block_on(Gpu::headless(adapter))?;
     let mut told = 0;

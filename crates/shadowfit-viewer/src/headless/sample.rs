@@ -6,7 +6,8 @@ use anyhow::{Context, Result};
 use shadowfit_classics::{OptionKind, Sample, SampleFigures, SampleValues, SampleVariant};
 use shadowfit_render::Gpu;
 
-use super::{Progress, SAMPLES};
+use super::SAMPLES;
+use super::progress::Progress;
 use crate::arguments::Arguments;
 use crate::keep::picture_file::write_png;
 use crate::platform::output;
@@ -17,61 +18,67 @@ use crate::stage::Stage;
 /// maps.
 pub(super) fn run(
     arguments: &Arguments,
-    (sample, named): (&'static Sample, Option<&'static SampleVariant>),
+    sample: &'static Sample,
+    named: Option<&'static SampleVariant>,
     folder: &Path,
 ) -> Result<()> {
     let gpu = pollster::block_on(Gpu::headless(&arguments.adapter()))?;
     let mut stage = Stage::new(gpu, sample.scene(), SAMPLES)?;
     stage.wait_for_rays();
     let size = arguments.size.unwrap_or(sample.size);
-    let pictures = if named.is_some() { Vec::new() } else { pictures(sample) };
-    let count = if named.is_some() { 1 } else { pictures.len() + sample.variants.len() };
-    let mut progress = Progress::begin(count, sample.title, &stage, folder)?;
-    let mut save =
-        |stage: &mut Stage, variant: Option<&'static SampleVariant>, name: &str, options: &[(&str, &str)]| {
-            stage.set_sample(sample, variant);
-            for (option, text) in arguments.sample_options().chain(options.iter().copied()) {
-                stage.set_sample_text(option, text).with_context(|| format!("--set sample.{option}={text}"))?;
-            }
-            arguments.apply_what_is_there(&mut stage.settings)?;
-            let path = folder.join(name).with_extension("png");
-            write_picture(stage, &path, size)?;
-            progress.wrote(&path);
-            anyhow::Ok(())
-        };
-    let file = |variant: &SampleVariant| format!("{}-{}", sample.id, variant.id);
-    if let Some(variant) = named {
-        save(&mut stage, named, &file(variant), &[])?;
-    } else {
-        for (name, options) in pictures {
-            save(&mut stage, None, &name, &options)?;
+    let variants = sample.variants.iter().filter(|variant| named.is_none_or(|named| named == *variant));
+    let own = if named.is_some() { Vec::new() } else { SamplePicture::of_options(sample) };
+    let pictures: Vec<_> = own.into_iter().chain(variants.map(|variant| SamplePicture::of(sample, variant))).collect();
+    let mut progress = Progress::begin(pictures.len(), sample.title, &stage, folder)?;
+    for SamplePicture { name, variant, options } in pictures {
+        stage.set_sample(sample, variant);
+        for (option, text) in arguments.sample_options().chain(options) {
+            stage.set_sample_text(option, text).with_context(|| format!("--set sample.{option}={text}"))?;
         }
-        for variant in sample.variants {
-            save(&mut stage, Some(variant), &file(variant), &[])?;
-        }
+        arguments.apply_what_is_there(&mut stage.settings)?;
+        let path = folder.join(name).with_extension("png");
+        write_picture(&mut stage, &path, size)?;
+        progress.wrote(&path);
     }
     progress.end()?;
     if sample.is_measurable {
-        tell_figures(arguments, (sample, named), size)?;
+        tell_figures(arguments, sample, named, size)?;
     }
     Ok(())
 }
 
-/// Names and options of the pictures of the technique itself: as its source has it, and beside its comparison.
-fn pictures(sample: &Sample) -> Vec<(String, Vec<(&'static str, &'static str)>)> {
-    let mut all = vec![(sample.id.to_owned(), Vec::new())];
-    for option in sample.options {
-        let OptionKind::Choice(choices) = option.kind else { continue };
-        if option.id == "beside" {
-            for (id, _) in &choices[1..] {
-                let name = id.replace('=', "-");
-                all.push((format!("{}-beside-{name}", sample.id), vec![("beside", *id)]));
-            }
-        } else if option.id == "shadows" && choices.iter().any(|(id, _)| *id == "off") {
-            all.push((format!("{}-no-shadows", sample.id), vec![("shadows", "off")]));
-        }
+/// A picture of a sample.
+struct SamplePicture {
+    /// Name of the file, without its extension.
+    name: String,
+    variant: Option<&'static SampleVariant>,
+    /// Options and their values, as command lines say them.
+    options: Vec<(&'static str, &'static str)>,
+}
+
+impl SamplePicture {
+    /// Returns the picture of a variant.
+    fn of(sample: &Sample, variant: &'static SampleVariant) -> Self {
+        Self { name: format!("{}-{}", sample.id, variant.id), variant: Some(variant), options: Vec::new() }
     }
-    all
+
+    /// Returns the pictures of the technique itself: like its source, beside its comparison, and without shadows.
+    fn of_options(sample: &Sample) -> Vec<Self> {
+        let mut all = vec![Self { name: sample.id.to_owned(), variant: None, options: Vec::new() }];
+        for option in sample.options {
+            let OptionKind::Choice(choices) = option.kind else { continue };
+            if option.id == "beside" {
+                for (id, _) in &choices[1..] {
+                    let name = format!("{}-beside-{}", sample.id, id.replace('=', "-"));
+                    all.push(Self { name, variant: None, options: vec![("beside", *id)] });
+                }
+            } else if option.id == "shadows" && choices.iter().any(|(id, _)| *id == "off") {
+                let name = format!("{}-no-shadows", sample.id);
+                all.push(Self { name, variant: None, options: vec![("shadows", "off")] });
+            }
+        }
+        all
+    }
 }
 
 fn write_picture(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
@@ -98,11 +105,7 @@ fn draw_line(pixels: &mut [u8], [width, _]: [u32; 2], split: f32) {
 }
 
 /// Prints how a sample, or a variant of it, compares with modern maps.
-fn tell_figures(
-    arguments: &Arguments,
-    (sample, variant): (&Sample, Option<&SampleVariant>),
-    size: [u32; 2],
-) -> Result<()> {
+fn tell_figures(arguments: &Arguments, sample: &Sample, variant: Option<&SampleVariant>, size: [u32; 2]) -> Result<()> {
     let mut values = SampleValues::of_variant(sample, variant)?;
     for (option, text) in arguments.sample_options() {
         values.set_from_str(option, text)?;

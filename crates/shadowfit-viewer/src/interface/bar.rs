@@ -144,34 +144,56 @@ fn of_the_file(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
         return;
     }
     ui.separator();
-    let cameras: Vec<String> = scene.cameras.iter().map(|camera| camera.name.clone()).collect();
-    let chosen = settings.camera.file;
-    choice(ui, ("Camera of the file", "camera.file"), &cameras, (chosen, "Free flight", "free"), output);
+    let cameras = scene.cameras.iter().map(|camera| camera.name.clone()).collect();
     let lux = |sun: &SceneSun| format!("{} ({:.3} lx)", sun.name, sun.strength()).trim_start().to_owned();
-    let suns: Vec<String> = scene.suns.iter().map(lux).collect();
-    let chosen = settings.light.file;
-    choice(ui, ("Sun of the file", "light.file"), &suns, (chosen, "By hand", "by_hand"), output);
+    let camera = FileMenu {
+        title: "Camera of the file",
+        id: "camera.file",
+        names: cameras,
+        chosen: settings.camera.file,
+        none: "Free flight",
+        none_id: "free",
+    };
+    let sun = FileMenu {
+        title: "Sun of the file",
+        id: "light.file",
+        names: scene.suns.iter().map(lux).collect(),
+        chosen: settings.light.file,
+        none: "By hand",
+        none_id: "by_hand",
+    };
+    camera.show(ui, output);
+    sun.show(ui, output);
 }
 
-/// A menu that sets a parameter to the number of one of some names, or to none.
-fn choice(
-    ui: &mut Ui,
-    (title, id): (&str, &str),
-    names: &[String],
-    (chosen, none, none_id): (Option<u32>, &str, &str),
-    output: &mut InterfaceOutput,
-) {
-    if names.is_empty() {
-        return;
-    }
-    ui.menu_button(title, |ui| {
-        let numbered = names.iter().zip(1..).map(|(name, number)| (Some(number), format!("{number}  {name}")));
-        for (number, label) in numbered.chain([(None, none.to_owned())]) {
-            if ui.add(Button::selectable(number == chosen, label)).clicked() {
-                let value = number.map_or(none_id.to_owned(), |number: u32| number.to_string());
-                output.commands.push(Command::Set(id.to_owned(), value));
-                ui.close();
-            }
+/// A menu that sets a parameter to the number of a name, or to none.
+struct FileMenu {
+    title: &'static str,
+    /// Id of the parameter.
+    id: &'static str,
+    /// The names, numbered from 1.
+    names: Vec<String>,
+    chosen: Option<u32>,
+    /// Label and value of no number.
+    none: &'static str,
+    none_id: &'static str,
+}
+
+impl FileMenu {
+    /// Shows the menu, unless its list of names is empty.
+    fn show(&self, ui: &mut Ui, output: &mut InterfaceOutput) {
+        if self.names.is_empty() {
+            return;
         }
-    });
+        ui.menu_button(self.title, |ui| {
+            let numbered = self.names.iter().zip(1..).map(|(name, number)| (Some(number), format!("{number}  {name}")));
+            for (number, label) in numbered.chain([(None, self.none.to_owned())]) {
+                if ui.add(Button::selectable(number == self.chosen, label)).clicked() {
+                    let value = number.map_or(self.none_id.to_owned(), |number: u32| number.to_string());
+                    output.commands.push(Command::Set(self.id.to_owned(), value));
+                    ui.close();
+                }
+            }
+        });
+    }
 }

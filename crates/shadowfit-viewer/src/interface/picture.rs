@@ -122,7 +122,8 @@ impl Pictures {
         &mut self,
         ui: &mut Ui,
         stage: &mut Stage,
-        (input, figures): (&InterfaceInput<'_>, Option<&Figures>),
+        input: &InterfaceInput<'_>,
+        figures: Option<&Figures>,
         output: &mut InterfaceOutput,
     ) {
         let rect = ui.available_rect_before_wrap();

@@ -2,19 +2,21 @@
 
 use std::fmt::Write as _;
 
-use shadowfit_classics::{Sample, SampleValues, SampleVariant};
+use shadowfit_classics::SampleValues;
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, PARAMETERS};
 
 use crate::scene_source::SceneSource;
+use crate::stage::SampleShow;
 
 /// The command line that opens a scene with one of its animations and these settings, whatever was saved. `own` are the
 /// settings of the scene alone: only differences from them are written.
 pub(crate) fn command_line(
     source: &SceneSource,
     animation: usize,
-    (settings, own): (&Settings, &Settings),
-    sample: Option<(&Sample, Option<&SampleVariant>, &SampleValues)>,
+    settings: &Settings,
+    own: &Settings,
+    sample: Option<&SampleShow>,
 ) -> String {
     let mut line = String::from("viewer");
     if matches!(source, SceneSource::Sample { .. }) {
@@ -33,7 +35,7 @@ pub(crate) fn command_line(
         // Writing to a String cannot fail.
         let _ = write!(line, " --set {}", quoted(&format!("{id}={value}")));
     }
-    for (option, value) in sample.into_iter().flat_map(|(sample, variant, values)| changed(sample, variant, values)) {
+    for (option, value) in sample.into_iter().flat_map(changed) {
         let _ = write!(line, " --set {}", quoted(&format!("sample.{option}={value}")));
     }
     line
@@ -54,13 +56,10 @@ pub(crate) fn differences(settings: &Settings, own: &Settings) -> Vec<(String, S
     differences
 }
 
-/// The options of a sample that differ from those of its name alone.
-pub(crate) fn changed(
-    sample: &Sample,
-    variant: Option<&SampleVariant>,
-    values: &SampleValues,
-) -> impl Iterator<Item = (&'static str, String)> {
-    let own = SampleValues::of_variant(sample, variant).unwrap_or_else(|_| SampleValues::new(sample));
+/// Returns the options of a sample that differ from its own values, or from the values of its variant.
+pub(crate) fn changed(show: &SampleShow) -> impl Iterator<Item = (&'static str, String)> {
+    let SampleShow { sample, variant, values, .. } = show;
+    let own = SampleValues::of_variant(sample, *variant).unwrap_or_else(|_| SampleValues::new(sample));
     let both: Vec<_> = own.iter().zip(values.iter()).collect();
     let changed = both.into_iter().filter(|((_, own), (_, value))| own != value);
     changed.map(|(_, (option, value))| (option.id, SampleValues::text(option, value)))
@@ -94,7 +93,7 @@ mod tests {
         settings.technique.bias.constant = 0.7;
         (settings.light.hour, settings.view.inset_depths) = (Some(8.5), Some([0.25, 0.5]));
         let town = SceneSource::from_text("a town.glb").with_index(Some(2)).expect("files have scenes");
-        let line = command_line(&town, 1, (&settings, &home), None);
+        let line = command_line(&town, 1, &settings, &home, None);
         let path = quoted(&town.text());
         let start = format!("viewer {path} --no-state --scene-index 2 --animation 1 --set ");
         assert!(path.starts_with('\'') && line.starts_with(&start), "{line}");
@@ -104,7 +103,7 @@ mod tests {
         let mut read = home;
         arguments.apply(&mut read).expect("settings");
         assert_eq!(read, settings);
-        assert_eq!(command_line(&SceneSource::default(), 0, (&home, &home), None), "viewer --no-state");
+        assert_eq!(command_line(&SceneSource::default(), 0, &home, &home, None), "viewer --no-state");
     }
 
     #[test]

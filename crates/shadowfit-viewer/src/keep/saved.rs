@@ -201,11 +201,7 @@ impl Saved {
     /// Reads a text.
     pub(crate) fn from_toml(text: &str) -> Result<Self> {
         let mut file: toml::Table = toml::from_str(text)?;
-        match file.get("version").and_then(toml::Value::as_integer) {
-            Some(version) if version == i64::from(VERSION) => {}
-            Some(version) => bail!("it has version {version}, and this viewer reads version {VERSION}"),
-            None => bail!("it has no version"),
-        }
+        check_version(&file)?;
         let mut table = |name: &str| match file.remove(name) {
             Some(toml::Value::Table(table)) => Ok(Some(table)),
             Some(_) => bail!("{name} is no table"),
@@ -239,6 +235,15 @@ impl Saved {
             saved.presets.push(NamedTechnique { name, inputs, ..technique.into() });
         }
         Ok(saved)
+    }
+}
+
+/// Refuses a file of another version.
+fn check_version(file: &toml::Table) -> Result<()> {
+    match file.get("version").and_then(toml::Value::as_integer) {
+        Some(version) if version == i64::from(VERSION) => Ok(()),
+        Some(version) => bail!("it has version {version}, and this viewer reads version {VERSION}"),
+        None => bail!("it has no version"),
     }
 }
 

@@ -87,7 +87,7 @@ impl Store {
     }
 }
 
-/// The state in a text, or why the text makes no sense; nothing where there is no text.
+/// Reads the state in a text, if there is a text. Fails if the text makes no sense.
 fn parsed(text: Option<Result<String>>) -> Option<Result<Saved>> {
     text.map(|text| text.and_then(|text| Saved::from_toml(&text)))
 }

@@ -19,7 +19,7 @@ const MEMORY_PAGE: u64 = 1 << 16;
 
 #[wasm_bindgen]
 extern "C" {
-    /// Sends the page a message: its kind, and what it is about. `web/worker.js` defines it.
+    /// Sends the page a message of a kind, with a value. `web/worker.js` defines it.
     #[wasm_bindgen(js_name = tellPage)]
     fn tell_page(kind: &str, value: &JsValue, name: &str);
 }

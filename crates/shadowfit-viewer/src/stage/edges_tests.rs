@@ -7,7 +7,7 @@ use shadowfit_testing::renderer_gpu;
 use shadowfit_wgpu::demand::Unsupported;
 use shadowfit_wgpu::resolve::{EdgeResult, ResolveCounts, WhyFiltered};
 
-use super::side::filtered_edges;
+use super::side::draw::filtered_edges;
 use super::*;
 
 const SIZE: [u32; 2] = [160, 90];

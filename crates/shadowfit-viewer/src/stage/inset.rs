@@ -27,7 +27,8 @@ pub(super) fn insets(
     maps: &[FittedMap],
     bounds: &Aabb,
     depth_range: Option<[f32; 2]>,
-    (left, size): (u32, [u32; 2]),
+    left: u32,
+    size: [u32; 2],
 ) -> Vec<Inset> {
     let picture = size.map(|side| side as f32);
     let scale = (picture[0] / FULL_WIDTH).min(1.0);
@@ -86,7 +87,7 @@ mod tests {
         let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
         for count in 1..=MAX_MAPS {
             for size in [[960, 540], [320, 180], [1280, 300]] {
-                let insets = insets(0..count, &maps, &bounds, None, (0, size));
+                let insets = insets(0..count, &maps, &bounds, None, 0, size);
                 assert_eq!(insets.len(), count);
                 for pair in insets.windows(2) {
                     assert!(pair[1].rectangle[1] + pair[1].rectangle[3] < pair[0].rectangle[1], "{pair:?}");
@@ -94,7 +95,7 @@ mod tests {
                 assert!(insets.iter().all(|inset| inset.rectangle[1] > 0.0 && inset.rectangle[3] >= 1.0), "{insets:?}");
             }
         }
-        let one = insets(3..4, &maps, &bounds, Some([0.25, 0.5]), (100, [960, 540]));
+        let one = insets(3..4, &maps, &bounds, Some([0.25, 0.5]), 100, [960, 540]);
         assert_eq!((one[0].map, one[0].rectangle, one[0].depth_range), (3, [112.0, 328.0, 300.0, 200.0], [0.25, 0.5]));
     }
 

@@ -205,7 +205,7 @@ impl Live {
             return Ok(false);
         }
         if self.by == JudgedBy::Gpu {
-            return self.judge_on_gpu(evaluator, shot, (view, key), maps, size);
+            return self.judge_on_gpu(evaluator, shot, view, key, size);
         }
         let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
         let waited = self.begun.map_or(f32::MAX, |begun| shot.clock - begun);
@@ -218,9 +218,9 @@ impl Live {
         self.begun = Some(shot.clock);
         let size = if self.waits { size } else { background_size(size) };
         if self.by == JudgedBy::Threads {
-            return self.start(evaluator, shot, (view, key), maps, size);
+            return self.start(evaluator, shot, view, key, size);
         }
-        let maps_stay = self.judge_on_gpu(evaluator, shot, (view, key), maps, size)?;
+        let maps_stay = self.judge_on_gpu(evaluator, shot, view, key, size)?;
         // Later frames of other views need to know what this one showed.
         if let Some(judged) = &mut self.judged {
             judged.seen = evaluator.take_probe();
@@ -245,8 +245,8 @@ impl Live {
         &mut self,
         evaluator: &mut Evaluator,
         shot: &mut Shot<'_>,
-        (view, key): (&View, Key),
-        maps: &[FittedMap],
+        view: &View,
+        key: Key,
         size: [u32; 2],
     ) -> Result<bool> {
         let live = match self.gpu.take() {
@@ -269,7 +269,7 @@ impl Live {
         let live = self.gpu.insert(live);
         evaluator.judging.size = size;
         evaluator.judging.crawl = true;
-        evaluator.judge_in_place(shot.gpu, shot.scene, view, maps, live)?;
+        evaluator.judge_in_place(shot.gpu, shot.scene, view, &key.maps, live)?;
         if self.drawn.len() == FRAMES {
             self.drawn.remove(0);
         }
@@ -288,14 +288,14 @@ impl Live {
         &mut self,
         evaluator: &mut Evaluator,
         shot: &mut Shot<'_>,
-        (view, key): (&View, Key),
-        maps: &[FittedMap],
+        view: &View,
+        key: Key,
         size: [u32; 2],
     ) -> Result<bool> {
         let Some(rays) = shot.scene.ready_rays() else { return Ok(false) };
         evaluator.judging.size = size;
         evaluator.judging.crawl = !self.waits;
-        let (job, seen) = evaluator.judge_job(shot.gpu, shot.scene, view, maps, rays)?;
+        let (job, seen) = evaluator.judge_job(shot.gpu, shot.scene, view, &key.maps, rays)?;
         let measures_crawl = job.before.is_some();
         let size = job.judging.size;
         let mut background = match self.background.take() {

@@ -149,7 +149,7 @@ impl Stage {
 
     fn draw_values(&mut self, show: &mut SampleShow, values: &SampleValues, target: &RenderTarget) {
         let camera = self.sample_camera(target.size);
-        let drawn = show.drawer.draw(&self.gpu, &mut self.scene, (show.sample, values), &camera, target);
+        let drawn = show.drawer.draw(&self.gpu, &mut self.scene, show.sample, values, &camera, target);
         match drawn {
             Ok(SampleOutcome::Drawn { message }) => show.message = message.or(show.message.take()),
             Ok(SampleOutcome::ByTechnique) => self.draw_side(target),

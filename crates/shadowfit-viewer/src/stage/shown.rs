@@ -134,20 +134,16 @@ impl Stage {
         self.artefact.ill
     }
 
-    /// Shows an artefact as a link has it: settings and camera are there already, `before` are those from before it, and
-    /// `ill` is the technique that shows it.
-    pub(crate) fn resume_artefact(
-        &mut self,
-        (artefact, fixed): (Artefact, bool),
-        before: &(Settings, FlyCamera),
-        ill: Technique,
-    ) {
+    /// Shows the artefact of a link, after its settings and its camera were set. `before` and `camera` are the settings and
+    /// the camera from before it, and `ill` is the technique that shows it.
+    pub(crate) fn resume_artefact(&mut self, shown: Shown, before: &Settings, camera: FlyCamera, ill: Technique) {
+        let Shown { artefact, fixed } = shown;
         let settings = self.settings.with_technique(ill);
         let lens = self.camera.perspective(&settings.camera, 1.0);
         let search = Search { artefact, scene: self.scene.snapshot(), settings, lens };
         self.artefact = ArtefactShow {
-            shown: Some(Shown { artefact, fixed }),
-            before: Some(*before),
+            shown: Some(shown),
+            before: Some((*before, camera)),
             technique: self.settings.technique,
             ill,
             found: true,

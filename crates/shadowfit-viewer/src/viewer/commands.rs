@@ -34,6 +34,32 @@ impl Viewer {
         if let Some(reason) = self.stage.no_compute().filter(|_| takes_compute) {
             return self.say(reason);
         }
+        let Some(command) = self.run_on_view(command) else { return };
+        match command {
+            Command::ToggleHelp => self.interface.help_open = !self.interface.help_open,
+            Command::TogglePanel => self.interface.bare = !self.interface.bare,
+            Command::SetTheme(theme) => {
+                self.saved.theme = theme.into();
+                self.interface.context.set_theme(theme);
+            }
+            Command::CheckDevice => self.device_check.start(self.stage.gpu()),
+            Command::CancelCheck => self.device_check.cancel(),
+            Command::CloseCheck => self.device_check.close(),
+            Command::CopyCheck => self.copy_check(),
+            Command::Escape => self.escape(),
+            Command::Quit => self.window_requests.quit = self.page.is_none(),
+            // Everything else needs a scene.
+            _ if !self.has_scene => {
+                if self.line.is_some() {
+                    self.tell(Err(anyhow!("there is no scene yet; let the script begin with `await loaded`")));
+                }
+            }
+            command => self.run_on_scene(command),
+        }
+    }
+
+    /// Runs a command that changes the contents of the picture. Returns any other command.
+    fn run_on_view(&mut self, command: Command) -> Option<Command> {
         let view = &mut self.stage.settings.view;
         match command {
             Command::View(mode) => view.mode = mode,
@@ -61,26 +87,9 @@ impl Viewer {
                 view.play = false;
                 self.stage.set_time(seconds.max(0.0));
             }
-            Command::ToggleHelp => self.interface.help_open = !self.interface.help_open,
-            Command::TogglePanel => self.interface.bare = !self.interface.bare,
-            Command::SetTheme(theme) => {
-                self.saved.theme = theme.into();
-                self.interface.context.set_theme(theme);
-            }
-            Command::CheckDevice => self.device_check.start(self.stage.gpu()),
-            Command::CancelCheck => self.device_check.cancel(),
-            Command::CloseCheck => self.device_check.close(),
-            Command::CopyCheck => self.copy_check(),
-            Command::Escape => self.escape(),
-            Command::Quit => self.window_requests.quit = self.page.is_none(),
-            // Everything else needs a scene.
-            _ if !self.has_scene => {
-                if self.line.is_some() {
-                    self.tell(Err(anyhow!("there is no scene yet; let the script begin with `await loaded`")));
-                }
-            }
-            command => self.run_on_scene(command),
+            other => return Some(other),
         }
+        None
     }
 
     /// Copies the report of the device's check.
@@ -133,11 +142,6 @@ impl Viewer {
                 self.stage.compare_with(None);
                 self.interface.edits_other = false;
             }
-            Command::ResetCamera => self.stage.reset_camera(),
-            Command::LevelCamera => self.stage.level_camera(),
-            Command::LookAt { eye, target } => self.stage.set_camera(FlyCamera::look_at(eye.into(), target.into())),
-            Command::Focus(at) => self.focus(at),
-            Command::SetBookmark(key) => self.set_bookmark(key),
             Command::ShowSampleVariant(variant) => self.show_sample_variant(variant),
             Command::SetSampleOption { index, value } => self.stage.set_sample_option(index, value),
             Command::MeasureSample => self.measure_sample(),
@@ -145,6 +149,17 @@ impl Viewer {
             Command::CancelTune => self.tuning.cancel(),
             Command::ApplyTune => self.apply_tune(),
             Command::DiscardTune => self.tuning.discard(),
+            command => self.run_on_camera(command),
+        }
+    }
+
+    fn run_on_camera(&mut self, command: Command) {
+        match command {
+            Command::ResetCamera => self.stage.reset_camera(),
+            Command::LevelCamera => self.stage.level_camera(),
+            Command::LookAt { eye, target } => self.stage.set_camera(FlyCamera::look_at(eye.into(), target.into())),
+            Command::Focus(at) => self.focus(at),
+            Command::SetBookmark(key) => self.set_bookmark(key),
             command => self.run_with_files(command),
         }
     }
@@ -154,7 +169,7 @@ impl Viewer {
             Command::Open(name) => return self.open(SceneSource::from_text(&name)),
             Command::OpenFile(path) => return self.open_file(&path),
             Command::ChooseFile => return self.choose_file(),
-            Command::SaveWindow(path) => return self.shots.push((self.start.place(path), self.line.clone())),
+            Command::SaveWindow(path) => return self.ask_for_window(path),
             Command::GoToBookmark(key) => self.go_to_bookmark(key),
             Command::Set(id, value) => self.set(&id, &value),
             Command::Technique(name) => {
@@ -368,8 +383,9 @@ impl Viewer {
         command_line(
             &self.source,
             self.stage.animation,
-            (&self.stage.settings, &self.own_with_lens()),
-            self.stage.sample().map(|show| (show.sample, show.variant, &show.values)),
+            &self.stage.settings,
+            &self.own_with_lens(),
+            self.stage.sample(),
         )
     }
 

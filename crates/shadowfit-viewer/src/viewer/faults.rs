@@ -51,8 +51,11 @@ impl Viewer {
         self.restore_lost();
         self.interface.move_to(&self.stage, format);
         for saving in std::mem::take(&mut self.saving) {
-            self.line.clone_from(&saving.line);
-            self.tell(Err(anyhow::anyhow!("{} was not saved: the graphics device was lost", saving.path.display())));
+            self.line.clone_from(&saving.destination.line);
+            self.tell(Err(anyhow::anyhow!(
+                "{} was not saved: the graphics device was lost",
+                saving.destination.path.display()
+            )));
         }
         self.line = None;
         if let Some(Loading { source, line, .. }) = self.loading.take() {

@@ -7,6 +7,7 @@ use super::Viewer;
 use crate::keep::command_line::{changed, differences};
 use crate::keep::link::{Link, LinkedArtefact, LinkedScene, apply};
 use crate::keep::undo::History;
+use crate::stage::Shown;
 
 impl Viewer {
     /// The link that brings back what is on show: scene, settings, camera, comparison and artefact.
@@ -16,7 +17,7 @@ impl Viewer {
         let other = stage.other_technique().map(|other| (differences(&now.with_technique(other), now), stage.split));
         // A scene opens at this time, if not in the pose of its animation.
         let stands = !now.view.play && stage.seconds() != 0.0;
-        let sample = stage.sample().map(|show| changed(show.sample, show.variant, &show.values).collect::<Vec<_>>());
+        let sample = stage.sample().map(|show| changed(show).collect::<Vec<_>>());
         Link {
             scene: LinkedScene::of(&self.source),
             animation: stage.animation,
@@ -106,9 +107,10 @@ impl Viewer {
         }
         self.stage.close_artefact();
         if let Some(linked) = &link.artefact {
-            let before = (with(&linked.was, &settings), linked.before.unwrap_or(self.stage.camera));
+            let shown = Shown { artefact: linked.artefact, fixed: linked.fixed };
+            let camera = linked.before.unwrap_or(self.stage.camera);
             let ill = with(&linked.ill, &settings).technique;
-            self.stage.resume_artefact((linked.artefact, linked.fixed), &before, ill);
+            self.stage.resume_artefact(shown, &with(&linked.was, &settings), camera, ill);
         }
         self.history = History::default();
         if !notes.is_empty() {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
+use shadowfit::Technique;
 use shadowfit_params::Group;
 use shadowfit_params::tool::Settings;
 use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
@@ -119,13 +120,11 @@ impl Viewer {
         }
     }
 
+    /// Shows a scene that has been loaded.
     fn show(&mut self, source: SceneSource, prepared: PreparedScene) {
         if let SceneSource::File { path, .. } = &source {
             self.saved.remember(path);
         }
-        let is_first = self.start.is_pending;
-        let animations = prepared.scene().animations.len();
-        let name = prepared.scene().name.clone();
         self.source = source;
         // Background work and undo belong to the scene before.
         self.searching = None;
@@ -134,39 +133,47 @@ impl Viewer {
         let kept = self.stage.settings;
         let comparing = self.stage.other_technique();
         self.stage.set_prepared(prepared);
-        let is_sample = match &self.source {
-            SceneSource::Sample { sample, variant } => {
-                self.stage.set_sample(sample, *variant);
-                true
-            }
-            _ => false,
-        };
+        if let SceneSource::Sample { sample, variant } = &self.source {
+            self.stage.set_sample(sample, *variant);
+        }
         self.measuring = Measuring::default();
         self.own_settings = self.stage.settings;
         self.has_scene = true;
         self.window_requests.new_title = true;
-        if is_first {
-            // Messages of the meantime are shown from now on.
-            self.message.iter_mut().for_each(|message| message.since = self.clock);
-            match check_animation(self.start.arguments.animation, animations, &name).and_then(|()| self.set_up()) {
-                Ok(Some(named)) => self.interface.panel().name_technique(named.name, &named.technique),
-                Ok(None) => {}
-                Err(error) => {
-                    self.failure = Some(error);
-                    self.window_requests.quit = true;
-                }
-            }
-        } else if is_sample {
-            // A sample is shown as its source has it.
-            self.message = None;
+        if self.start.is_pending {
+            self.show_first();
         } else {
             self.message = None;
-            let Settings { technique, view, .. } = of_scene(&kept, &self.own_settings);
-            (self.stage.settings.technique, self.stage.settings.view) = (technique, view);
-            self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));
+            // A sample keeps the settings of its source.
+            if !matches!(self.source, SceneSource::Sample { .. }) {
+                self.keep_technique(&kept, comparing);
+            }
         }
         self.interface.scene_changed(&self.stage);
         self.follow_on();
+    }
+
+    /// Sets up the scene of the start. If that is impossible, the viewer ends.
+    fn show_first(&mut self) {
+        // Messages of the meantime are shown from now on.
+        self.message.iter_mut().for_each(|message| message.since = self.clock);
+        let scene = self.stage.scene();
+        let is_there = check_animation(self.start.arguments.animation, scene.animations.len(), &scene.name);
+        match is_there.and_then(|()| self.set_up()) {
+            Ok(Some(named)) => self.interface.panel().name_technique(named.name, &named.technique),
+            Ok(None) => {}
+            Err(error) => {
+                self.failure = Some(error);
+                self.window_requests.quit = true;
+            }
+        }
+    }
+
+    /// Goes on with the techniques and the view of the scene before, with the lengths of this scene.
+    fn keep_technique(&mut self, kept: &Settings, comparing: Option<Technique>) {
+        let Settings { technique, view, .. } = of_scene(kept, &self.own_settings);
+        (self.stage.settings.technique, self.stage.settings.view) = (technique, view);
+        self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Samples in the viewer: their variants, and how they compare with modern maps.
 
 use super::Viewer;
-use crate::background::measuring::Measuring;
+use crate::background::measuring::{Measuring, SampleView};
 use crate::scene_source::SceneSource;
 
 impl Viewer {
@@ -24,7 +24,8 @@ impl Viewer {
     pub(super) fn measure_sample(&mut self) {
         let Some(show) = self.stage.sample() else { return };
         let camera = self.stage.sample_camera(self.interface.pictures.size());
-        let task = (show.sample, show.values.clone(), camera, self.stage.seconds());
-        self.measuring.start(self.start.arguments.adapter(), task);
+        let (sample, values) = (show.sample, show.values.clone());
+        let view = SampleView { sample, values, camera, seconds: self.stage.seconds() };
+        self.measuring.start(self.start.arguments.adapter(), view);
     }
 }

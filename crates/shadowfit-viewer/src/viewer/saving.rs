@@ -12,16 +12,21 @@ use crate::interface::{Canvas, Layout, red_first};
 use crate::keep::picture_file::write_png;
 use crate::platform::{IS_PAGE, save_file, temporary_folder};
 
+/// The file of a picture.
+pub(super) struct Destination {
+    pub(super) path: PathBuf,
+    /// The line of the script that asked for it.
+    pub(super) line: Option<String>,
+}
+
 /// A picture whose pixels are on their way.
 pub(super) struct Saving {
     pixels: ReadBack,
     size: [u32; 2],
     is_blue_first: bool,
-    pub(super) path: PathBuf,
+    pub(super) destination: Destination,
     /// The settings that it was made with.
     settings: String,
-    /// The line of the script that asked for it.
-    pub(super) line: Option<String>,
 }
 
 impl Viewer {
@@ -29,7 +34,7 @@ impl Viewer {
     pub(super) fn save_picture(&mut self, path: Option<PathBuf>) -> Result<()> {
         let path = self.place(path, "png")?;
         let (pixels, size) = (self.interface.pictures.read_back(&self.stage), self.interface.pictures.size());
-        self.save_later((path, self.line.clone()), pixels, size, false);
+        self.save_later(Destination { path, line: self.line.clone() }, pixels, size, false);
         Ok(())
     }
 
@@ -61,24 +66,29 @@ impl Viewer {
         format!("scene = {scene}\ncommand = {line}\n\n{settings}")
     }
 
-    /// Saves a frame of the whole window as a picture.
-    pub(super) fn save_window(&mut self, layout: &Layout, place: (PathBuf, Option<String>), size: [u32; 2]) {
-        let whole = Canvas::new(&self.stage.gpu().device, size, self.interface.format());
-        self.interface.paint(&self.stage, layout, &whole.view, size);
-        self.save_later(place, whole.read_back(self.stage.gpu()), size, whole.is_blue_first());
+    /// Has the next frame of the whole window saved as a picture.
+    pub(super) fn ask_for_window(&mut self, path: PathBuf) {
+        let path = self.start.place(path);
+        self.shots.push(Destination { path, line: self.line.clone() });
     }
 
-    /// Saves pixels as a picture with the present settings. `place` is its path, and the line of the script that asked
-    /// for it.
+    /// Saves a frame of the whole window as a picture.
+    pub(super) fn save_window(&mut self, layout: &Layout, destination: Destination, size: [u32; 2]) {
+        let whole = Canvas::new(&self.stage.gpu().device, size, self.interface.format());
+        self.interface.paint(&self.stage, layout, &whole.view, size);
+        self.save_later(destination, whole.read_back(self.stage.gpu()), size, whole.is_blue_first());
+    }
+
+    /// Saves pixels as a picture with the present settings.
     pub(super) fn save_later(
         &mut self,
-        (path, line): (PathBuf, Option<String>),
+        destination: Destination,
         pixels: ReadBack,
         size: [u32; 2],
         is_blue_first: bool,
     ) {
         let settings = self.text_of_settings();
-        self.saving.push(Saving { pixels, size, is_blue_first, path, settings, line });
+        self.saving.push(Saving { pixels, size, is_blue_first, destination, settings });
         self.take_saved();
     }
 
@@ -91,7 +101,7 @@ impl Viewer {
                 self.saving.push(saving);
                 continue;
             };
-            let Saving { size, is_blue_first, path, settings, line, .. } = saving;
+            let Saving { size, is_blue_first, destination: Destination { path, line }, settings, .. } = saving;
             let saved = pixels.map_err(anyhow::Error::from).and_then(|mut pixels| {
                 if is_blue_first {
                     red_first(&mut pixels);

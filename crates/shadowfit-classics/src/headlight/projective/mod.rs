@@ -93,7 +93,7 @@ const VARIANTS: [SampleVariant; 3] = [
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
-    let (map, test) = lamp.shadows(values, (map(values), ShadowTest::OFF), false)?;
+    let (map, test) = lamp.shadows(values, map(values), ShadowTest::OFF, false)?;
     let lit = values.lit(real_shadow::shading(LIT), MODERN);
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,

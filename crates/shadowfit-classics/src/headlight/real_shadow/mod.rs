@@ -177,7 +177,7 @@ fn image(values: &SampleValues) -> LightImage {
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
-    let (map, test) = lamp.shadows(values, (map(values), test(values.get("bias"))), false)?;
+    let (map, test) = lamp.shadows(values, map(values), test(values.get("bias")), false)?;
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(image(values)),

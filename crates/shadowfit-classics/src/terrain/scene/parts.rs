@@ -3,6 +3,7 @@
 //! Vehicles are modelled in units of half the terrain's, front toward +z, left toward +x, standing on y = 0.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
+use std::ops::Range;
 
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use shadowfit_scene::Primitive;
@@ -76,11 +77,12 @@ pub(super) fn bent_sheet(points: &[(f32, f32)], thick: f32, width: f32) -> Solid
     sideways(extrude(&outline, &faces, width))
 }
 
-/// Points of an arc about (z, y), from one turn to another, in radians from straight behind over the top.
-pub(super) fn arc((z, y): (f32, f32), radius: f32, [from, to]: [f32; 2], steps: usize) -> Vec<(f32, f32)> {
+/// Returns points (z, y) of an arc about `center`, whose coordinates are z and y. `turns` are in radians from straight behind
+/// over the top.
+pub(super) fn arc(center: Vec2, radius: f32, turns: Range<f32>, steps: usize) -> Vec<(f32, f32)> {
     let at = |step: usize| {
-        let (sin, cos) = (from + (to - from) * step as f32 / steps as f32).sin_cos();
-        (z - radius * cos, y + radius * sin)
+        let (sin, cos) = (turns.start + (turns.end - turns.start) * step as f32 / steps as f32).sin_cos();
+        (center.x - radius * cos, center.y + radius * sin)
     };
     (0..=steps).map(at).collect()
 }

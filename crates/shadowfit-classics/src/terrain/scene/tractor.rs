@@ -1,6 +1,6 @@
 //! The tractor: large ribbed wheels behind, small ones ahead, a bonnet with its grille, an open cabin.
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Quat, Vec2, Vec3};
 use shadowfit_scene::parts::{CRISP, SMOOTH, block, capsule, lathe, plank, rounded_box, torus};
 
 use super::palette::Paint;
@@ -96,7 +96,7 @@ fn cabin(parts: &mut Parts) {
     let board = block([-0.82, 1.95, 0.12], [0.82, 3.05, 0.4], 0.08);
     parts.add(Paint::Red, CRISP, platform.with(board));
     for side in [1.0, -1.0] {
-        let line = arc((REAR_AT.z, REAR_AT.y), REAR.radius + 0.13, [0.35, 2.5], 16);
+        let line = arc(Vec2::new(REAR_AT.z, REAR_AT.y), REAR.radius + 0.13, 0.35..2.5, 16);
         let guard = bent_sheet(&line, 0.07, 0.98).moved(Vec3::X * side * 1.5);
         let wall = block([-0.035, 1.9, -2.95], [0.035, 3.05, -0.35], 0.03);
         parts.add(Paint::Red, CRISP, guard.with(wall.moved(Vec3::X * side * 1.01)));

@@ -33,12 +33,12 @@ impl StateFile {
         Self { path: Some(path) }
     }
 
-    /// Returns the name of the file for messages, `None` if there is no place for one.
+    /// Returns the name of the file for messages, `None` if the system has no place for it.
     pub(crate) fn name(&self) -> Option<String> {
         self.path.as_ref().map(|path| path.display().to_string())
     }
 
-    /// Reads the file: its text, an error if it is no text, or `None` if there is no file.
+    /// Reads the file. Returns `None` if it does not exist. The inner error says that its content is not text.
     pub(crate) fn read(&self) -> io::Result<Option<Result<String>>> {
         let Some(path) = &self.path else { return Ok(None) };
         match fs::metadata(path) {
