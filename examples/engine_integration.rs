@@ -27,8 +27,6 @@ mod scene;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use clap::Parser;
-use shadowfit_adapter::AdapterOptions;
 use ultraviolet::projection::rh_yup::perspective_reversed_infinite_z_wgpu_dx_gl as perspective;
 use ultraviolet::{DVec3, Mat4, Vec3, Vec4};
 
@@ -44,6 +42,8 @@ use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, re
 // EXACT resolve: name the setting.
 use shadowfit::settings::Edges;
 
+/// Word of the command line for exact edges.
+const EXACT: &str = "--exact";
 /// Frames until the picture.
 const FRAMES: u32 = 12;
 /// The way the sun's light travels.
@@ -152,18 +152,6 @@ struct Targets {
     picture: wgpu::TextureView,
 }
 
-#[derive(Parser)]
-#[command(about = "Draws a few frames of a small engine and writes the last one")]
-struct Args {
-    /// File that the picture is written into
-    picture: Option<PathBuf>,
-    /// Draws with exact edges
-    #[arg(long)]
-    exact: bool,
-    #[command(flatten)]
-    adapter: AdapterOptions,
-}
-
 struct Engine {
     gpu: Gpu,
     scene: Scene,
@@ -179,12 +167,13 @@ struct Engine {
 }
 
 fn main() -> Result<()> {
-    let args = Args::parse();
-    let usual = if args.exact { "out/engine_integration_exact.png" } else { "out/engine_integration.png" };
-    let path = args.picture.unwrap_or_else(|| PathBuf::from(usual));
+    let (options, files): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word == EXACT);
+    let is_exact = !options.is_empty();
+    let usual = if is_exact { "out/engine_integration_exact.png" } else { "out/engine_integration.png" };
+    let path = PathBuf::from(files.first().map_or(usual, String::as_str));
     let forward = Vec3::new(0.26, -0.14, -1.0).normalized();
     let mut camera = Camera { eye: PLACE + DVec3::new(-8.0, 3.4, 15.5), forward };
-    let mut engine = Engine::new(pollster::block_on(Gpu::open(&args.adapter))?, args.exact)?;
+    let mut engine = Engine::new(pollster::block_on(Gpu::open())?, is_exact)?;
     for frame in 0..FRAMES {
         camera.eye += DVec3::new(0.02, 0.0, -0.02);
         let drawn = engine.draw(&camera, frame)?;

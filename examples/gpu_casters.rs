@@ -6,18 +6,15 @@
 //! cargo run --release --example gpu_casters
 //! ```
 
-#[path = "shared/adapter.rs"]
-mod adapter;
 #[path = "gpu_casters/engine.rs"]
 mod engine;
 #[path = "gpu_casters/town.rs"]
 mod town;
 
 use anyhow::Result;
-use clap::Parser;
 use glam::{DVec3, Vec3};
 use shadowfit::{Boxes, PerspectiveCamera, Technique};
-use shadowfit_adapter::AdapterOptions;
+use shadowfit_adapter::AdapterChoice;
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
 
@@ -31,15 +28,9 @@ const WALKING_SPEED: f32 = 1.4;
 /// The way the sun's light travels.
 const SUNLIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 
-#[derive(Parser)]
-#[command(about = "Walks through a town whose casters the GPU finds")]
-struct Args {
-    #[command(flatten)]
-    adapter: AdapterOptions,
-}
-
 fn main() -> Result<()> {
-    let gpu = adapter::open(&Args::parse().adapter);
+    // The adapter that the environment variable `SHADOWFIT_ADAPTER` names, or the fastest one.
+    let gpu = pollster::block_on(Gpu::headless(&AdapterChoice::from_env().unwrap_or_default()))?;
     let technique = Technique::default().with_max_distance(80.0);
     let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
     let mut town = Town::new(20);

@@ -9,7 +9,6 @@ mod conventions;
 mod fits;
 mod fuzz_corpus;
 mod golden;
-mod growth_gpu;
 mod integration;
 mod recipes;
 mod robustness;

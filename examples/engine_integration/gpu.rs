@@ -1,11 +1,8 @@
 //! What this engine has of wgpu: a device, targets, pipelines, and pixels that are read back.
 
 use anyhow::Result;
-use shadowfit_adapter::{AdapterOptions, instance};
+use shadowfit_adapter::{AdapterChoice, instance};
 use wgpu::util::DeviceExt;
-
-/// Exit code after bad input, as of clap's own complaints.
-const BAD_INPUT: i32 = 2;
 
 /// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
 pub(crate) const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 960, height: 540, depth_or_array_layers: 1 };
@@ -41,13 +38,10 @@ pub(crate) struct Pipeline<'a> {
 }
 
 impl Gpu {
-    /// Opens the adapter of the command line. Without such an adapter, says which adapters there are and ends the program
-    /// with exit code 2.
-    pub(crate) async fn open(options: &AdapterOptions) -> Result<Self> {
-        let adapter = options.choice().find(&instance(), None).await.unwrap_or_else(|error| {
-            eprintln!("error: {error}");
-            std::process::exit(BAD_INPUT)
-        });
+    /// Opens the adapter that the environment variable `SHADOWFIT_ADAPTER` names, or the fastest one.
+    pub(crate) async fn open() -> Result<Self> {
+        let choice = AdapterChoice::from_env().unwrap_or_default();
+        let adapter = choice.find(&instance(), None).await?;
         let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
         Ok(Self { device, queue })
     }

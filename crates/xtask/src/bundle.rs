@@ -37,7 +37,27 @@ struct Program {
     package: PathBuf,
     /// Name of the package and of the target.
     name: String,
-    is_test: bool,
+    kind: Kind,
+}
+
+/// A kind of program, each in a folder of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Test,
+    Example,
+    /// A program with the name of its package, which the tests of the package start.
+    OfPackage,
+}
+
+impl Program {
+    /// Returns the folder below the folder of the profile.
+    fn place(&self) -> &'static str {
+        match self.kind {
+            Kind::Test => "deps",
+            Kind::Example => "examples",
+            Kind::OfPackage => "",
+        }
+    }
 }
 
 /// Writes the bundle into `folder`, with OpenGL beside Vulkan if `gles`.
@@ -57,10 +77,9 @@ pub(crate) fn bundle(folder: &Path, gles: bool) -> Result<()> {
     copy_files(&workspace)?;
     let mut list = String::new();
     for program in built(&features)? {
-        let place = if program.is_test { "deps" } else { "examples" };
-        let copy = Path::new("target/debug").join(place).join(program.file.file_name().unwrap_or_default());
+        let copy = Path::new("target/debug").join(program.place()).join(program.file.file_name().unwrap_or_default());
         copy_stripped(&program.file, &workspace.join(&copy))?;
-        if program.is_test {
+        if program.kind == Kind::Test {
             // Writing to a String cannot fail.
             let _ = writeln!(list, "{}\t{}\t{}", copy.display(), package_path(&program.package), program.name);
         }
@@ -81,7 +100,7 @@ fn package_path(package: &Path) -> String {
 /// Builds the examples and the tests of the workspace, and returns their programs.
 fn built(features: &[&str]) -> Result<Vec<Program>> {
     let mut programs = Vec::new();
-    for kinds in [&["build", "--examples"][..], &["test", "--no-run", "--lib", "--bins", "--tests"]] {
+    for kinds in [&["build", "--bins", "--examples"][..], &["test", "--no-run", "--lib", "--bins", "--tests"]] {
         let mut command = process::cargo(kinds[0]);
         command.arg("--workspace").args(features).args(&kinds[1..]);
         command.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit());
@@ -102,11 +121,17 @@ fn program(message: &Value) -> Option<Program> {
     let manifest = Path::new(message["manifest_path"].as_str()?);
     let package = manifest.parent()?.strip_prefix(root()).ok()?.to_owned();
     let is_test = message["profile"]["test"].as_bool()?;
-    let kind = message["target"]["kind"][0].as_str()?;
-    let belongs = (is_test || kind == "example") && !package.ends_with(TASKS);
     let crate_name = package.file_name().map_or("workspace".into(), |name| name.to_string_lossy());
-    let name = format!("{crate_name}/{}", message["target"]["name"].as_str()?);
-    belongs.then(|| Program { file, package: package.clone(), name, is_test })
+    let target = message["target"]["name"].as_str()?;
+    let kind = match message["target"]["kind"][0].as_str()? {
+        _ if package.ends_with(TASKS) => return None,
+        _ if is_test => Kind::Test,
+        "example" => Kind::Example,
+        _ if target == crate_name => Kind::OfPackage,
+        _ => return None,
+    };
+    let name = format!("{crate_name}/{target}");
+    Some(Program { file, package, name, kind })
 }
 
 /// Copies the tracked files of the repository that tests may read.
@@ -164,11 +189,13 @@ mod tests {
     #[test]
     fn tests_and_examples_are_bundled_with_the_folders_of_their_packages() {
         let test = program(&message("crates/shadowfit-render", "test", true)).expect("a test");
-        assert_eq!((test.name.as_str(), test.is_test), ("shadowfit-render/suite", true));
+        assert_eq!((test.name.as_str(), test.kind), ("shadowfit-render/suite", Kind::Test));
         assert_eq!(package_path(&test.package), "crates/shadowfit-render");
         let example = program(&message("", "example", false)).expect("an example");
-        assert_eq!((example.name.as_str(), example.is_test), ("workspace/suite", false));
+        assert_eq!((example.name.as_str(), example.kind), ("workspace/suite", Kind::Example));
         assert_eq!(package_path(&example.package), ".");
+        let of_package = program(&message("crates/suite", "bin", false)).expect("a program of its package");
+        assert_eq!((of_package.kind, of_package.place()), (Kind::OfPackage, ""));
     }
 
     #[test]

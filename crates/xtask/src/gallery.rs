@@ -294,8 +294,8 @@ fn report(name: &str, path: &str, techniques: &[&str], frames: &[&str], more: &[
     report.args([
         "--release",
         "--quiet",
-        "--example",
-        "report",
+        "--package",
+        "shadowfit-report",
         "--",
         "courtyard",
         "--software",

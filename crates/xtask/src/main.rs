@@ -4,8 +4,6 @@
 
 #![cfg_attr(not(feature = "tools"), allow(dead_code, reason = "other commands share it"))]
 
-#[cfg(feature = "tools")]
-mod bench;
 mod bevy;
 #[cfg(feature = "tools")]
 mod bundle;
@@ -86,12 +84,10 @@ enum Task {
         /// the README.
         only: Vec<String>,
     },
-    /// Measure the core crate, with `--gpu` what shadows cost on a GPU, or with `--growth` how costs grow with the world,
-    /// and write the times and ratios into docs/BENCHMARKS.md.
+    /// Measure with `shadowfit-bench` and write the tables into docs/BENCHMARKS.md: of the core crate, with `--gpu` of
+    /// shadows on a GPU, or with `--growth` of costs by the size of the world.
     Bench {
-        /// Arguments of the benches, for example part of a name or `--quick`; after `--gpu` those of the example
-        /// `gpu_cost`, for example glTF files, or `--from FILE` for what it wrote on another machine; after `--growth`
-        /// those of the example `growth`.
+        /// Arguments of the program's command `core`, `gpu` or `growth`: part of a bench's name, glTF files, `--quick`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
@@ -132,14 +128,13 @@ fn main() -> ExitCode {
         Task::Golden => test::golden(),
         #[cfg(feature = "tools")]
         Task::Gallery { only } => gallery::gallery(&only),
-        #[cfg(feature = "tools")]
-        Task::Bench { args } => bench::bench(&args),
+        Task::Bench { args } => bench(&args),
         #[cfg(feature = "tools")]
         Task::Web { test: true, long, .. } => green::unless_unchanged(green::Suite::Page, || web::test(long)),
         #[cfg(feature = "tools")]
         Task::Web { build, port, .. } => web::web(build.as_deref(), port),
         #[cfg(not(feature = "tools"))]
-        Task::Bundle { .. } | Task::Generate | Task::Gallery { .. } | Task::Bench { .. } | Task::Web { .. } => {
+        Task::Bundle { .. } | Task::Generate | Task::Gallery { .. } | Task::Web { .. } => {
             process::run(process::with_tools().args(std::env::args_os().skip(1)))
         }
     };
@@ -150,6 +145,17 @@ fn main() -> ExitCode {
             ExitCode::from(process::exit_code_of(&error))
         }
     }
+}
+
+/// Runs `shadowfit-bench`, whose tables go into docs/BENCHMARKS.md.
+fn bench(args: &[String]) -> anyhow::Result<()> {
+    let (command, args) = match args.split_first() {
+        Some((first, args)) if first == "--gpu" => ("gpu", args),
+        Some((first, args)) if first == "--growth" => ("growth", args),
+        _ => ("core", args),
+    };
+    let program = ["--release", "--package", "shadowfit-bench", "--", command, "--page"];
+    process::run(process::cargo("run").args(program).args(args))
 }
 
 /// Prints why the command line is refused, with the tiers where it named none of them, and ends with clap's exit code: 2,

@@ -32,8 +32,8 @@ const SHARING: [&str; 3] = ["gpu", "golden", "wgsl::"];
 /// Part of the paths of tests that need a process of their own.
 const OWN_PROCESS: &str = "own_process";
 
-/// Programs that tests start.
-const PROGRAMS: [&str; 2] = ["growth", "viewer"];
+/// The example that tests start.
+const VIEWER: &str = "viewer";
 
 /// Packages of the quick tier. None of them links egui or winit.
 const QUICK_PACKAGES: [&str; 9] = [
@@ -139,15 +139,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
         println!("tests draw on {label}");
     }
     if tier != Tier::Quick {
-        // The tests that start a program would otherwise start the one of an earlier build.
-        let mut programs = process::cargo("build");
-        programs.arg("--workspace").args(suite.features);
-        if process::lints_tests() {
-            programs.args(["--examples", "--benches"]);
-        } else {
-            programs.args(PROGRAMS.iter().flat_map(|name| ["--example", name]));
-        }
-        process::run(&mut programs)?;
+        suite.build_examples()?;
     }
     if !names.is_empty() {
         suite.say_left_out();
@@ -203,6 +195,18 @@ impl Suite {
         let name = found.context("`--gpu` needs a GPU. Without it, tests draw on the software adapter")?;
         ensure!(!name.is_empty(), "the GPU has no name, so tests cannot choose it");
         Ok(name)
+    }
+
+    /// Builds the examples that tests start: they would otherwise start those of an earlier build.
+    fn build_examples(&self) -> Result<()> {
+        let mut build = process::cargo("build");
+        build.arg("--workspace").args(self.features);
+        if process::lints_tests() {
+            build.args(["--examples", "--benches"]);
+        } else {
+            build.args(["--example", VIEWER]);
+        }
+        process::run(&mut build)
     }
 
     /// Builds the example that looks for graphics adapters, and returns its output. It lists the adapters if it finds none

@@ -14,10 +14,16 @@ use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics,
 use shadowfit_report::geometry::{Corners, Source};
 use shadowfit_report::peers::Scenarios;
 use shadowfit_scene::Scene;
-use shadowfit_study::{NamedTechnique, PreparedScene};
+use shadowfit_study::{NamedTechnique, PreparedScene, print};
 use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor};
 
 use super::peers::view;
+
+/// Heading of the table.
+const HEADING: &str = "\
+| scene | technique | casters by map: stored | swept | thousand triangles by map: stored | swept |
+|---|---|---:|---:|---:|---:|
+";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -66,8 +72,7 @@ struct Sums {
 pub(crate) fn run(args: &Args) -> Result<()> {
     let scenarios = Scenarios::read(&args.scenarios)?;
     let gpu = pollster::block_on(Gpu::headless(&args.adapter.choice()))?;
-    println!("| scene | technique | casters by map: stored | swept | thousand triangles by map: stored | swept |");
-    println!("|---|---|---:|---:|---:|---:|");
+    print(HEADING)?;
     for scene in 0..scenarios.scenes.len() {
         let objects = args.geometry.read(&scenarios.scenes[scene])?;
         for name in &args.techniques {
@@ -75,7 +80,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             let scene_name = &scenarios.scenes[scene].name;
             let sums = measure(&gpu, args, &Place { scenarios: &scenarios, scene }, &objects, &named)
                 .with_context(|| format!("{scene_name}, {name}"))?;
-            println!("| {scene_name} | `{}` | {} |", named.name, sums.row(named.technique.maps.count()));
+            let (technique, row) = (&named.name, sums.row(named.technique.maps.count()));
+            print(format_args!("| {scene_name} | `{technique}` | {row} |\n"))?;
         }
     }
     Ok(())

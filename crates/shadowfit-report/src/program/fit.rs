@@ -4,11 +4,11 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
-use shadowfit::PRESETS;
-use shadowfit_params::{BoxSource, NAMED_INPUTS};
+use shadowfit::{PRESETS, Preset};
+use shadowfit_params::{BoxSource, NAMED_INPUTS, NamedInputs};
 use shadowfit_report::geometry::Source;
 use shadowfit_report::peers::Scenarios;
-use shadowfit_study::{NamedTechnique, check_place, write_whole};
+use shadowfit_study::{NamedTechnique, check_place, print, write_whole};
 
 mod runner;
 
@@ -34,24 +34,17 @@ pub(crate) struct Args {
     out: Option<PathBuf>,
 }
 
-fn list() {
-    for preset in &PRESETS {
-        println!(
-            "{:15} {}
-{:15} {}",
-            preset.name, preset.summary, "", preset.advice
-        );
-    }
-    for named in &NAMED_INPUTS {
-        println!("{:15} {}, {}", named.name, named.preset, named.inputs);
-    }
+/// The presets and the names with inputs, a paragraph each.
+fn list() -> String {
+    let preset = |preset: &Preset| format!("{:15} {}\n{:15} {}\n", preset.name, preset.summary, "", preset.advice);
+    let named = |named: &NamedInputs| format!("{:15} {}, {}\n", named.name, named.preset, named.inputs);
+    PRESETS.iter().map(preset).chain(NAMED_INPUTS.iter().map(named)).collect()
 }
 
 /// Fits, and writes the fit file.
 pub(crate) fn run(args: &Args) -> Result<()> {
     if args.fit == "list" {
-        list();
-        return Ok(());
+        return print(list());
     }
     let mut named = NamedTechnique::find(&args.fit).with_context(|| format!("--fit {}", args.fit))?;
     if let Some(texels) = args.resolution {
@@ -76,11 +69,10 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let (file, times) = runner::run(&scenarios, &named, source)?;
     write_whole(out, file.to_json(out)?.as_bytes())?;
     let [median, slowest, first] = [times.median, times.slowest, times.first].map(|nanoseconds| nanoseconds * 1e-3);
-    println!(
+    print(format_args!(
         "{}: {} frames, {median:.1} µs for the median frame, {slowest:.1} µs for the slowest, {first:.1} µs for the \
-         slowest one that begins a path",
+         slowest one that begins a path\n",
         out.display(),
         file.frames.len(),
-    );
-    Ok(())
+    ))
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use anyhow::{Context, Result};
+use shadowfit_study::tell;
 
 /// Exit code of a program that Ctrl-C ended: 128 and the number of the signal, as shells count.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -34,7 +35,7 @@ impl Interrupt {
         let interrupt = Self::default();
         let own = interrupt.clone();
         ctrlc::set_handler(move || match own.press() {
-            Answer::FinishFrame => eprintln!("stopping after this frame; Ctrl-C again ends at once, without a report"),
+            Answer::FinishFrame => tell("stopping after this frame; Ctrl-C again ends at once, without a report"),
             Answer::EndNow => process::exit(i32::from(INTERRUPTED)),
         })
         .context("Ctrl-C cannot be watched for")?;

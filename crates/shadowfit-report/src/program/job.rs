@@ -8,7 +8,7 @@ use shadowfit::Aabb;
 use shadowfit_params::tool::LightSettings;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{BlendedCasters, Scene, load_gltf};
-use shadowfit_study::{Comparison, Judging, View};
+use shadowfit_study::{Comparison, Judging, View, tell};
 use shadowfit_truth::Tracer;
 
 use crate::drawing::{Drawing, positive};
@@ -99,19 +99,10 @@ impl Job {
     /// too.
     pub(crate) fn prepare(&self) -> Result<Prepared> {
         let scene = self.load()?;
-        scene.warnings(&self.scene).for_each(|warning| eprintln!("{warning}"));
+        scene.warnings(&self.scene).for_each(|warning| tell(warning));
         self.check_memory(&scene)?;
         let sun = self.sun_of(&scene)?;
-        let animates = !scene.animations.is_empty();
-        ensure!(
-            self.play.is_none() || animates,
-            "--play: {} has no animation; leave the option out",
-            self.scene.display()
-        );
-        ensure!(
-            self.play.is_none_or(|fps| fps.is_finite() && fps > 0.0),
-            "--play: give a number of frames a second above 0"
-        );
+        self.check_play(&scene)?;
         let mut notes = Vec::new();
         let scene_notes = scene.notes.clone();
         let mut comparison = Comparison::new(self.drawing.gpu()?, scene, self.drawing.judging())?;
@@ -122,19 +113,7 @@ impl Job {
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
         // Files of paths have the coordinates of the scene's file.
         let file_origin = comparison.scene().scene().origin;
-        let path = if let Some(file) = &self.path {
-            CameraPath::read(file, aspect)?.moved(-file_origin)
-        } else if let Some(camera) = self.camera {
-            follow(comparison.scene().scene(), camera, self.play, aspect)?
-        } else {
-            let (bounds, rays) = (comparison.scene().bounds(), comparison.scene().rays());
-            let origin = rays.origin;
-            let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
-            let bounds = Aabb::new(relative(bounds.min), relative(bounds.max));
-            let found = find(&rays.tracer, bounds, aspect).with_context(|| self.title())?;
-            notes.extend(found.notes);
-            found.path.moved(origin)
-        };
+        let path = self.path(&comparison, aspect, &mut notes)?;
         let fixed = if self.sun.is_some() { None } else { self.light.or(path.light) };
         let sun = sun.filter(|_| fixed.is_none());
         let scene = comparison.scene().scene();
@@ -151,6 +130,33 @@ impl Job {
         notes.extend(ray_offset_note(comparison.scene().bounds().size(), judging.ray_offset));
         let path = path.moved(file_origin);
         Ok(Prepared { comparison, judging, path, light, frames, notes, scene_notes })
+    }
+
+    fn check_play(&self, scene: &Scene) -> Result<()> {
+        let animates = !scene.animations.is_empty();
+        let name = self.scene.display();
+        ensure!(self.play.is_none() || animates, "--play: {name} has no animation; leave the option out");
+        let is_rate = self.play.is_none_or(|fps| fps.is_finite() && fps > 0.0);
+        ensure!(is_rate, "--play: give a number of frames a second above 0");
+        Ok(())
+    }
+
+    /// Returns the path in the coordinates of the loaded scene. Adds what a search for one notes.
+    fn path(&self, comparison: &Comparison, aspect: f32, notes: &mut Vec<String>) -> Result<CameraPath> {
+        let scene = comparison.scene();
+        if let Some(file) = &self.path {
+            return Ok(CameraPath::read(file, aspect)?.moved(-scene.scene().origin));
+        }
+        if let Some(camera) = self.camera {
+            return follow(scene.scene(), camera, self.play, aspect);
+        }
+        let (bounds, rays) = (scene.bounds(), scene.rays());
+        let origin = rays.origin;
+        let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
+        let bounds = Aabb::new(relative(bounds.min), relative(bounds.max));
+        let found = find(&rays.tracer, bounds, aspect).with_context(|| self.title())?;
+        notes.extend(found.notes);
+        Ok(found.path.moved(origin))
     }
 
     /// Returns the chosen or strongest directional light of the file, or the sun of a built-in scene.
@@ -190,7 +196,7 @@ impl Job {
         let others = vertices as u64 * BYTES_A_VERTEX + triangles as u64 * BYTES_A_TRIANGLE;
         let [rays, all] = [memory.building, memory.building + others].map(|bytes| bytes as f64 / GIB);
         if triangles >= MANY_TRIANGLES {
-            eprintln!("{triangles} triangles: about {all:.1} GiB of memory, {rays:.1} GiB of it for rays");
+            tell(format_args!("{triangles} triangles: about {all:.1} GiB of memory, {rays:.1} GiB of it for rays"));
         }
         if all > self.max_memory {
             bail!(

@@ -1,7 +1,7 @@
 //! `report live`: pixels judged on the GPU, compared with those judged on the CPU, and how long that takes.
 
 use anyhow::{Result, bail};
-use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth};
+use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth, print};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -25,15 +25,9 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut job = args.job.prepare()?;
     job.comparison.add(args.job.drawing.changed(NamedTechnique::find(&args.technique)?)?)?;
     let mut live = LiveTruth::new(job.comparison.gpu(), job.comparison.scene())?;
-    println!(
-        "{}: {} triangles, {:.1} MiB on {}, {} by {} pixels",
-        args.job.title(),
-        job.comparison.scene().casting_triangles(),
-        live.bytes() as f64 / f64::from(1 << 20),
-        job.comparison.gpu().name(),
-        job.judging.size[0],
-        job.judging.size[1],
-    );
+    let (title, adapter, [width, height]) = (args.job.title(), job.comparison.gpu().name(), job.judging.size);
+    let (triangles, size) = (job.comparison.scene().casting_triangles(), live.bytes() as f64 / f64::from(1 << 20));
+    print(format_args!("{title}: {triangles} triangles, {size:.1} MiB on {adapter}, {width} by {height} pixels\n"))?;
     let mut sum = Agreement::default();
     let mut times = Vec::new();
     for frame in &job.frames {
@@ -55,19 +49,24 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     }
     times.sort_by(f64::total_cmp);
     let at = |share: f64| times.get(((times.len() as f64 - 1.0) * share).round() as usize).copied().unwrap_or(f64::NAN);
-    println!("judging takes {:.2} ms (median), {:.2} ms (slowest) of {} frames", at(0.5), at(1.0), times.len());
-    tell(&sum)
+    let [median, slowest] = [0.5, 1.0].map(at);
+    print(format_args!(
+        "judging takes {median:.2} ms (median), {slowest:.2} ms (slowest) of {} frames\n",
+        times.len()
+    ))?;
+    say(&sum)
 }
 
-fn tell(agreement: &Agreement) -> Result<()> {
+/// Prints how far the judges agree, and fails if they agree less than promised.
+fn say(agreement: &Agreement) -> Result<()> {
     let [off_edges, all] = [agreement.off_edges(), agreement.all()];
-    println!(
+    print(format_args!(
         "the CPU agrees on {:.4}% of the pixels off edges and {:.4}% of all that face the light; the edge zone \
-         is the same at {:.4}%",
+         is the same at {:.4}%\n",
         100.0 * off_edges,
         100.0 * all,
         100.0 * agreement.edge_zone(),
-    );
+    ))?;
     if off_edges < PROMISED[0] || all < PROMISED[1] {
         bail!("the GPU's classes differ from the CPU's by more than {PROMISED:?} allow");
     }

@@ -85,7 +85,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(INTERRUPTED),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            shadowfit_study::tell(format_args!("error: {error:#}"));
             ExitCode::from(BAD_INPUT)
         }
     }

@@ -12,7 +12,7 @@ use shadowfit_render::{Gpu, Renderer};
 use shadowfit_report::geometry::{Corners, Source};
 use shadowfit_report::peers::{FitFile, FitMap, Frame, Ranking, Scenarios, overall_markdown, to_json, to_markdown};
 use shadowfit_scene::Scene;
-use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View, make_folder, write_whole};
+use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View, make_folder, print, write_whole};
 use shadowfit_truth::Tracer;
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -60,8 +60,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut pictures = if args.no_render { None } else { Some(Pictures::new(&ranking, &files, args)?) };
     measure(&mut ranking, args, pictures.as_mut(), interrupt)?;
     let tables = ranking.tables();
-    print!("{}", overall_markdown(&tables));
-    Ok(())
+    print(overall_markdown(&tables))
 }
 
 /// Measures scene after scene; both tables are written after each, so that finished scenes can be read.

@@ -11,7 +11,7 @@ use shadowfit::settings::FilterKind;
 use shadowfit_report::page::{FileWriter, Output, PATH, PictureName, heat, overlay};
 use shadowfit_report::run::{Columns, FrameInfo, FramePictures, Run, TechniqueRun, telling};
 use shadowfit_report::tables::to_markdown;
-use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged, make_folder, write_whole};
+use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged, make_folder, print, write_whole};
 use shadowfit_truth::PictureTally;
 
 use crate::drawing::{Drawing, named_filter};
@@ -96,8 +96,9 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     };
     draw_pictures(&mut job, &measured, &output, &mut run, &drawn)?;
     output.write_report(&run, &path)?;
-    print!("{}", to_markdown(&run));
-    println!("\n{}: index.html, report.md, report.json, pictures and plots", args.out.display());
+    let folder = args.out.display();
+    let tables = to_markdown(&run);
+    print(format_args!("{tables}\n{folder}: index.html, report.md, report.json, pictures and plots\n"))?;
     Ok(run.finished)
 }
 

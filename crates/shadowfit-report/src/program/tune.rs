@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit_study::{Budget, TuneSettings, Tuned, View, Weights, make_folder, tune, write_whole};
+use shadowfit_study::{Budget, TuneSettings, Tuned, View, Weights, make_folder, print, tune, write_whole};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -68,9 +68,8 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     ] {
         write_whole(&args.out.join(name), text.as_bytes())?;
     }
-    print!("{steps}\n{}", shadowfit_params::to_rust(&tuned.technique.technique));
-    println!("\n{}: technique.toml (for --technique), technique.rs, steps.md", args.out.display());
-    Ok(())
+    let (code, folder) = (shadowfit_params::to_rust(&tuned.technique.technique), args.out.display());
+    print(format_args!("{steps}\n{code}\n{folder}: technique.toml (for --technique), technique.rs, steps.md\n"))
 }
 
 /// A number of the frames, in pairs of neighbours that are evenly spread: fits depend on the frame before, and so does

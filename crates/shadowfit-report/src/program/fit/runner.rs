@@ -11,7 +11,7 @@ use shadowfit::{
 };
 use shadowfit_params::BoxSource;
 use shadowfit_report::geometry::Source;
-use shadowfit_report::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
+use shadowfit_report::peers::{FitFile, FitFrame, FitMap, Frame, Scenarios, Scene};
 use shadowfit_study::{NamedTechnique, see_by_rays};
 use shadowfit_truth::Tracer;
 
@@ -64,11 +64,11 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
         }
         maps = fitted;
     }
-    let fitted = scenarios
-        .frames
-        .iter()
-        .zip(&maps)
-        .map(|(frame, (maps, _))| FitFrame { id: frame.id.clone(), maps: fit_maps(maps, technique) });
+    let fit_frame = |(frame, (maps, _)): (&Frame, &(FittedMaps, f64))| FitFrame {
+        id: frame.id.clone(),
+        maps: fit_maps(maps, technique),
+    };
+    let fitted = scenarios.frames.iter().zip(&maps).map(fit_frame);
     let all: Vec<f64> = times.iter().flatten().copied().collect();
     let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
     let slowest = |is_first: bool| {

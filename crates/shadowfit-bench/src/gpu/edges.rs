@@ -9,7 +9,7 @@
 use glam::{Mat4, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera};
 
-use crate::engine::SIZE;
+use super::engine::SIZE;
 
 /// Factors as bytes, row by row.
 pub(crate) type Factors = Vec<u8>;
@@ -60,6 +60,13 @@ struct Crossing {
     is_rising: bool,
     /// Cosine of the angle between the line and the edge's normal.
     cosine: f32,
+}
+
+/// A line of pixels: a row if `along` is 0, or a column.
+struct Line {
+    along: usize,
+    line: usize,
+    length: usize,
 }
 
 const WIDTH: usize = SIZE[0] as usize;
@@ -114,8 +121,9 @@ impl Surfaces {
         let mut jump = 0.0_f32;
         for (along, lines, length) in [(0, HEIGHT, WIDTH), (1, WIDTH, HEIGHT)] {
             for line in (0..lines).step_by(LINES) {
-                self.crossings(before, (along, line, length), &mut old);
-                self.crossings(now, (along, line, length), &mut new);
+                let line = Line { along, line, length };
+                self.crossings(before, &line, &mut old);
+                self.crossings(now, &line, &mut new);
                 jump = jump.max(greatest_move(&old, &new));
             }
         }
@@ -123,7 +131,8 @@ impl Surfaces {
     }
 
     /// The crossings of a row or a column, in their order.
-    fn crossings(&self, factors: &Factors, (along, line, length): (usize, usize, usize), found: &mut Vec<Crossing>) {
+    fn crossings(&self, factors: &Factors, line: &Line, found: &mut Vec<Crossing>) {
+        let Line { along, line, length } = *line;
         found.clear();
         let (step, across) = (ALONG[along], ALONG[1 - along]);
         let value = |index: usize| f32::from(factors[index]);

@@ -7,7 +7,7 @@ use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
 use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
-use crate::engine::{SIZE, target};
+use super::engine::{SIZE, target};
 
 const SHADER: &str = "
 @group(0) @binding(0) var<uniform> world_from_pixel: mat4x4<f32>;

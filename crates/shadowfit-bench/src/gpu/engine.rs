@@ -10,7 +10,7 @@ use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
 use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, SunSteps, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
-use crate::scene::BenchScene;
+use super::scene::BenchScene;
 
 /// Size of the picture, in pixels.
 pub(crate) const SIZE: [u32; 2] = [1920, 1080];
@@ -96,6 +96,11 @@ impl<'a> Engine<'a> {
             self.caster_pipeline = caster_pipeline(&Maker { device: &self.gpu.device, samples: 1 }, self.sun.map());
         }
         Ok(())
+    }
+
+    /// The device that it draws on.
+    pub(crate) fn gpu(&self) -> &'a Gpu {
+        self.gpu
     }
 
     /// Lets all casters stand still.

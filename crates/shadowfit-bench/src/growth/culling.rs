@@ -6,18 +6,24 @@ use anyhow::Result;
 use glam::DVec3;
 use shadowfit::culling::cull;
 use shadowfit::{Aabb, BoxTree, Boxes, CasterVolume, ShadowFitter, Technique};
+use shadowfit_study::tell;
 
-use crate::picture::{Curve, Picture, grouped};
+use super::picture::{Curve, Picture, grouped};
+use super::town::{Town, World};
+use super::{Extent, Found};
 use crate::table::{Table, ms, share};
 use crate::times::{shortest, timed};
-use crate::town::{Town, World};
-use crate::{Extent, Found};
 
 /// Most boxes that are moved.
 const MOVED: usize = 1_000;
 
 /// Times that a call is repeated to find its shortest time.
 const CALLS: usize = 20;
+
+const NOTE: &str = "Against the volumes that hold the casters of `windows-4`, all four at once: `culling::cull` over a \
+                    list, `BoxTree::cull` in a hierarchy.";
+
+const COLUMNS: [&str; 7] = ["boxes", "in a map", "list", "hierarchy", "of the list", "hierarchy made", "a box moved"];
 
 /// Times of a list and of a hierarchy.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
@@ -41,22 +47,14 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
             Ok(())
         })?;
         let moved = move_each(&mut tree, &town)?;
-        eprintln!("culling, {count} boxes: {}, {}", ms(list), ms(in_tree));
+        tell(format_args!("culling, {count} boxes: {}, {}", ms(list), ms(in_tree)));
         curves[0].add(count, list);
         curves[1].add(count, in_tree);
         let cells = [ms(list), ms(in_tree), share(in_tree, list), ms(made), format!("{:.2} µs", moved * 1e3)];
         rows.push([vec![grouped(count), grouped(drawn.len())], cells.to_vec()].concat());
     }
-    let columns = ["boxes", "in a map", "list", "hierarchy", "of the list", "hierarchy made", "a box moved"];
     Ok(Found {
-        table: Table {
-            title: "Culling",
-            note: "Against the volumes that hold the casters of `windows-4`, all four at once: `culling::cull` over a \
-                   list, `BoxTree::cull` in a hierarchy."
-                .to_owned(),
-            columns: columns.map(str::to_owned).to_vec(),
-            rows,
-        },
+        table: Table { title: "Culling", note: NOTE.to_owned(), columns: COLUMNS.map(str::to_owned).to_vec(), rows },
         pictures: vec![Picture {
             file: "culling",
             title: "Culling against four maps",

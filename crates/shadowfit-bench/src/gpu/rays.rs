@@ -11,7 +11,7 @@ use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_study::{Evaluator, Judging, LiveTruth, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-use crate::Bench;
+use super::Bench;
 use crate::table::{Table, ms};
 
 /// Pixels that are judged.

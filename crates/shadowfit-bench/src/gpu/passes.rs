@@ -5,16 +5,17 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
-use shadowfit::{Aabb, Seen, Technique, demand};
+use shadowfit::{Aabb, PerspectiveCamera, Seen, Technique, demand};
 use shadowfit_render::GpuProfilerQuery;
 use shadowfit_wgpu::demand::{DemandPass, DemandView};
-use shadowfit_wgpu::{Culling, MapUpdate, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
+use shadowfit_wgpu::{Culling, MapUpdate, ShadowMap, ShadowMapDescriptor, SunShadows, UpdateSchedule};
 
-use crate::Bench;
-use crate::engine::{Engine, SIZE};
-use crate::scene::BenchScene;
+use super::Bench;
+use super::engine::{Engine, SIZE};
+use super::scene::BenchScene;
+use super::timer::Timer;
 use crate::table::{Table, ms, share};
-use crate::timer::{Timer, median};
+use crate::times::median;
 
 /// A way of drawing the maps.
 #[derive(Clone, Copy, PartialEq)]
@@ -50,6 +51,29 @@ pub(crate) struct Taken {
     pub(crate) texels: Vec<f64>,
     /// Frames in which a whole layer was cleared.
     cleared: usize,
+}
+
+impl Taken {
+    /// Counts what a frame drew.
+    fn count(&mut self, sun: &SunShadows) {
+        let draws = sun.passes().flat_map(|pass| pass.pieces()).map(|piece| piece.casters.len());
+        self.draws.push(draws.sum::<usize>() as f64);
+        let texels = |update: MapUpdate| f64::from(update.rect.size.x) * f64::from(update.rect.size.y);
+        self.texels.push(sun.updates().into_iter().map(texels).sum());
+        self.cleared += usize::from(sun.passes().any(|pass| pass.is_cleared()));
+    }
+}
+
+impl Engine<'_> {
+    /// Draws a frame whose times do not count, and waits for what it shows.
+    fn draw_untimed(&mut self, timer: &mut Timer, camera: &PerspectiveCamera) -> Result<()> {
+        timer.frame(self.gpu(), |encoder, _| {
+            self.shadow_passes(encoder, None);
+            self.seen_pass(encoder, camera)
+        })?;
+        self.sun.wait_for_demand()?;
+        Ok(())
+    }
 }
 
 impl Bench {
@@ -95,13 +119,9 @@ pub(crate) fn walk(
         timer.frame(gpu, |encoder, _| engine.seen_pass(encoder, &camera))?;
         engine.sun.wait_for_demand()?;
         if frame >= bench.warm_up() {
-            let pieces = || engine.sun.passes().flat_map(|pass| pass.pieces());
             taken.gpu.push(time);
             taken.cpu.push(cpu);
-            taken.draws.push(pieces().map(|piece| piece.casters.len()).sum::<usize>() as f64);
-            let texels = |update: MapUpdate| f64::from(update.rect.size.x) * f64::from(update.rect.size.y);
-            taken.texels.push(engine.sun.updates().into_iter().map(texels).sum());
-            taken.cleared += usize::from(engine.sun.passes().any(|pass| pass.is_cleared()));
+            taken.count(&engine.sun);
         }
     }
     Ok(taken)
@@ -159,6 +179,18 @@ enum Order {
     FarthestFirst,
 }
 
+impl Order {
+    /// Sorts casters that come nearest first.
+    fn sorted(self, mut casters: Vec<u32>) -> Vec<u32> {
+        match self {
+            Self::NearestFirst => {}
+            Self::FarthestFirst => casters.reverse(),
+            Self::AsStored => casters.sort_unstable(),
+        }
+        casters
+    }
+}
+
 /// Passes that an engine would write by itself.
 #[derive(Clone, Copy, PartialEq)]
 struct Bare {
@@ -195,19 +227,13 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
         engine.fit(&camera)?;
         let (maps, view) = engine.maps();
         map.prepare(&gpu.queue, &view, &maps)?;
-        let corners = camera.frustum()?.corners;
-        let seen = Aabb::from_points(corners).unwrap_or_default();
+        let seen = Aabb::from_points(camera.frustum()?.corners).unwrap_or_default();
         let time = timer.frame(gpu, |encoder, times| {
             for shadow in engine.sun.passes() {
                 let query = times.begin("bare", encoder);
                 let writes = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
                 let mut pass = map.begin_pass(encoder, shadow.map(), 0, writes);
-                let mut casters: Vec<u32> = shadow.pieces().flat_map(|piece| piece.casters).copied().collect();
-                match bare.order {
-                    Order::NearestFirst => {}
-                    Order::FarthestFirst => casters.reverse(),
-                    Order::AsStored => casters.sort_unstable(),
-                }
+                let casters = bare.order.sorted(shadow.pieces().flat_map(|piece| piece.casters).copied().collect());
                 if bare.is_cut {
                     let rect = TexelRect::of_box(&maps[shadow.map()].projection, &seen, camera.eye);
                     pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
@@ -218,11 +244,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
             }
             Ok(())
         })?;
-        timer.frame(gpu, |encoder, _| {
-            engine.shadow_passes(encoder, None);
-            engine.seen_pass(encoder, &camera)
-        })?;
-        engine.sun.wait_for_demand()?;
+        engine.draw_untimed(&mut timer, &camera)?;
         if frame >= bench.warm_up() {
             times.push(time);
         }
@@ -257,6 +279,9 @@ pub(crate) fn time_fill(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
         rows,
     })
 }
+
+const DEMAND_NOTE: &str = "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows: points, cells of \
+                           the grid that have some, and octaves of texels that do.";
 
 /// The pass over the depth buffer.
 pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
@@ -295,9 +320,7 @@ pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table>
     }
     Ok(Table {
         title: "The demand grid",
-        note: "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows: points, cells of the grid that \
-               have some, and octaves of texels that do."
-            .to_owned(),
+        note: DEMAND_NOTE.to_owned(),
         columns: ["scene", "time", "points", "cells", "octaves"].map(str::to_owned).to_vec(),
         rows,
     })

@@ -7,13 +7,13 @@ use shadowfit_params::tool::LightSettings;
 use shadowfit_render::{Gpu, read_texture};
 use shadowfit_wgpu::SunSteps;
 
-use crate::Bench;
-use crate::edges::{Change, Factors, Surfaces};
-use crate::engine::{Engine, SIZE};
-use crate::fullscreen::Fullscreen;
-use crate::scene::BenchScene;
+use super::Bench;
+use super::edges::{Change, Factors, Surfaces};
+use super::engine::{Engine, SIZE};
+use super::fullscreen::Fullscreen;
+use super::scene::BenchScene;
+use super::timer::Timer;
 use crate::table::{Table, ms};
-use crate::timer::Timer;
 
 /// Frames of the day, in frames that other parts time: a minute at 60 frames a second, with 240 of them.
 const FRAMES: usize = 15;
@@ -40,6 +40,18 @@ const WAYS: [Way; 4] = [
     Way { name: "steps", steps: Some(AT_ONCE) },
     Way { name: "steps, a fade of 1 frame", steps: Some(AT_ONCE.with_fade(1)) },
     Way { name: "steps, a fade of 30 frames", steps: Some(AT_ONCE.with_fade(30)) },
+];
+
+const COLUMNS: [&str; 9] = [
+    "sun, way",
+    "texels, mean",
+    "most",
+    "GPU, mean",
+    "most",
+    "in the walk, mean",
+    "most",
+    "largest jump of an edge",
+    "of a factor",
 ];
 
 /// What a day took.
@@ -72,6 +84,14 @@ impl Sun {
     }
 }
 
+/// A day in one way, seen from one place where nothing but the sun moves, or along the walk.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    way: Way,
+    sun: &'a Sun,
+    walks: bool,
+}
+
 /// The picture of factors that a standing camera sees.
 struct Picture {
     pass: Fullscreen,
@@ -99,8 +119,9 @@ impl Picture {
     }
 }
 
-/// A day in one way, seen from one place where nothing but the sun moves, or along the walk.
-fn day(bench: &Bench, scene: &BenchScene, (way, sun, walks): (Way, &Sun, bool)) -> Result<Taken> {
+/// Draws a day.
+fn day(bench: &Bench, scene: &BenchScene, run: &Run<'_>) -> Result<Taken> {
+    let Run { way, sun, walks } = *run;
     let gpu = &bench.gpu;
     let mut engine = Engine::new(gpu, scene, &bench.technique())?;
     engine.set_light_steps(way.steps)?;
@@ -148,8 +169,10 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     for (speed, name) in if bench.gpu.is_software() { &suns[1..] } else { &suns } {
         for way in WAYS {
             let sun = Sun::new(*speed);
-            let stands = day(bench, scene, (way, &sun, false))?;
-            let walk = if bench.gpu.is_software() { Taken::default() } else { day(bench, scene, (way, &sun, true))? };
+            let run = Run { way, sun: &sun, walks: false };
+            let stands = day(bench, scene, &run)?;
+            let is_software = bench.gpu.is_software();
+            let walk = if is_software { Taken::default() } else { day(bench, scene, &Run { walks: true, ..run })? };
             rows.push(vec![
                 format!("{name}, {}", way.name),
                 millions(mean(&stands.texels)),
@@ -163,17 +186,6 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
             ]);
         }
     }
-    let columns = [
-        "sun, way",
-        "texels, mean",
-        "most",
-        "GPU, mean",
-        "most",
-        "in the walk, mean",
-        "most",
-        "largest jump of an edge",
-        "of a factor",
-    ];
     Ok(Table {
         title: "A sun that moves all day",
         note: format!(
@@ -186,7 +198,7 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
             SIZE[1],
             fast.to_degrees()
         ),
-        columns: columns.map(str::to_owned).to_vec(),
+        columns: COLUMNS.map(str::to_owned).to_vec(),
         rows,
     })
 }

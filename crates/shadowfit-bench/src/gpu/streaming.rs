@@ -5,12 +5,12 @@ use glam::{DVec3, Vec3};
 use shadowfit::Aabb;
 use shadowfit_wgpu::Culling;
 
-use crate::Bench;
-use crate::engine::Engine;
-use crate::passes::{Taken, walk, way};
-use crate::scene::BenchScene;
+use super::Bench;
+use super::engine::Engine;
+use super::passes::{Taken, walk, way};
+use super::scene::BenchScene;
 use crate::table::{Table, ms, share};
-use crate::timer::median;
+use crate::times::median;
 
 /// Houses that stand at a time, and how many of them come and go, every so many frames.
 const HOUSES: u32 = 10_000;

@@ -2,12 +2,13 @@
 
 use anyhow::{Context, Result};
 use shadowfit::{BoxTree, Boxes, Seen, ShadowFitter, Technique};
+use shadowfit_study::tell;
 
-use crate::picture::{Curve, Picture, grouped};
+use super::picture::{Curve, Picture, grouped};
+use super::town::{Town, World};
+use super::{Extent, Found};
 use crate::table::{Table, ms, share};
 use crate::times::{LEAD, Times, timed};
-use crate::town::{Town, World};
-use crate::{Extent, Found};
 
 /// A technique, and whether it is told what the frame before showed.
 struct Way {
@@ -27,6 +28,9 @@ const NOTE: &str = "From a list of boxes (`FitInput::receivers` and `casters`) a
                     *Seen* is told what the frame before showed; the others estimate that from the boxes. Worst frames \
                     are said in medians, too.";
 
+const COLUMNS: [&str; 8] =
+    ["boxes, fit", "list: first", "median", "worst", "hierarchy: first", "median", "worst", "median, of the list's"];
+
 /// Times of fits along the walk, from a list of boxes and from a hierarchy.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     let mut rows = Vec::new();
@@ -42,7 +46,7 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
         for (way, curves) in WAYS.iter().zip(list_curves.iter_mut().zip(&mut tree_curves)) {
             let list = walk(World::List(boxes), way, &seen, extent)?;
             let tree = walk(World::Tree(&tree), way, &seen, extent)?;
-            eprintln!("fits, {count} boxes, {}: {}, {}", way.name, ms(list.median()), ms(tree.median()));
+            tell(format_args!("fits, {count} boxes, {}: {}, {}", way.name, ms(list.median()), ms(tree.median())));
             curves.0.add(count, list.median());
             curves.1.add(count, tree.median());
             let name = vec![format!("{}, {}", grouped(count), way.name)];
@@ -50,23 +54,7 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
         }
     }
     Ok(Found {
-        table: Table {
-            title: "Fits",
-            note: NOTE.to_owned(),
-            columns: [
-                "boxes, fit",
-                "list: first",
-                "median",
-                "worst",
-                "hierarchy: first",
-                "median",
-                "worst",
-                "median, of the list's",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
-            rows,
-        },
+        table: Table { title: "Fits", note: NOTE.to_owned(), columns: COLUMNS.map(str::to_owned).to_vec(), rows },
         pictures: vec![Picture {
             file: "fits",
             title: "A fit of four maps",

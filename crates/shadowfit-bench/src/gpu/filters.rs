@@ -4,12 +4,13 @@ use anyhow::Result;
 use shadowfit::Technique;
 use shadowfit::settings::{FilterKind, MapFormat};
 
-use crate::Bench;
-use crate::engine::Engine;
-use crate::fullscreen::Fullscreen;
-use crate::scene::BenchScene;
+use super::Bench;
+use super::engine::Engine;
+use super::fullscreen::Fullscreen;
+use super::scene::BenchScene;
+use super::timer::Timer;
 use crate::table::{Table, ms, share};
-use crate::timer::{Timer, median};
+use crate::times::median;
 
 /// Frames until windows are settled.
 const SETTLED: usize = 60;

@@ -4,13 +4,15 @@ use anyhow::Result;
 use glam::Vec3;
 use shadowfit::{Aabb, BoxTree, Boxes, FitInput, Seen, Technique, Windows};
 use shadowfit_render::Gpu;
+use shadowfit_study::tell;
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
 
-use crate::picture::{Curve, Picture, grouped};
+use super::picture::{Curve, Picture, grouped};
+use super::town::Town;
+use super::{Extent, Found};
+use crate::open;
 use crate::table::{Table, ms};
 use crate::times::{LEAD, Times, timed};
-use crate::town::Town;
-use crate::{Extent, Found, adapter};
 
 /// What moves in a frame, and whether the camera walks.
 struct Way {
@@ -40,6 +42,18 @@ const NOTE: &str = "`windows-4`, told what was seen; the camera walks in all row
                     fit: median, worst, and the frame after them in which one static caster more is there. *List* has all \
                     casters in the frame's list; *hierarchy* has those that stand in a `BoxTree` (`SunFrame::standing`).";
 
+const COLUMNS: [&str; 9] = [
+    "casters, what moves",
+    "list: update",
+    "without the fit",
+    "worst",
+    "one more",
+    "hierarchy: update",
+    "without the fit",
+    "worst",
+    "one more",
+];
+
 /// Casters that a scene of today's engines has, beside the powers of ten.
 const TYPICAL: usize = 30_000;
 
@@ -65,7 +79,7 @@ impl Halves {
 
 /// Times by the number of casters.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
-    let gpu = adapter::open(&extent.adapter);
+    let gpu = open(&extent.adapter)?;
     let technique = Technique::default();
     let curves_of = |make: fn(String, usize) -> Curve, handed: &str| -> Vec<Curve> {
         let curve = |(place, way): (usize, &Way)| make(format!("{}, {handed}", way.name), place);
@@ -80,34 +94,16 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
         for (way, curves) in WAYS.iter().zip(list_curves.iter_mut().zip(&mut tree_curves)) {
             let [list, tree] = [false, true].map(|stands| run.walk(&technique, way, stands));
             let (list, tree) = (list?, tree?);
-            eprintln!(
-                "frames, {count} casters, {}: {}, {}",
-                way.name,
-                ms(list.prepare.median()),
-                ms(tree.prepare.median())
-            );
-            curves.0.add(count, list.prepare.median());
-            curves.1.add(count, tree.prepare.median());
+            let [in_list, in_tree] = [&list, &tree].map(|halves| halves.prepare.median());
+            tell(format_args!("frames, {count} casters, {}: {}, {}", way.name, ms(in_list), ms(in_tree)));
+            curves.0.add(count, in_list);
+            curves.1.add(count, in_tree);
             rows.push([vec![format!("{}, {}", grouped(count), way.name)], list.cells(), tree.cells()].concat());
         }
     }
-    let columns = [
-        "list: update",
-        "without the fit",
-        "worst",
-        "one more",
-        "hierarchy: update",
-        "without the fit",
-        "worst",
-        "one more",
-    ];
+    let columns = COLUMNS.map(str::to_owned).to_vec();
     Ok(Found {
-        table: Table {
-            title: "Frames of `SunShadows`",
-            note: NOTE.to_owned(),
-            columns: ["casters, what moves"].into_iter().chain(columns).map(str::to_owned).collect(),
-            rows,
-        },
+        table: Table { title: "Frames of `SunShadows`", note: NOTE.to_owned(), columns, rows },
         pictures: vec![Picture {
             file: "frames",
             title: "SunShadows::update without the fit",
@@ -126,7 +122,7 @@ fn sizes(extent: &Extent) -> Vec<usize> {
 
 /// Times by the number of maps and by their sides.
 pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
-    let gpu = adapter::open(&extent.adapter);
+    let gpu = open(&extent.adapter)?;
     let town = Town::new(CASTERS.min(extent.largest));
     let seen = town.seen(extent.frames, &Technique::default())?;
     let numbers = NUMBERS.map(|number| (number, SIDE));
@@ -138,7 +134,7 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
         let windows = Windows::default().with_count(number);
         let technique = Technique::default().with_maps(windows).with_resolution(side, side);
         let Halves { fit, prepare, .. } = run.walk(&technique, &WAYS[1], true)?;
-        eprintln!("maps, {number} of {side}²: {}, {}", ms(fit.median()), ms(prepare.median()));
+        tell(format_args!("maps, {number} of {side}²: {}, {}", ms(fit.median()), ms(prepare.median())));
         rows.push(vec![
             format!("{number} of {side} × {side}"),
             ms(fit.median()),
@@ -150,17 +146,11 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
             curves[1].add(number as usize, prepare.median());
         }
     }
-    let columns = ["windows", "fit", "worst", "the rest of `update`"];
+    let columns = ["windows", "fit", "worst", "the rest of `update`"].map(str::to_owned).to_vec();
+    let casters = grouped(town.boxes.len());
+    let note = format!("`windows-4` and others, told what was seen, in a hierarchy of {casters} casters.");
     Ok(Found {
-        table: Table {
-            title: "Number and size of the maps",
-            note: format!(
-                "`windows-4` and others, told what was seen, in a hierarchy of {} casters.",
-                grouped(town.boxes.len())
-            ),
-            columns: columns.map(str::to_owned).to_vec(),
-            rows,
-        },
+        table: Table { title: "Number and size of the maps", note, columns, rows },
         pictures: vec![Picture {
             file: "maps",
             title: "SunShadows::update by the number of windows",

@@ -1,31 +1,32 @@
-//! `cargo xtask bench`: measures the core crate, with `--gpu` what shadows cost on a GPU, and with `--growth` how costs
-//! grow with the world, and publishes times and ratios in docs/BENCHMARKS.md.
+//! `shadowfit-bench core`: runs the benches of the core crate, and prints their times as a table.
 //!
-//! Times mean little on another machine; ratios of one run do, so every group that has a hand-written counterpart
-//! shows them.
+//! Times mean little on another machine. Ratios of one run do, so every group that has a hand-written counterpart shows
+//! them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
+use shadowfit_study::print;
 
-use crate::process;
+use crate::page::{self, Section};
 
-/// Where the tables of the core, of the GPU and of growth stand in the page; what lies between is replaced.
-const CORE: [&str; 2] = ["<!-- measured: begin -->", "<!-- measured: end -->"];
-const GPU: [&str; 2] = ["<!-- measured on a GPU: begin -->", "<!-- measured on a GPU: end -->"];
-const GROWTH: [&str; 2] = ["<!-- measured growth: begin -->", "<!-- measured growth: end -->"];
-/// Chooses the GPU's tables, and takes them from a file that the example `gpu_cost` wrote on another machine.
-const ON_GPU: &str = "--gpu";
-const FROM: &str = "--from";
-/// Chooses the tables of growth, whose curves go into this folder.
-const ON_GROWTH: &str = "--growth";
-const CURVES: &str = "docs/images/benchmarks";
 /// How the counterpart of a group is called, at the beginning of its name.
 const COUNTERPART: &str = "by hand";
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Replace the table in docs/BENCHMARKS.md
+    #[arg(long)]
+    page: bool,
+    /// Arguments of the benches, for example part of a name or `--quick`
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENT")]
+    benches: Vec<String>,
+}
 
 /// What criterion writes of a benchmark.
 #[derive(Deserialize)]
@@ -52,65 +53,21 @@ struct Measured {
     nanoseconds: f64,
 }
 
-/// Measures and writes the page.
-pub(crate) fn bench(args: &[String]) -> Result<()> {
-    match args.split_first() {
-        Some((first, args)) if first == ON_GPU => bench_gpu(args),
-        Some((first, args)) if first == ON_GROWTH => bench_growth(args),
-        _ => bench_core(args),
-    }
-}
-
-/// Runs the example `gpu_cost` with the arguments, or takes what it wrote elsewhere.
-fn bench_gpu(args: &[String]) -> Result<()> {
-    match args {
-        [from, file] if from == FROM => publish_file(GPU, Path::new(file)),
-        _ => bench_example("gpu_cost", GPU, args),
-    }
-}
-
-/// Runs the example `growth` with the arguments.
-fn bench_growth(args: &[String]) -> Result<()> {
-    let curves = process::root().join(CURVES).to_string_lossy().into_owned();
-    bench_example("growth", GROWTH, &[&["--pictures".to_owned(), curves][..], args].concat())
-}
-
-/// Runs an example with the arguments, and publishes the tables that it writes.
-fn bench_example(name: &str, marks: [&str; 2], args: &[String]) -> Result<()> {
-    let written = process::root().join("target").join(name).with_extension("md");
-    let example = ["--release", "--example", name, "--", "--out"];
-    process::run(process::cargo("run").args(example).arg(&written).args(args))?;
-    publish_file(marks, &written)
-}
-
-/// Replaces what stands between two marks of the page by what a file has.
-fn publish_file(marks: [&str; 2], file: &Path) -> Result<()> {
-    let tables = fs::read_to_string(file).with_context(|| format!("{}: cannot be read", file.display()))?;
-    publish(marks, &format!("{}\n", tables.trim_end()))
-}
-
-fn bench_core(args: &[String]) -> Result<()> {
-    let folder = process::root().join("target/criterion");
+/// Runs the benches and prints the table.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let folder = page::root().join("target/criterion");
     if folder.exists() {
         fs::remove_dir_all(&folder).with_context(|| format!("{}: cannot be emptied", folder.display()))?;
     }
-    process::run(process::cargo("bench").args(["-p", "shadowfit", "--benches", "--"]).args(args))?;
+    let mut benches = Command::new(env!("CARGO"));
+    benches.args(["bench", "-p", "shadowfit", "--benches", "--"]).args(&args.benches).current_dir(page::root());
+    ensure!(benches.status().context("cargo does not start")?.success(), "the benches fail");
     let mut groups = BTreeMap::new();
     collect(&folder, &mut groups)?;
     ensure!(!groups.is_empty(), "{}: no measurement was found", folder.display());
     let table = table(&groups);
-    print!("{table}");
-    publish(CORE, &table)
-}
-
-/// Replaces what stands between two marks of the page.
-fn publish([begin, end]: [&str; 2], table: &str) -> Result<()> {
-    let page = process::root().join("docs/BENCHMARKS.md");
-    let text = fs::read_to_string(&page).with_context(|| format!("{}: cannot be read", page.display()))?;
-    let (before, rest) = text.split_once(begin).with_context(|| format!("{}: has no {begin}", page.display()))?;
-    let (_, after) = rest.split_once(end).with_context(|| format!("{}: has no {end}", page.display()))?;
-    fs::write(&page, format!("{before}{begin}\n{table}{end}{after}"))
-        .with_context(|| format!("{}: cannot be written", page.display()))
+    print(&table)?;
+    if args.page { Section::Core.publish(&table) } else { Ok(()) }
 }
 
 /// Reads all measurements under a folder, by group.

@@ -3,9 +3,9 @@
 use anyhow::Result;
 use shadowfit_wgpu::Culling;
 
-use crate::Bench;
-use crate::passes::with_culling;
-use crate::scene::BenchScene;
+use super::Bench;
+use super::passes::with_culling;
+use super::scene::BenchScene;
 use crate::table::{Table, ms, share};
 
 /// Instances of the field.

@@ -1,4 +1,4 @@
-//! How long the frames of a walk take.
+//! Times: of a call, of the frames of a walk, and the median of some.
 
 use std::time::Instant;
 
@@ -29,9 +29,7 @@ impl Times {
 
     /// The middle one of the frames that count.
     pub(crate) fn median(&self) -> f64 {
-        let mut times = self.counting().to_vec();
-        times.sort_by(f64::total_cmp);
-        times.get(times.len() / 2).copied().unwrap_or(0.0)
+        median(self.counting().to_vec())
     }
 
     /// The slowest of the frames that count.
@@ -42,6 +40,12 @@ impl Times {
     fn counting(&self) -> &[f64] {
         self.0.get(LEAD..).unwrap_or_default()
     }
+}
+
+/// Returns the median of some times.
+pub(crate) fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// What something gives, and the milliseconds that it took.

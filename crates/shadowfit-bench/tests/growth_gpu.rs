@@ -1,17 +1,24 @@
-//! The example `growth` as a program.
+//! `shadowfit-bench growth` as a program.
 
 use std::process::Command;
 
-use crate::support::{adapter_name, example_program};
+use shadowfit_testing::{adapter_name, package_program, refuses_missing_adapter};
+
+/// The program with the arguments of a quick run.
+fn quick() -> Command {
+    let mut growth = Command::new(package_program(env!("CARGO_BIN_EXE_shadowfit-bench")));
+    growth.args(["growth", "--quick"]);
+    growth
+}
 
 #[test]
 fn a_quick_run_of_growth_has_every_row_and_draws_every_curve() {
     let folder = std::env::temp_dir().join(format!("shadowfit-growth-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let tables = folder.join("growth.md");
-    let mut growth = Command::new(example_program("growth"));
-    growth.args(["--quick", "--adapter", adapter_name()]).arg("--out").arg(&tables).arg("--pictures").arg(&folder);
-    let output = growth.output().expect("the example starts");
+    let mut growth = quick();
+    growth.args(["--adapter", adapter_name()]).arg("--out").arg(&tables).arg("--pictures").arg(&folder);
+    let output = growth.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = std::fs::read_to_string(&tables).expect("the tables");
 
@@ -26,6 +33,11 @@ fn a_quick_run_of_growth_has_every_row_and_draws_every_curve() {
         assert!(svg.matches("<circle").count() > 2 && !svg.contains("NaN"), "{picture}: {svg}");
     }
     let _ = std::fs::remove_dir_all(&folder);
+}
+
+#[test]
+fn an_adapter_that_the_machine_lacks_is_refused_with_a_list_of_adapters() {
+    refuses_missing_adapter(quick);
 }
 
 /// Towns of 100 and 1,000 boxes: four fits, culling, five kinds of frames; eight numbers of maps and six sides.

@@ -80,9 +80,3 @@ fn spin(device: &wgpu::Device) -> (wgpu::ComputePipeline, wgpu::BindGroup) {
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries });
     (pipeline, group)
 }
-
-/// The middle one of some times.
-pub(crate) fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(0.0)
-}

@@ -1,44 +1,36 @@
-//! How costs grow with the world: fits, culling and frames of `SunShadows`, from a hundred boxes to a million.
+//! `shadowfit-bench growth`: how costs grow with the world: fits, culling and frames of `SunShadows` in a town of more and
+//! more boxes.
 //!
-//! ```sh
-//! cargo run --release --example growth                                   # tables
-//! cargo run --release --example growth -- --only fits --pictures out     # a part, with its curves
-//! cargo xtask bench --growth                                             # all of it, into docs/BENCHMARKS.md
-//! ```
-//!
-//! Times are of one core and of the CPU alone: where a graphics device is needed nothing is drawn with it, and a
-//! software adapter will do. A time is the shortest of some rounds, so that other work on the machine counts little.
+//! Times are of one core and of the CPU alone. Where a graphics device is needed nothing is drawn with it, and a software
+//! adapter will do. A time is the shortest of some rounds, so that other work on the machine counts little.
 
-#[path = "../shared/adapter.rs"]
-mod adapter;
-#[path = "../shared/cuboid.rs"]
-mod cuboid;
 mod culling;
 mod fits;
 mod frames;
 mod picture;
-#[path = "../shared/table.rs"]
-mod table;
-mod times;
 mod town;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Result;
-use clap::{Parser, ValueEnum};
+use clap::ValueEnum;
 use shadowfit_adapter::AdapterOptions;
-use shadowfit_study::{check_place, make_folder, write_whole};
+use shadowfit_study::{check_place, make_folder, print, write_whole};
 
-use picture::Picture;
-use table::Table;
+use self::picture::Picture;
+use crate::open;
+use crate::page::{self, Section};
+use crate::table::Table;
 
 /// Where pictures lie, seen from the page that shows them.
 const PICTURES: &str = "images/benchmarks";
 
-#[derive(Parser)]
-#[command(about = "Times how costs grow with the world")]
-struct Args {
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Replace the tables in docs/BENCHMARKS.md, and write the curves beside it
+    #[arg(long)]
+    page: bool,
     /// Where the tables are written, as Markdown
     #[arg(long)]
     out: Option<PathBuf>,
@@ -117,31 +109,29 @@ struct Found {
     pictures: Vec<Picture>,
 }
 
-fn main() -> Result<()> {
-    let args = Args::parse();
-    let extent = Extent::new(args.quick, args.adapter);
+/// Measures, and prints and writes the tables and curves.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let extent = Extent::new(args.quick, args.adapter.clone());
+    let usual = args.page.then(page::curves);
+    let folder = args.pictures.as_ref().or(usual.as_ref());
     args.out.iter().try_for_each(|out| check_place(out))?;
-    args.pictures.iter().try_for_each(|folder| make_folder(folder))?;
+    folder.iter().try_for_each(|folder| make_folder(folder))?;
     let wants = |part: &Part| args.only.is_empty() || args.only.contains(part);
     let parts = || Part::value_variants().iter().copied().filter(wants);
     if parts().any(Part::takes_device) {
         // A machine without the adapter is refused before anything is measured.
-        adapter::open(&extent.adapter);
+        open(&extent.adapter)?;
     }
     let mut text = String::new();
     for part in parts() {
         let Found { table, pictures } = part.measure(&extent)?;
-        println!("{table}");
+        print(format!("{table}\n"))?;
         let _ = writeln!(text, "{table}");
         for picture in &pictures {
             let _ = writeln!(text, "![{}]({PICTURES}/{}.svg)\n", picture.title, picture.file);
-            if let Some(folder) = &args.pictures {
-                picture.write(folder)?;
-            }
+            folder.iter().try_for_each(|folder| picture.write(folder))?;
         }
     }
-    if let Some(out) = &args.out {
-        write_whole(out, text.as_bytes())?;
-    }
-    Ok(())
+    args.out.iter().try_for_each(|out| write_whole(out, text.as_bytes()))?;
+    if args.page { Section::Growth.publish(&text) } else { Ok(()) }
 }

@@ -12,12 +12,13 @@ use shadowfit_render::{GpuProfilerQuery, GpuTimer, bindings};
 use shadowfit_wgpu::resolve::{ResolveCounts, ResolvePass, ResolveView};
 use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl};
 
-use crate::Bench;
+use super::Bench;
+use super::engine::{self, Engine};
+use super::scene::BenchScene;
+use super::timer::Timer;
 use crate::cuboid::triangles;
-use crate::engine::{self, Engine};
-use crate::scene::BenchScene;
 use crate::table::{Table, ms, share};
-use crate::timer::{Timer, median};
+use crate::times::median;
 
 /// Heights of the pictures, in pixels, unless the call names one; they are 16:9.
 const HEIGHTS: [u32; 2] = [720, 1080];
@@ -180,7 +181,8 @@ impl Pictures {
     fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        (pipeline, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+        pipeline: &wgpu::ComputePipeline,
+        group: &wgpu::BindGroup,
         timer: &GpuTimer,
     ) {
         let query = timer.begin("picture", encoder);
@@ -323,14 +325,14 @@ fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], technique: &Technique
             engine.shadow_passes(encoder, None);
             engine.seen_pass(encoder, &camera)
         })?;
-        let mut pass = |passes| {
+        let mut pass = |pipeline, group| {
             timer.frame(gpu, |encoder, timer| {
-                pictures.record(encoder, passes, timer);
+                pictures.record(encoder, pipeline, group, timer);
                 Ok(())
             })
         };
-        let look_up = pass((&pictures.look_up, engine.sun.map().receiver_group()))?;
-        let rays = pass((&pictures.rays, meshes.rays.group()))?;
+        let look_up = pass(&pictures.look_up, engine.sun.map().receiver_group())?;
+        let rays = pass(&pictures.rays, meshes.rays.group())?;
         let mut resolved = |budget| {
             let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
             let view = ResolveView::new(&pictures.depth, clip_from_eye, DepthConvention::Reversed, camera.eye);
