@@ -14,7 +14,7 @@ use crate::machine::Machine;
 use crate::source::{is_part_of_word, texts, without_comments, without_tests};
 
 /// Circles that are left to break. The goal is 0.
-const ACCEPTED: usize = 1;
+const ACCEPTED: usize = 0;
 
 /// Longest chain of re-exports. A longer one repeats itself: a name of another crate, which stands for itself.
 const MAX_HOPS: usize = 8;
