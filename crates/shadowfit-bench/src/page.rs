@@ -1,4 +1,4 @@
-//! The tables of `docs/BENCHMARKS.md`: each stands between two marks, and is replaced.
+//! Replaces the tables of `docs/BENCHMARKS.md`, each between two marks.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -65,7 +65,7 @@ struct Crossing {
 /// A line of pixels: a row if `along` is 0, or a column.
 struct Line {
     along: usize,
-    line: usize,
+    number: usize,
     length: usize,
 }
 
@@ -121,7 +121,7 @@ impl Surfaces {
         let mut jump = 0.0_f32;
         for (along, lines, length) in [(0, HEIGHT, WIDTH), (1, WIDTH, HEIGHT)] {
             for line in (0..lines).step_by(LINES) {
-                let line = Line { along, line, length };
+                let line = Line { along, number: line, length };
                 self.crossings(before, &line, &mut old);
                 self.crossings(now, &line, &mut new);
                 jump = jump.max(greatest_move(&old, &new));
@@ -132,12 +132,12 @@ impl Surfaces {
 
     /// The crossings of a row or a column, in their order.
     fn crossings(&self, factors: &Factors, line: &Line, found: &mut Vec<Crossing>) {
-        let Line { along, line, length } = *line;
+        let Line { along, number, length } = *line;
         found.clear();
         let (step, across) = (ALONG[along], ALONG[1 - along]);
         let value = |index: usize| f32::from(factors[index]);
         for at in 0..length - 1 {
-            let index = line * across + at * step;
+            let index = number * across + at * step;
             let (first, second) = (value(index), value(index + step));
             if (first < HALF) == (second < HALF) || !self.0[index] || !self.0[index + step] {
                 continue;

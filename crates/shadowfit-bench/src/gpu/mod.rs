@@ -1,4 +1,4 @@
-//! `shadowfit-bench gpu`: what shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth
+//! `shadowfit-bench gpu`: times shadows on a GPU: redrawn and cached passes, culling, filters, the pass over the depth
 //! buffer, a sun that moves, exact edges, rays.
 //!
 //! A small engine with its own buffers and pipelines draws each scene through `SunShadows` while a camera walks at

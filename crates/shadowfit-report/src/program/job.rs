@@ -99,7 +99,7 @@ impl Job {
     /// too.
     pub(crate) fn prepare(&self) -> Result<Prepared> {
         let scene = self.load()?;
-        scene.warnings(&self.scene).for_each(|warning| tell(warning));
+        scene.warnings(&self.scene).for_each(tell);
         self.check_memory(&scene)?;
         let sun = self.sun_of(&scene)?;
         self.check_play(&scene)?;
