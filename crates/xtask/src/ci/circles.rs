@@ -18,7 +18,7 @@ use crate::source::{is_part_of_word, texts, without_comments, without_tests};
 const ACCEPTED: usize = 0;
 
 /// Rooms in circles that are left to break, in all crates. The goal is 0.
-const ACCEPTED_ROOMS: usize = 44;
+const ACCEPTED_ROOMS: usize = 0;
 
 /// Longest chain of re-exports. A longer one repeats itself: a name of another crate, which stands for itself.
 const MAX_HOPS: usize = 8;
