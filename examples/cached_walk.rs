@@ -105,12 +105,12 @@ const PEOPLE: u8 = 12;
 
 fn street(frame: u16) -> Vec<Aabb> {
     let person = |number: u8| {
-        let walked = 0.05 * f32::from(frame) * if number % 2 == 0 { 1.0 } else { -1.0 };
+        let walked = 0.05 * f32::from(frame) * if number.is_multiple_of(2) { 1.0 } else { -1.0 };
         let feet = Vec3::new(f32::from(number % 3) * 3.0 - 3.0, 0.0, 20.0 - 6.0 * f32::from(number) + walked);
         Aabb::new(feet - Vec3::new(0.3, 0.0, 0.3), feet + Vec3::new(0.3, 1.8, 0.3))
     };
     let house = |number: u8| {
-        let (left, front) = (if number % 2 == 0 { -18.0 } else { 8.0 }, 40.0 - 9.0 * f32::from(number));
+        let (left, front) = (if number.is_multiple_of(2) { -18.0 } else { 8.0 }, 40.0 - 9.0 * f32::from(number));
         Aabb::new(Vec3::new(left, 0.0, front - 15.0), Vec3::new(left + 10.0, 5.0 + f32::from(number % 5), front))
     };
     let ground = Aabb::new(Vec3::new(-60.0, -0.1, -200.0), Vec3::new(60.0, 0.0, 60.0));
