@@ -24,7 +24,7 @@ pub struct Source {
     /// Folder that the scenes' glTF files are in
     #[cfg_attr(feature = "program", arg(long, value_name = "DIR"))]
     pub assets: Option<PathBuf>,
-    /// Folder with <scene>.f32 for each scene: 9 little-endian f32 for each triangle, world space, metres
+    /// Folder with SCENE.f32 for each scene: 9 little-endian f32 for each triangle, world space, metres
     #[cfg_attr(feature = "program", arg(long, value_name = "DIR"))]
     pub triangles: Option<PathBuf>,
 }
