@@ -31,7 +31,7 @@ impl SunShadows {
     ///
     /// # Errors
     ///
-    /// As [`ShadowMap::prepare`], and [`ShadowMapError::View`] for views that make no sense. There is nothing to draw
+    /// As [`ShadowMap::prepare`](crate::ShadowMap::prepare), and [`ShadowMapError::View`] for views that make no sense. There is nothing to draw
     /// then, and the shaders read the maps of the frame before.
     pub fn prepare(
         &mut self,
