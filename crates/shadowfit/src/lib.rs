@@ -203,6 +203,7 @@ mod content;
 
 /// What was visible, and how fine a texel it asks for.
 pub mod demand {
+    pub(crate) mod from_boxes;
     pub(crate) mod grid;
     pub(crate) mod histogram;
     #[cfg(feature = "alloc")]

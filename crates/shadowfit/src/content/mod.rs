@@ -28,7 +28,7 @@ use boxes::{check, compute_depths, is_same};
 use groups::Groups;
 use normal_cone::NormalCone;
 pub(crate) use standing::BoxTree;
-pub(crate) use views::MAX_SPHERE_VIEWS;
+pub(crate) use views::{MAX_SPHERE_VIEWS, ViewPart};
 pub(crate) use visit::{Found, Query, Visit, VisitCorners};
 
 /// The views, the light and the boxes that content is made of, as an engine gives them.

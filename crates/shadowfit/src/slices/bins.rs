@@ -1,15 +1,11 @@
-//! Bins of view depth, and what is visible in each: by a histogram of an earlier frame, or estimated from the boxes.
-//!
-//! The estimate looks at the nearest few boxes along each ray of a coarse grid, each spread over the depths that the
-//! ray is in it. A box is not its surface; where the estimate is wrong, maps are less sharp than they could be, and
-//! nothing worse.
+//! Bins of view depth, and the visible share of each: by a histogram of an earlier frame, or estimated from the
+//! [boxes along rays](crate::demand::from_boxes), each spread over the depths between which a ray is in it.
 
-use glam::DVec3;
-
-use crate::content::{Bounds, Content, Found, Query, Visit};
+use crate::content::{Content, Query};
+use crate::demand::from_boxes::{AROUND, Rays};
 use crate::demand::histogram::DepthHistogram;
 use crate::technique::settings::MAX_MAPS;
-use crate::view::{Picture, RayCount, View, covered, crossing};
+use crate::view::RayCount;
 
 /// Splits of all maps, in metres of view depth: map i covers `splits[i]..splits[i + 1]`.
 pub(crate) type Splits = [f32; MAX_MAPS + 1];
@@ -138,84 +134,29 @@ pub(super) fn weights_of_histogram(histogram: &DepthHistogram, bins: &Bins) -> W
 /// Parts that each bin is divided into, to be spread.
 const PARTS: u32 = 4;
 
-/// Most rays through a picture.
-const MOST_RAYS: usize = RayCount::FINE.columns * RayCount::FINE.rows;
-
-/// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
-const LAYERS: usize = 4;
-
 /// Factor by which each further box counts less. Chosen together with the constants before and
 /// after it on ten scenes: counting the first box alone gives bad splits where boxes are loose.
 const FURTHER: f64 = 0.85;
 
-/// Weight of the boxes that a ray begins in, which may hold a surface anywhere up to their ends.
-const AROUND: f64 = 1.0 / 3.0;
-
-/// Shares of the rays that first meet a box in each bin; equal shares where no box is known.
-pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, rays: RayCount) -> Weights {
+/// Shares of the rays that meet boxes in each bin. All depths have equal shares if no box is known.
+pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, count: RayCount) -> Weights {
     let mut spread = Spread::new(bins);
     for part in content.whole_views() {
-        let mut grid = Grid::new(&part.view, bins, rays);
-        content.visit(Query::Lit(&part), &mut grid);
-        for ray in &grid.rays[..rays.columns * rays.rows] {
+        let mut rays = Rays::new(&part, count);
+        content.visit(Query::Lit(&part), &mut rays);
+        let bin = |share: f32| bins.of(part.near + (part.far - part.near) * f64::from(share));
+        for ray in rays.iter() {
             let mut weight = 1.0;
-            for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < NOWHERE) {
-                spread.add(enter, leave, weight);
+            for layer in ray.layers() {
+                spread.add(bin(layer.enter), bin(layer.leave), weight);
                 weight *= FURTHER;
             }
-            if ray.around < NOWHERE {
-                spread.add(0, ray.around, weight * AROUND);
+            if let Some(around) = ray.around {
+                spread.add(0, bin(around.leave), weight * f64::from(AROUND));
             }
         }
     }
     spread.shares()
-}
-
-/// Room for the rounding of shares of a ray.
-const RAY_ROUNDING: f64 = 1e-9;
-
-/// Marks the absence of a bin.
-const NOWHERE: u8 = u8::MAX;
-
-/// What a ray meets.
-#[derive(Clone, Copy)]
-struct Ray {
-    /// From the near to the far plane.
-    start: DVec3,
-    along: DVec3,
-    /// Bins of the view depths at which it enters and leaves the nearest boxes.
-    layers: [(u8, u8); LAYERS],
-    /// Shares of the ray at which it enters these boxes.
-    enters: [f64; LAYERS],
-    /// Bin of the view depth at which it leaves the boxes that it begins in.
-    around: u8,
-}
-
-impl Ray {
-    fn new(start: DVec3, end: DVec3) -> Self {
-        let (layers, enters) = ([(NOWHERE, NOWHERE); LAYERS], [f64::MAX; LAYERS]);
-        Self { start, along: end - start, layers, enters, around: NOWHERE }
-    }
-
-    /// Adds a box that it enters and leaves at these shares.
-    fn add(&mut self, mut enter: f64, leave: f64, bin: impl Fn(f64) -> u8) {
-        if enter <= 0.0 {
-            // The farther of two ends; there is none yet at first.
-            let leave = bin(leave);
-            self.around = if self.around == NOWHERE { leave } else { self.around.max(leave) };
-            return;
-        }
-        if enter >= self.enters[LAYERS - 1] {
-            return;
-        }
-        let mut layer = (bin(enter), bin(leave));
-        for (kept, kept_enter) in self.layers.iter_mut().zip(&mut self.enters) {
-            if layer.0 < kept.0 {
-                core::mem::swap(&mut layer, kept);
-                core::mem::swap(&mut enter, kept_enter);
-            }
-        }
-    }
 }
 
 /// Weights spread over bins.
@@ -237,8 +178,7 @@ impl Spread {
     }
 
     /// Adds a weight, evenly over the depths of a range of bins.
-    fn add(&mut self, first: u8, last: u8, weight: f64) {
-        let (first, last) = (usize::from(first), usize::from(last));
+    fn add(&mut self, first: usize, last: usize, weight: f64) {
         let per_metre = weight / (self.starts[last + 1] - self.starts[first]);
         if per_metre.is_finite() {
             for (weight, length) in self.weights[first..=last].iter_mut().zip(&self.lengths[first..=last]) {
@@ -260,78 +200,4 @@ impl Spread {
         }
         shares
     }
-}
-
-/// Rays through a picture, from its near to its far rectangle, row by row.
-struct Grid<'a> {
-    rays: [Ray; MOST_RAYS],
-    count: RayCount,
-    view: &'a View,
-    picture: Picture,
-    bins: &'a Bins,
-    near: f64,
-    depth: f64,
-}
-
-impl<'a> Grid<'a> {
-    #[expect(clippy::large_stack_arrays, reason = "56 KiB, for the time that it takes to look around")]
-    fn new(view: &'a View, bins: &'a Bins, count: RayCount) -> Self {
-        let whole = view.slice(view.near, view.far);
-        let corners = |i: usize| [whole.corners[i], whole.corners[i + 1], whole.corners[i + 2], whole.corners[i + 3]];
-        let (start, end) = (corners(0), corners(4));
-        let mut rays = [Ray::new(DVec3::ZERO, DVec3::ZERO); MOST_RAYS];
-        for (row, rays) in rays.chunks_exact_mut(count.columns).enumerate().take(count.rows) {
-            let [first, last] = ends_of_row(&start, &end, row, count);
-            let step = 1.0 / (count.columns - 1) as f64;
-            let (start_step, end_step) = ((last.0 - first.0) * step, (last.1 - first.1) * step);
-            for (column, ray) in rays.iter_mut().enumerate() {
-                let x = column as f64;
-                *ray = Ray::new(first.0 + start_step * x, first.1 + end_step * x);
-            }
-        }
-        Self { rays, count, view, picture: view.picture(), bins, near: view.near, depth: view.far - view.near }
-    }
-}
-
-impl Visit for Grid<'_> {
-    /// Returns whether a box may be among the nearest ones along a ray.
-    fn wants(&self, bounds: &Bounds) -> bool {
-        let covered = covered(self.view, &self.picture, self.count, bounds.min, bounds.max);
-        let Some((columns, rows)) = covered else { return false };
-        let nearest = (bounds.depths.near - self.near) / self.depth - RAY_ROUNDING;
-        let mut rays = rows.flat_map(|row| &self.rays[row * self.count.columns..][columns.clone()]);
-        rays.any(|ray| nearest < ray.enters[LAYERS - 1])
-    }
-
-    /// Intersects all rays with a box.
-    fn take(&mut self, Found { bounds: Bounds { min, max, depths }, .. }: &Found) {
-        let covered = covered(self.view, &self.picture, self.count, *min, *max);
-        let Some((columns, rows)) = covered else { return };
-        let bin = |t: f64| self.bins.of(self.near + self.depth * t) as u8;
-        // Shares of a ray are those of the view depth.
-        let nearest = (depths.near - self.near) / self.depth - RAY_ROUNDING;
-        for row in rows {
-            for ray in &mut self.rays[row * self.count.columns..][columns.clone()] {
-                if nearest < ray.enters[LAYERS - 1]
-                    && let Some((enter, leave)) = crossing(ray.start, ray.along, *min, *max)
-                {
-                    ray.add(enter, leave, bin);
-                }
-            }
-        }
-    }
-}
-
-/// The first and the last ray of a row, each from its start to its end.
-fn ends_of_row(start: &[DVec3; 4], end: &[DVec3; 4], row: usize, count: RayCount) -> [(DVec3, DVec3); 2] {
-    let y = (row as f64 + 0.5) / count.rows as f64;
-    // Left-top, right-top, right-bottom, left-bottom.
-    let at = |top: usize, bottom: usize| {
-        let lerp = |c: &[DVec3; 4]| c[top] * (1.0 - y) + c[bottom] * y;
-        (lerp(start), lerp(end))
-    };
-    let (left, right) = (at(0, 3), at(1, 2));
-    let half = 0.5 / count.columns as f64;
-    let between = |x: f64| (left.0 * (1.0 - x) + right.0 * x, left.1 * (1.0 - x) + right.1 * x);
-    [between(half), between(1.0 - half)]
 }
