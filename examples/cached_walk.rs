@@ -8,7 +8,7 @@
 //! cargo run --example cached_walk
 //! ```
 
-use shadowfit::cache::{CacheFrame, CacheSettings, Casters, FramePlan, MapCache, MapReuse, PassContent};
+use shadowfit::cache::{CacheFrame, CacheSettings, Casters, FramePlan, MapCache, MapReuse, PassKind};
 use shadowfit::glam::{DVec3, IVec2, Vec3};
 use shadowfit::{Aabb, Boxes, FitError, FitInput, PerspectiveCamera, ShadowFitter, Technique};
 
@@ -42,7 +42,7 @@ fn main() -> Result<(), FitError> {
                 work.rectangles,
                 work.fixed,
                 work.moving,
-                read.wrap,
+                read.texel_offset,
             );
             redrawn += work.texels;
             all += texels;
@@ -74,12 +74,12 @@ impl Work {
     fn of(plan: &FramePlan, map: usize) -> Self {
         let mut work = Self::default();
         for pass in plan.passes.iter().filter(|pass| pass.map == map) {
-            for piece in plan.pieces_of(pass) {
-                let moving = plan.casters_of(piece).iter().filter(|number| **number < PEOPLE.into()).count();
+            for region in plan.regions_of(pass) {
+                let moving = plan.casters_of(region).iter().filter(|number| **number < PEOPLE.into()).count();
                 work.moving += moving;
-                work.fixed += plan.casters_of(piece).len() - moving;
-                if pass.content != PassContent::Moving {
-                    work.texels += piece.part.stored.area();
+                work.fixed += plan.casters_of(region).len() - moving;
+                if pass.content != PassKind::Moving {
+                    work.texels += region.part.stored.area();
                     work.rectangles += 1;
                 }
             }

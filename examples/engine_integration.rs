@@ -39,7 +39,7 @@ use shadowfit::mint::{dvec3, frustum_from_eye_from_clip, mat4, vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, Technique};
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
 
-// EXACT resolve: name the setting.
+// EXACT edges: name the setting.
 use shadowfit::settings::Edges;
 
 /// Word of the command line for exact edges.
@@ -220,7 +220,7 @@ impl Engine {
         let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
 
         if is_exact {
-            // EXACT resolve: choose traced edges before pipelines are made. Four rays for a pixel make them smooth.
+            // EXACT edges: choose traced edges before pipelines are made. Four rays for a pixel make them smooth.
             sun.set_technique(&technique.with_edges(Edges::Traced { samples: 4 }))?;
         }
 
@@ -267,9 +267,9 @@ impl Engine {
         let mut drawn = 0;
         // STEP 8: draw casters by number, where a map is new or something moves. Passes come cleared, with the map's
         // matrix bound.
-        self.sun.render(&mut encoder, 0, |pass, piece| {
+        self.sun.render(&mut encoder, 0, |pass, region| {
             pass.set_pipeline(&self.caster_pipeline);
-            drawn += self.scene.draw(pass, piece.casters.iter().copied());
+            drawn += self.scene.draw(pass, region.casters.iter().copied());
         });
 
         self.record_exact(&mut encoder, camera)?;

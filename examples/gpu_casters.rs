@@ -1,6 +1,6 @@
 //! An engine that keeps its casters on the GPU: the maps are fitted to coarse boxes, a compute shader finds the casters
-//! of each piece of a shadow pass, and each piece is one indirect draw. It walks through a town of 3,600 blocks without a
-//! window, and says in each second what was drawn.
+//! of each region of a shadow pass, and each region is one indirect draw. It walks through a town of 3,600 blocks
+//! without a window, and says in each second what was drawn.
 //!
 //! ```sh
 //! cargo run --release --example gpu_casters
@@ -35,18 +35,18 @@ fn main() -> Result<()> {
     let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
     let mut town = Town::new(20);
     let casters = GpuCasters::new(&gpu.device, &sun, &town.blocks);
-    println!("second  pieces  casters drawn");
+    println!("second  regions  casters drawn");
     for second in 0..SECONDS {
-        let (mut pieces, mut drawn) = (0, 0);
+        let (mut regions, mut drawn) = (0, 0);
         for frame in second * FRAMES_PER_SECOND..(second + 1) * FRAMES_PER_SECOND {
             town.bob(frame);
             gpu.queue.write_buffer(&casters.casters, 0, bytemuck::cast_slice(&town.blocks));
             let draws = draw(&gpu, &mut sun, &casters, &town, frame)?;
             let counts = draws.map_or(Ok(Vec::new()), |draws| counts(&gpu, &draws))?;
-            pieces += counts.len();
+            regions += counts.len();
             drawn += counts.iter().sum::<u32>();
         }
-        println!("{second:>6}  {pieces:>6}  {drawn:>13}");
+        println!("{second:>6}  {regions:>6}  {drawn:>13}");
     }
     let all = SECONDS * FRAMES_PER_SECOND * technique.maps.count() * town.blocks.len() as u32;
     println!("All casters into all maps in each frame would be {all}.");
@@ -63,9 +63,9 @@ fn draw(gpu: &Gpu, sun: &mut SunShadows, casters: &GpuCasters, town: &Town, fram
 
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let draws = casters.cull(&mut encoder, sun);
-    sun.render(&mut encoder, 0, |pass, piece| {
+    sun.render(&mut encoder, 0, |pass, region| {
         if let Some(draws) = &draws {
-            casters.draw(pass, piece, draws);
+            casters.draw(pass, region, draws);
         }
     });
     gpu.queue.submit([encoder.finish()]);
@@ -85,7 +85,7 @@ fn camera(frame: u32) -> PerspectiveCamera {
     }
 }
 
-/// Waits for the number of casters that the compute shader found for each piece.
+/// Waits for the number of casters that the compute shader found for each region.
 fn counts(gpu: &Gpu, draws: &Draws) -> Result<Vec<u32>> {
     let size = draws.arguments.size();
     let read = gpu.device.create_buffer(&wgpu::BufferDescriptor {

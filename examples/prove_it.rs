@@ -1,5 +1,5 @@
 //! Proofs instead of pictures: every map of every frame of a camera flight is proven to have no holes. Of maps that are
-//! slices of the view, the depths that the last frame showed make splits sharper without putting that at risk, and fewer
+//! cascades, the depths that the last frame showed make splits sharper without putting that at risk, and fewer
 //! are taken where they are as good. No GPU, no window.
 //!
 //! ```sh
@@ -12,7 +12,7 @@ use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, Margins, prove};
 use shadowfit::settings::SplitScheme;
 use shadowfit::{
-    Aabb, Boxes, FitError, FitInput, FittedMaps, PerspectiveCamera, Scratch, ShadowFitter, Slices, Technique,
+    Aabb, Boxes, Cascades, FitError, FitInput, FittedMaps, PerspectiveCamera, Scratch, ShadowFitter, Technique,
     ViewFrustum,
 };
 
@@ -49,21 +49,21 @@ fn main() -> Result<(), FitError> {
 
     let views = [camera(0).frustum()?];
     let input = input(&views, boxes);
-    let slices = Slices::default();
-    let count = fewest_maps(&input, &technique.with_maps(slices), 1.5, &mut scratch)?;
-    println!("{count} slices instead of {} make texels at most 1.5 times as coarse", slices.count);
+    let cascades = Cascades::default();
+    let count = fewest_maps(&input, &technique.with_maps(cascades), 1.5, &mut scratch)?;
+    println!("{count} cascades instead of {} make texels at most 1.5 times as coarse", cascades.count);
 
     // Where no boxes say what is visible: without bounds, with those that a reduction of the last depth buffer gives,
     // and with wrong ones, as after a camera cut.
-    let logarithmic = technique.with_maps(slices.with_splits(SplitScheme::Logarithmic));
+    let logarithmic = technique.with_maps(cascades.with_splits(SplitScheme::Logarithmic));
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
         let input = FitInput { receivers: None, depth_bounds, ..input };
         let mut fitter = ShadowFitter::new(&logarithmic);
         let maps = fitter.fit(&input)?;
-        let ends: Vec<f32> = maps.iter().rev().skip(1).rev().map(|map| map.far).collect();
+        let ends: Vec<f64> = maps.iter().filter_map(|map| map.depths?.far).collect();
         let is_proven = proofs(&input, &logarithmic, maps, &mut scratch)?.iter().all(CoverageProof::is_proven);
-        println!("{depth_bounds:?}: slices end at {ends:?} m, no holes: {is_proven}");
+        println!("{depth_bounds:?}: cascades end at {ends:?} m, no holes: {is_proven}");
     }
     Ok(())
 }
@@ -78,7 +78,7 @@ fn proofs(
 ) -> Result<Vec<CoverageProof>, FitError> {
     let mut proofs = Vec::new();
     for map in maps.iter() {
-        let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
+        let query = CoverageQuery::of_map(map, technique, technique.filter_radius_in(&map.projection))
             .with_normal_offset(map.bias.normal_offset);
         proofs.push(prove(input, &map.projection, &query, scratch)?);
     }

@@ -1,14 +1,14 @@
 //! Maps that are kept: how little has to be drawn again while the camera walks and the sun moves.
 //!
-//! `LightSteps` moves the sun in steps, and `Scroll` says which texels of a map are already there from the last frame.
-//! A minute is walked through at 10 frames a second; each line is a second of it. No GPU, no window.
+//! `LightStepState` moves the sun in steps, and `Scroll` says which texels of a map are already there from the last
+//! frame. A minute is walked through at 10 frames a second; each line is a second of it. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example still_maps
 //! ```
 
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::scroll::Scroll;
 use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_params::tool::LightSettings;
@@ -23,7 +23,7 @@ const SUN_SPEED: f32 = std::f32::consts::TAU / 86_400.0;
 fn main() -> Result<(), FitError> {
     let objects = street();
     let boxes = Boxes::world(&objects);
-    let (mut fitter, mut light_steps) = (ShadowFitter::new(&Technique::default()), LightSteps::default());
+    let (mut fitter, mut light_steps) = (ShadowFitter::new(&Technique::default()), LightStepState::default());
     let mut before = FittedMaps::default();
     let mut total = Redrawn::default();
     println!("second  texels drawn anew  whole maps  sun");
@@ -32,8 +32,7 @@ fn main() -> Result<(), FitError> {
         for frame in 0..FRAMES_PER_SECOND {
             let seconds = f64::from(second) + f64::from(frame) / f64::from(FRAMES_PER_SECOND);
             let held = light_steps.held;
-            let light =
-                light_steps.update(sun(seconds), &LightStepSettings::default(), 1.0 / FRAMES_PER_SECOND as f32)?;
+            let light = light_steps.update(sun(seconds), &LightSteps::default(), 1.0 / FRAMES_PER_SECOND as f32)?;
             steps += u32::from(held.is_some_and(|held| held != light.direction));
             let views = [camera(seconds).frustum()?];
             let input =

@@ -3,7 +3,7 @@
 //! need no shadow map.
 
 use shadowfit::Technique;
-use shadowfit::{Maps, OneMap};
+use shadowfit::{Maps, SingleMap};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::{Class, Judged};
 use shadowfit_viewer::{Artefact, Stage};
@@ -16,7 +16,7 @@ const SIZE: [u32; 2] = [320, 180];
 /// Size of pictures whose texels or stripes are compared with pixels.
 const FINE: [u32; 2] = [640, 360];
 
-/// The recommended technique, one whose maps are slices of the view, and one of a single map.
+/// The recommended technique, one whose maps are cascades, and one of a single map.
 const TECHNIQUES: [&str; 3] = ["windows-4", "calm-4", "xna-1"];
 
 /// Share of what is left after a cure, of the base that the artefact was measured on.
@@ -35,9 +35,9 @@ fn show(stage: &mut Stage, artefact: Artefact) {
     assert_eq!(stage.notice(), None);
     let shown = stage.settings.technique;
     match before.maps {
-        Maps::One(OneMap { stabilise, .. }) => assert_eq!(shown.maps.as_one().stabilise, stabilise),
-        Maps::Slices(_) => assert_eq!(shown.maps, before.maps),
-        Maps::Windows(_) => assert_eq!(shown.maps, before.maps.as_slices().into()),
+        Maps::Single(SingleMap { stabilise, .. }) => assert_eq!(shown.maps.as_single().stabilise, stabilise),
+        Maps::Cascades(_) => assert_eq!(shown.maps, before.maps),
+        Maps::Windows(_) => assert_eq!(shown.maps, before.maps.as_cascades().into()),
     }
 }
 

@@ -11,7 +11,8 @@ use shadowfit_scene::builtin;
 use shadowfit_study::NamedTechnique;
 use shadowfit_truth::{Tracer, TruthSettings};
 use shadowfit_viewer::Stage;
-use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor};
+use shadowfit_wgpu::uniforms::{CasterUniform, MapUniform, ReceiverUniform};
+use shadowfit_wgpu::{MAX_MAPS, MapView, RESOLUTIONS, ShadowMapDescriptor};
 
 use crate::support::test_gpu;
 

@@ -2,7 +2,7 @@
 //! place in the map, and knowing the scene makes texels finer. Judged against rays, which need no shadow map.
 
 use shadowfit::settings::{CasterPolicy, FitKind, Shape, Stabilise};
-use shadowfit::{Maps, OneMap, Slices};
+use shadowfit::{Cascades, Maps, SingleMap};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::Class;
 use shadowfit_viewer::{Artefact, Stage};
@@ -36,8 +36,8 @@ fn wrong(stage: &mut Stage) -> [f32; 2] {
 #[test]
 fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
     let mut stage = stage();
-    let (windows, slices) = (Maps::default(), Maps::from(Slices::default()));
-    for maps in KINDS.map(|kind| slices.with_kind(kind)).into_iter().chain([windows]) {
+    let (windows, cascades) = (Maps::default(), Maps::from(Cascades::default()));
+    for maps in KINDS.map(|kind| cascades.with_kind(kind)).into_iter().chain([windows]) {
         let kind = maps.shape().map(|shape| shape.kind);
         for casters in
             [CasterPolicy::Extend, CasterPolicy::PerObject, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp]
@@ -69,7 +69,7 @@ fn gpu_texels_are_finest_with_the_focused_fit_and_depth_is_shortest_with_depth_c
     let mut stage = stage();
     let single = stage.settings.technique;
     let mut fit = |kind, casters| {
-        let one = OneMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
+        let one = SingleMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
         stage.settings.technique = single.with_maps(one).with_fit(single.fit.with_casters(casters));
         let fit = stage.maps(SIZE)[0].projection;
         (fit.texel_size.x * fit.texel_size.y, fit.depth_range)

@@ -1,7 +1,7 @@
 //! Exact edges: rays where the maps are not sure. The engine runs this with `--exact`.
 //!
 //! What the engine has to do for it is marked with EXACT, here and in `engine_integration.rs`, by what it is for: a depth
-//! pre-pass, which many engines have anyway, the triangles, and the factors of the picture, which are resolved from both.
+//! pre-pass, which many engines have anyway, the triangles, and the factors of the picture, which are found from both.
 //! Each part begins at its comment and ends at the next empty line. A test counts these lines.
 
 use anyhow::Result;
@@ -14,13 +14,13 @@ use crate::scene::Scene;
 use shadowfit_rays::glam::{Affine3A, Quat};
 use shadowfit_rays::{MeshId, RayInstance, RayMesh, RayScene};
 
-// EXACT resolve: take `shadowfit-wgpu` with its feature `rays`.
-use shadowfit_wgpu::resolve::{ResolvePass, ResolveView, resolved_wgsl};
+// EXACT edges: take `shadowfit-wgpu` with its feature `rays`.
+use shadowfit_wgpu::exact_edges::{EdgePass, EdgeView, exact_factor_wgsl};
 
-// EXACT resolve: the sun's part of the light is multiplied by the factor of the picture, in place of step 6.
+// EXACT edges: the sun's part of the light is multiplied by the factor of the picture, in place of step 6.
 const FILTERED: &str = "sun *= shadowfit_factor(in.position, normal);";
-const RESOLVED: &str = "
-    sun *= shadowfit_resolved(in.position, normal, in.clip.xy);
+const EXACT_FACTOR: &str = "
+    sun *= shadowfit_exact_factor(in.position, normal, in.clip.xy);
 ";
 
 /// What exact edges take beside the maps.
@@ -32,8 +32,8 @@ pub(crate) struct Exact {
     rays: RayScene,
     meshes: Vec<MeshId>,
 
-    // EXACT resolve: one object for each view.
-    resolve: ResolvePass,
+    // EXACT edges: one object for each view.
+    edges: EdgePass,
 }
 
 /// Bind groups of a pipeline.
@@ -53,32 +53,32 @@ impl Exact {
             meshes.push(rays.add_mesh(&RayMesh::from_triangles(corners)?)?);
         }
 
-        // EXACT resolve: make the pass.
-        let resolve = ResolvePass::new(&gpu.device, &gpu.queue)?;
+        // EXACT edges: make the pass.
+        let edges = EdgePass::new(&gpu.device, &gpu.queue)?;
 
-        Ok(Self { depth_pipeline, rays, meshes, resolve })
+        Ok(Self { depth_pipeline, rays, meshes, edges })
     }
 
     /// The shaded pass's WGSL and bind groups, from those that read the maps alone.
     pub(crate) fn shaded<'a>(&'a self, wgsl: &str, mut groups: Layouts<'a>) -> (String, Layouts<'a>) {
-        // EXACT resolve: paste what reads the factors beside the look-up, and put its layout into the pipeline.
-        let wgsl = resolved_wgsl(&WgslOptions::group(2), 0) + &wgsl.replace(FILTERED, RESOLVED);
-        groups.push(Some(self.resolve.layout()));
+        // EXACT edges: paste what reads the factors beside the look-up, and put its layout into the pipeline.
+        let wgsl = exact_factor_wgsl(&WgslOptions::group(2), 0) + &wgsl.replace(FILTERED, EXACT_FACTOR);
+        groups.push(Some(self.edges.layout()));
 
         (wgsl, groups)
     }
 
     /// Binds what the shaded pass reads of it.
     pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
-        // EXACT resolve: bind the factors of this frame where the pasted WGSL looks for them.
-        pass.set_bind_group(2, self.resolve.group(), &[]);
+        // EXACT edges: bind the factors of this frame where the pasted WGSL looks for them.
+        pass.set_bind_group(2, self.edges.group(), &[]);
     }
 
     /// How edges came out in the last frame, and what rays decided in the last one that the GPU has finished.
     pub(crate) fn report(&mut self) -> String {
-        let counts = self.resolve.take_counts();
+        let counts = self.edges.take_counts();
         let traced = counts.map(|counts| format!(", {} of {} pixels", counts.traced, counts.facing));
-        format!("{:?}{}", self.resolve.result(), traced.unwrap_or_default())
+        format!("{:?}{}", self.edges.result(), traced.unwrap_or_default())
     }
 }
 
@@ -104,9 +104,9 @@ impl Engine {
         });
         exact.rays.set_instances(dvec3(cell), &instances.collect::<Vec<_>>())?;
 
-        // EXACT resolve: find the factors. What comes back says why, where edges are filtered.
-        let view = ResolveView::new(depth, mat4(clip_from_eye), DepthConvention::Reversed, dvec3(camera.eye));
-        exact.resolve.record(encoder, &self.sun, Some(&exact.rays), &view)?;
+        // EXACT edges: find the factors. What comes back says why, where edges are filtered.
+        let view = EdgeView::new(depth, mat4(clip_from_eye), DepthConvention::Reversed, dvec3(camera.eye));
+        exact.edges.record(encoder, &self.sun, Some(&exact.rays), &view)?;
 
         Ok(())
     }

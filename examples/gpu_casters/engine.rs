@@ -1,7 +1,7 @@
-//! The part of an engine that keeps its casters on the GPU: a compute shader finds those of each piece of a shadow pass,
+//! The part of an engine that keeps its casters on the GPU: a compute shader finds those of each region of a shadow pass,
 //! and fills the arguments of one indirect draw for each.
 
-use shadowfit_wgpu::{CullingPiece, ShadowPiece, SunShadows, WgslOptions, caster_wgsl, culling_wgsl};
+use shadowfit_wgpu::{CullingRegion, DrawRegion, SunShadows, WgslOptions, caster_wgsl, culling_wgsl};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, DrawIndexedIndirectArgs};
 
 use super::town::Block;
@@ -16,7 +16,7 @@ struct Caster {
 }
 ";
 
-/// Finds the casters of each piece: a thread for each of both.
+/// Finds the casters of each region: a thread for each of both.
 const CULL: &str = "
 struct Draw {
     index_count: u32,
@@ -60,9 +60,9 @@ const INDICES: [u16; 36] =
 
 /// The buffers of a frame that the compute shader fills.
 pub(crate) struct Draws {
-    /// Arguments of an indirect draw for each piece.
+    /// Arguments of an indirect draw for each region.
     pub(crate) arguments: wgpu::Buffer,
-    /// Numbers of the casters to draw, room for all of them in each piece.
+    /// Numbers of the casters to draw, room for all of them in each region.
     numbers: wgpu::Buffer,
 }
 
@@ -102,25 +102,25 @@ impl GpuCasters {
         (self.casters.size() / size_of::<Block>() as u64) as u32
     }
 
-    /// Records the compute pass that finds the casters of each piece of the frame. Frames may have no piece.
+    /// Records the compute pass that finds the casters of each region of the frame. Frames may have no region.
     pub(crate) fn cull(&self, encoder: &mut wgpu::CommandEncoder, sun: &SunShadows) -> Option<Draws> {
-        let pieces: Vec<CullingPiece> = sun.culling_pieces().collect();
-        if pieces.is_empty() {
+        let regions: Vec<CullingRegion> = sun.culling_regions().collect();
+        if regions.is_empty() {
             return None;
         }
         let arguments = DrawIndexedIndirectArgs { index_count: INDICES.len() as u32, ..Default::default() };
-        let arguments: Vec<u8> = pieces.iter().flat_map(|_| arguments.as_bytes().to_vec()).collect();
+        let arguments: Vec<u8> = regions.iter().flat_map(|_| arguments.as_bytes().to_vec()).collect();
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC;
         let draws = Draws {
             arguments: filled(&self.device, &arguments, usage),
             numbers: self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
-                size: pieces.len() as u64 * self.numbers_of_a_piece(),
+                size: regions.len() as u64 * self.numbers_of_a_region(),
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
                 mapped_at_creation: false,
             }),
         };
-        let pieces_buffer = filled(&self.device, bytemuck::cast_slice(&pieces), wgpu::BufferUsages::STORAGE);
+        let pieces_buffer = filled(&self.device, bytemuck::cast_slice(&regions), wgpu::BufferUsages::STORAGE);
         let layouts = [0, 1].map(|group| self.cull.get_bind_group_layout(group));
         let groups = [
             group(&self.device, &layouts[0], &[&pieces_buffer]),
@@ -130,20 +130,20 @@ impl GpuCasters {
         pass.set_pipeline(&self.cull);
         pass.set_bind_group(0, &groups[0], &[]);
         pass.set_bind_group(1, &groups[1], &[]);
-        pass.dispatch_workgroups(self.count().div_ceil(64), pieces.len() as u32, 1);
+        pass.dispatch_workgroups(self.count().div_ceil(64), regions.len() as u32, 1);
         drop(pass);
         Some(draws)
     }
 
-    /// Bytes of the numbers of a piece.
-    fn numbers_of_a_piece(&self) -> u64 {
+    /// Bytes of the numbers of a region.
+    fn numbers_of_a_region(&self) -> u64 {
         u64::from(self.count()) * size_of::<u32>() as u64
     }
 
-    /// Draws a piece of a shadow pass.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, piece: &ShadowPiece<'_>, draws: &Draws) {
-        let number = piece.number as u64;
-        self.bind(pass, draws.numbers.slice(number * self.numbers_of_a_piece()..));
+    /// Draws a region of a shadow pass.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, region: &DrawRegion<'_>, draws: &Draws) {
+        let number = region.number as u64;
+        self.bind(pass, draws.numbers.slice(number * self.numbers_of_a_region()..));
         pass.draw_indexed_indirect(&draws.arguments, number * size_of::<DrawIndexedIndirectArgs>() as u64);
     }
 

@@ -9,7 +9,7 @@ const {
 const hex = (value) => `0x${BigInt.asUintN(64, value).toString(16)}`;
 for (const [name, hash, expected] of [
     ["the fits' hash", shadowfit_hash(), shadowfit_expected_hash()],
-    ...['one map', 'slices', 'windows'].map((kind, index) => [
+    ...['single map', 'cascades', 'windows'].map((kind, index) => [
         `the hash over the numbers of ${kind}`, shadowfit_numbers(index), shadowfit_expected_numbers(index),
     ]),
 ]) {

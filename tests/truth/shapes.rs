@@ -1,6 +1,6 @@
 //! Scenes whose shadows are known, and the pictures of them.
 
-use shadowfit::OneMap;
+use shadowfit::SingleMap;
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, Shape, Stabilise};
 use shadowfit::{PerspectiveCamera, Technique};
@@ -101,7 +101,7 @@ impl Arrangement {
 
 /// One map of 512 texels around what is seen, with a filter and a bias.
 pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> Technique {
-    let one = OneMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
+    let one = SingleMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
     Technique::default().with_maps(one).with_resolution(512, 512).with_look_up(filter, bias)
 }
 

@@ -24,7 +24,7 @@ impl LightBox {
         let light_from_world = DMat4::from_cols_array(&map_box.light_from_world.to_cols_array().map(f64::from));
         let axes = [0, 1, 2].map(|row| light_from_world.row(row).truncate());
         let resolution = DVec2::from_array(map_box.resolution.to_array().map(f64::from));
-        if let Some(grid) = &map.anchor {
+        if let Some(grid) = &map.grid_position {
             // The same numbers in each frame, moved by whole texels, which f32 holds exactly.
             let first = DVec2::from_array(grid.first.map(|line| line as f64));
             let size = DVec2::from_array(grid.texel.to_array()) * resolution;

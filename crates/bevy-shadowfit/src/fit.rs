@@ -62,7 +62,7 @@ pub(crate) fn fit_cascades(
             for (camera, demand) in sun.demand(&views) {
                 let key = CountedView { light: item.entity, camera };
                 if let Some(seen) = sightings.take(key) {
-                    item.memory.fitter_of(camera, sun.fitted.fit).see(seen);
+                    item.memory.fitter_of(camera, sun.fitted.fit).set_visible_demand(seen);
                 }
                 wanted.0.push((key, demand));
             }
@@ -268,7 +268,8 @@ impl Sun {
         let mut last = 0.0_f32;
         for map in fitted.iter() {
             // The last one has no end, and one without a range ends before all others.
-            last = last.max(map.far).min(self.max_distance());
+            let end = map.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32));
+            last = last.max(end).min(self.max_distance());
             bounds.push(last);
         }
         bounds[count - 1] = self.max_distance();

@@ -12,7 +12,7 @@ use bevy::render::extract_resource::{ExtractResource, ExtractResourcePlugin};
 use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery};
 use bevy::render::view::ExtractedView;
 use bevy::render::{Render, RenderApp, RenderSystems};
-use shadowfit::Seen;
+use shadowfit::VisibleDemand;
 use shadowfit_wgpu::demand::{DemandPass, DemandView};
 
 /// A light, and a camera whose picture is counted for it.
@@ -29,15 +29,15 @@ pub(crate) struct Wanted(pub(crate) Vec<(CountedView, DemandView)>);
 
 /// What was counted last, shared by both worlds.
 #[derive(Resource, Clone, Default)]
-pub(crate) struct Sightings(Arc<Mutex<HashMap<CountedView, Seen>>>);
+pub(crate) struct Sightings(Arc<Mutex<HashMap<CountedView, VisibleDemand>>>);
 
 impl Sightings {
     /// The newest counts, given once.
-    pub(crate) fn take(&self, key: CountedView) -> Option<Seen> {
+    pub(crate) fn take(&self, key: CountedView) -> Option<VisibleDemand> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key)
     }
 
-    fn put(&self, key: CountedView, seen: Seen) {
+    fn put(&self, key: CountedView, seen: VisibleDemand) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, seen);
     }
 }

@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, Hysteresis, MapSelection, MapSettings, Shape, SplitScheme, Stabilise,
 };
-use shadowfit::{DepthConvention, OneMap, Slices, Technique, Windows};
+use shadowfit::{Cascades, DepthConvention, SingleMap, Technique, Windows};
 
 use crate::memory::FitMemory;
 
@@ -114,12 +114,12 @@ impl Reading {
     }
 }
 
-/// Reach of Bevy's filters, in texels.
+/// Radius of Bevy's filters, in texels.
 fn reach(filter: ShadowFilteringMethod) -> f32 {
     match filter {
-        ShadowFilteringMethod::Hardware2x2 => FilterKind::Hardware2x2.reach(),
+        ShadowFilteringMethod::Hardware2x2 => FilterKind::Hardware2x2.filter_radius(),
         // The same 6 × 6 texels as ours.
-        ShadowFilteringMethod::Gaussian => FilterKind::Pcf5x5.reach(),
+        ShadowFilteringMethod::Gaussian => FilterKind::Pcf5x5.filter_radius(),
         // Its disc is given in metres: from 1.5 to 4 texels for texels of 4 to 23 mm, one hardware look-up each.
         ShadowFilteringMethod::Temporal => 5.0,
     }
@@ -143,7 +143,7 @@ impl Fit {
 
     fn stabilise(self) -> Stabilise {
         match self {
-            Self::Stable => Stabilise::Snap { max_waste: 4.0 },
+            Self::Stable => Stabilise::Snap { max_oversize: 4.0 },
             Self::Calm | Self::Windows => Stabilise::Hysteresis(Hysteresis::default()),
             Self::Histogram => Stabilise::Off,
         }
@@ -163,7 +163,7 @@ impl Fit {
 
     /// The technique that chooses the bounds of `count` cascades, which end at `max_distance`, in metres.
     pub(crate) fn for_bounds(self, count: usize, max_distance: f32, resolution: u32, reading: Reading) -> Technique {
-        let maps = Slices {
+        let maps = Cascades {
             count: count as u32,
             shape: self.shape(),
             splits: self.scheme(),
@@ -181,7 +181,7 @@ impl Fit {
 
     /// The technique of a single cascade, whose part of the view is cut out beforehand.
     pub(crate) fn for_cascade(self, resolution: u32, reading: Reading) -> Technique {
-        technique(resolution, reading).with_maps(OneMap { shape: self.shape(), stabilise: self.stabilise() })
+        technique(resolution, reading).with_maps(SingleMap { shape: self.shape(), stabilise: self.stabilise() })
     }
 }
 

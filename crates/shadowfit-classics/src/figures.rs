@@ -218,8 +218,12 @@ impl Bench<'_> {
         let seen: Vec<Option<u32>> = probe.pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
         let truth = Truth::trace(&rays.tracer, &camera, &settings, &seen);
         let factors: Vec<f32> = probe.pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect();
-        let maps =
-            PictureMaps { maps: &[map], reading: MapReading::ViewDepth, reach: frame.test.reach, depth_clamp: false };
+        let maps = PictureMaps {
+            maps: &[map],
+            reading: MapReading::ViewDepth,
+            filter_radius: frame.test.reach,
+            depth_clamp: false,
+        };
         Ok(judge(&rays.tracer, &truth, &maps, &factors, |_| true))
     }
 }

@@ -6,7 +6,7 @@ use core::f32::consts::FRAC_PI_4;
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FitKind, MapSelection, Shape, SplitScheme, Stabilise};
-use shadowfit::{FitError, PerspectiveCamera, Slices, Technique};
+use shadowfit::{Cascades, FitError, PerspectiveCamera, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
 
@@ -24,7 +24,7 @@ const LOW: (DVec3, Vec3) = (DVec3::new(0.2, 13.7, 1.6), Vec3::new(-0.05, -0.16, 
 pub(crate) const SAMPLE: Sample = Sample {
     id: "parallel-split",
     title: "Parallel-split shadow maps",
-    teaches: "One map cannot be fine near the camera and reach far. Slices of the view by depth get a map each: small and \
+    teaches: "One map cannot be fine near the camera and reach far. Cascades by depth get a map each: small and \
               fine near the eye, wide and coarse far away. Practical splits lie between equal and logarithmic ones.",
     flaw: "Splits know the depth alone and not what is there: boxes hold much that nobody sees, and shadows change their \
            sharpness where one map ends.",
@@ -97,7 +97,7 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "uniform",
             label: "Uniform splits",
-            text: "Slices of equal depth, here with maps of 512²: the first one reaches a hundred metres, so that shadows at the \
+            text: "Cascades of equal depth, here with maps of 512²: the first one reaches a hundred metres, so that shadows at the \
                    camera are washed out.",
             options: &[("splits", "uniform"), ("map", "512")],
             view: Some(LOW),
@@ -105,7 +105,7 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "logarithmic",
             label: "Logarithmic splits",
-            text: "Slices of equal ratio, here with maps of 512²: fine at the camera, and one map for nearly all that is far.",
+            text: "Cascades of equal ratio, here with maps of 512²: fine at the camera, and one map for nearly all that is far.",
             options: &[("splits", "logarithmic"), ("map", "512"), ("tint", "on")],
             view: Some(LOW),
         },
@@ -144,13 +144,13 @@ fn drawing(values: &SampleValues, _: &PerspectiveCamera) -> Result<SampleDrawing
         _ => SplitScheme::Practical(values.get("lambda")),
     };
     let size: u32 = values.choice("map").parse().unwrap_or(2048);
-    let slices = Slices::default()
+    let cascades = Cascades::default()
         .with_shape(Shape::new(FitKind::FrustumAabb))
         .with_splits(splits)
         .with_selection(MapSelection::ViewDepth { overlap: values.get("blend") })
         .with_stabilise(Stabilise::Off);
     let count = values.choice("maps").parse().unwrap_or(4);
-    let mut technique = Technique::default().with_maps(slices).with_count(count);
+    let mut technique = Technique::default().with_maps(cascades).with_count(count);
     technique.fit =
         technique.fit.with_resolution(UVec2::splat(size)).with_max_distance(DISTANCE).with_caster_extension(DISTANCE);
     Ok(SampleDrawing::Technique { technique, is_tinted })

@@ -73,7 +73,7 @@ impl Artefact {
             Self::ClippingHole => {
                 "The near plane of each map is moved toward the light to the first caster that can throw a shadow \
                  into view, so that casters outside the view are drawn into the map. A single map is also fitted to \
-                 what is seen of the scene. Slices of the view keep the size of their texels, and only the depth \
+                 what is seen of the scene. Cascades keep the size of their texels, and only the depth \
                  range grows. Windows hold every caster over them, so they gave way to focused maps, and are back."
             }
         }

@@ -2,7 +2,7 @@
 //! that choose one.
 
 use egui::{Button, Color32, Grid, Response, RichText, Role, Stroke, Ui, WidgetInfo};
-use shadowfit::Constraint;
+use shadowfit::BoundSource;
 use shadowfit::diagnostics::DepthRounding;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit_params::figures::{Figures, MAP_TINTS, MapFigures};
@@ -120,7 +120,7 @@ fn table(
 
 /// What a map holds, behind its number.
 fn held(figures: &MapFigures) -> [Option<String>; 4] {
-    let is_window = figures.set_by[0] == Constraint::Window;
+    let is_window = figures.bounds_from[0] == BoundSource::Window;
     let view_depths = figures.view_depths.map(|[near, far]| format!("{} – {}", short(near), short(far)));
     [
         view_depths.or_else(|| is_window.then(|| size(figures.extent))),
@@ -142,7 +142,7 @@ fn costs(figures: &MapFigures) -> [Option<String>; 4] {
 
 /// All that is known of a map, line by line.
 fn details(map: usize, figures: &MapFigures) -> String {
-    let [left, right, bottom, top, far, near] = figures.set_by.map(name);
+    let [left, right, bottom, top, far, near] = figures.bounds_from.map(name);
     let title = if figures.is_empty { ": no receiver is in view" } else { "" };
     let mut lines = vec![
         format!("Map {}{title}", map + 1),
@@ -166,15 +166,15 @@ fn details(map: usize, figures: &MapFigures) -> String {
 }
 
 /// What set a plane, in a word.
-fn name(constraint: Constraint) -> &'static str {
+fn name(constraint: BoundSource) -> &'static str {
     match constraint {
-        Constraint::View => "view",
-        Constraint::Receivers => "scene",
-        Constraint::Casters => "casters",
-        Constraint::CasterExtension => "caster extension",
-        Constraint::Sphere => "sphere",
-        Constraint::Window => "window",
-        Constraint::Held => "held map",
+        BoundSource::View => "view",
+        BoundSource::Receivers => "scene",
+        BoundSource::Casters => "casters",
+        BoundSource::CasterExtension => "caster extension",
+        BoundSource::Sphere => "sphere",
+        BoundSource::Window => "window",
+        BoundSource::Held => "held map",
         _ => "other",
     }
 }
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn a_map_is_made_for_distances_and_a_window_for_what_it_holds() {
         let map = MapFigures { view_depths: Some([0.1, 12.0]), extent: [40.0, 20.0], ..MapFigures::default() };
-        let window = MapFigures { view_depths: None, set_by: [Constraint::Window; 6], ..map };
+        let window = MapFigures { view_depths: None, bounds_from: [BoundSource::Window; 6], ..map };
         assert_eq!(held(&map)[0].as_deref(), Some("0.10 – 12.0"));
         assert_eq!(held(&window)[0].as_deref(), Some("40.0 × 20.0 m"));
         assert_eq!(held(&MapFigures { view_depths: None, ..map })[0], None);
@@ -204,13 +204,13 @@ mod tests {
     #[test]
     fn the_details_name_every_plane_and_count() {
         let figures = MapFigures {
-            set_by: [
-                Constraint::View,
-                Constraint::Receivers,
-                Constraint::Sphere,
-                Constraint::Held,
-                Constraint::CasterExtension,
-                Constraint::Casters,
+            bounds_from: [
+                BoundSource::View,
+                BoundSource::Receivers,
+                BoundSource::Sphere,
+                BoundSource::Held,
+                BoundSource::CasterExtension,
+                BoundSource::Casters,
             ],
             is_empty: true,
             texel_size: [0.03, 0.005],

@@ -5,7 +5,7 @@ use shadowfit::Technique;
 use shadowfit::settings::{
     Edges, FitKind, Hysteresis, MapSelection, RectangleKind, Shape, SoftRadius, SplitScheme, Stabilise,
 };
-use shadowfit::{Maps, OneMap, Slices, Windows};
+use shadowfit::{Cascades, Maps, SingleMap, Windows};
 
 use crate::Value;
 use crate::tool::Settings;
@@ -183,7 +183,7 @@ impl Expression for Stabilise {
     fn expression(&self) -> String {
         match self {
             Self::Off => "Stabilise::Off".to_owned(),
-            Self::Snap { max_waste } => format!("Stabilise::Snap {{ max_waste: {} }}", max_waste.expression()),
+            Self::Snap { max_oversize } => format!("Stabilise::Snap {{ max_oversize: {} }}", max_oversize.expression()),
             Self::Hysteresis(hold) => format!("Stabilise::Hysteresis({})", hold.expression()),
         }
     }
@@ -193,8 +193,8 @@ impl Expression for Maps {
     fn expression(&self) -> String {
         match self {
             Self::Windows(windows) => windows.expression(),
-            Self::Slices(slices) => slices.expression(),
-            Self::One(one) => one.expression(),
+            Self::Cascades(cascades) => cascades.expression(),
+            Self::Single(one) => one.expression(),
         }
     }
 }
@@ -213,11 +213,11 @@ macro_rules! literals {
 }
 
 literals! {
-    Windows { count, blend, max_depth_waste }
-    Slices { count, shape, splits, selection, stabilise }
-    OneMap { shape, stabilise }
+    Windows { count, blend, max_depth_oversize }
+    Cascades { count, shape, splits, selection, stabilise }
+    SingleMap { shape, stabilise }
     Shape { kind, rectangle, max_texel_ratio }
-    Hysteresis { margin, max_growth, max_waste, look_ahead }
+    Hysteresis { margin, max_growth, max_oversize, look_ahead }
 }
 
 /// A struct by the names of its fields, their values and their defaults.
@@ -286,8 +286,8 @@ macro_rules! field {
 /// A field that is one of several variants, in the order of the parameter's options:
 ///
 /// - `choice!(technique.format: MapFormat [Depth32Float, R8Grey])`: all variants of a part of a technique;
-/// - `choice!(technique.maps, Maps::One(one) => one.shape.kind in [FitKind::Sphere])`: those of a list, where the part is
-///   one of a variant;
+/// - `choice!(technique.maps, Maps::Single(one) => one.shape.kind in [FitKind::Sphere])`: those of a list, where the
+///   part is one of a variant;
 /// - `choice!(view.mode in ViewMode::ALL)`: those of a list.
 macro_rules! choice {
     (technique $(.$path:ident)+: $kind:ident [$($variant:ident),+ $(,)?]) => {

@@ -4,7 +4,7 @@
 mod legend;
 
 use glam::Vec3;
-use shadowfit::Constraint;
+use shadowfit::BoundSource;
 use shadowfit::FittedMap;
 use shadowfit::diagnostics::{DepthRounding, depth_rounding};
 use shadowfit::settings::{MAX_MAPS, MapFormat};
@@ -57,7 +57,7 @@ pub struct Figures {
     pub shadow_pass_ms: Option<f32>,
     /// GPU time of the scene pass, in milliseconds.
     pub scene_pass_ms: Option<f32>,
-    /// GPU time of the passes that resolve edges, in milliseconds; `None` where edges are filtered, too.
+    /// GPU time of the edge passes, in milliseconds; `None` where edges are filtered, too.
     pub edges_ms: Option<f32>,
     /// Pixels whose edges were traced, in per cent of those that face the light within the shadow distance, 0..=100; `None`
     /// where edges are filtered, too.
@@ -115,8 +115,8 @@ pub struct MapFigures {
     /// Width and height of what the map holds, across the light, in metres.
     pub extent: [f32; 2],
     /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
-    /// [`LightProjection::set_by`](shadowfit::LightProjection::set_by).
-    pub set_by: [Constraint; 6],
+    /// [`LightProjection::bounds_from`](shadowfit::LightProjection::bounds_from).
+    pub bounds_from: [BoundSource; 6],
     /// Whether no receiver is in view, see [`LightProjection::is_empty`](shadowfit::LightProjection::is_empty).
     pub is_empty: bool,
     /// Size of one texel across the light, in metres, along u and v.
@@ -143,13 +143,13 @@ impl MapFigures {
     /// The figures of a fitted map that is stored in `format`, with nothing drawn yet. `end` is the
     /// view depth at which shadows end, in metres, since the last map itself has no end.
     pub fn new(map: &FittedMap, end: f32, format: MapFormat) -> Self {
-        let FittedMap { projection: fit, bias, near, far, .. } = map;
-        let view_depths = [*near, far.min(end)];
-        let is_window = fit.set_by[0] == Constraint::Window;
+        let FittedMap { projection: fit, bias, depths, .. } = map;
+        let view_depths = depths.map(|range| [range.near as f32, range.far.map_or(end, |far| end.min(far as f32))]);
+        let is_window = fit.bounds_from[0] == BoundSource::Window;
         Self {
-            view_depths: (view_depths[0] < view_depths[1] && !is_window).then_some(view_depths),
+            view_depths: view_depths.filter(|[near, far]| near < far && !is_window),
             extent: (fit.texel_size * fit.resolution.as_vec2()).to_array(),
-            set_by: fit.set_by,
+            bounds_from: fit.bounds_from,
             is_empty: fit.is_empty,
             texel_size: fit.texel_size.to_array(),
             depth_range: fit.depth_range,
@@ -169,7 +169,8 @@ mod tests {
     use glam::{UVec2, Vec2};
 
     use super::*;
-    use shadowfit::LightProjection;
+    use shadowfit::selection::DepthRange;
+    use shadowfit::{Bias, LightProjection};
 
     #[test]
     fn tints_are_linear_by_the_srgb_curve() {
@@ -183,23 +184,25 @@ mod tests {
 
     #[test]
     fn the_last_map_ends_with_the_shadows_and_an_empty_one_has_no_depths() {
-        let figures =
-            |near, far| MapFigures::new(&FittedMap { near, far, ..FittedMap::default() }, 80.0, MapFormat::default());
-        assert_eq!(figures(0.1, 5.0).view_depths, Some([0.1, 5.0]));
-        assert_eq!(figures(40.0, f32::MAX).view_depths, Some([40.0, 80.0]));
-        assert_eq!(figures(5.0, f32::MIN).view_depths, None);
-        assert_eq!(figures(f32::MAX, f32::MAX).view_depths, None);
+        let figures = |depths: Option<DepthRange>| {
+            MapFigures::new(&FittedMap { depths, ..FittedMap::default() }, 80.0, MapFormat::default())
+        };
+        assert_eq!(figures(Some(DepthRange::new(0.5, Some(5.0)))).view_depths, Some([0.5, 5.0]));
+        assert_eq!(figures(Some(DepthRange::new(40.0, None))).view_depths, Some([40.0, 80.0]));
+        assert_eq!(figures(Some(DepthRange::new(80.0, None))).view_depths, None);
+        assert_eq!(figures(None).view_depths, None);
     }
 
     #[test]
     fn a_window_has_an_extent_and_no_view_depths() {
-        let map = |set_by| {
+        let map = |bounds_from| {
             let (texel_size, resolution) = (Vec2::new(0.5, 0.25), UVec2::new(8, 12));
-            let fit = LightProjection { set_by: [set_by; 6], texel_size, resolution, ..LightProjection::default() };
-            let map = FittedMap { near: 1.0, far: 9.0, projection: fit, ..FittedMap::default() };
+            let fit =
+                LightProjection { bounds_from: [bounds_from; 6], texel_size, resolution, ..LightProjection::default() };
+            let map = FittedMap::new(fit, Bias::default()).with_depths(DepthRange::new(1.0, Some(9.0)));
             MapFigures::new(&map, 80.0, MapFormat::default())
         };
-        let (window, other) = (map(Constraint::Window), map(Constraint::View));
+        let (window, other) = (map(BoundSource::Window), map(BoundSource::View));
         assert_eq!((window.view_depths, window.extent), (None, [4.0, 3.0]));
         assert_eq!((other.view_depths, other.extent), (Some([1.0, 9.0]), [4.0, 3.0]));
     }

@@ -10,19 +10,19 @@ pub struct Inputs {
     /// Which boxes of the receivers. Default: [`BoxSource::Clusters`].
     pub boxes: BoxSource,
     /// Whether fits are told what the last frame showed. Default: yes.
-    pub seen: bool,
+    pub visible_demand: bool,
 }
 
 impl Default for Inputs {
     fn default() -> Self {
-        Self { boxes: BoxSource::Clusters, seen: true }
+        Self { boxes: BoxSource::Clusters, visible_demand: true }
     }
 }
 
 impl Inputs {
     /// Whether fits of a technique are told what the last frame showed, and go by it.
     pub const fn tell(self, technique: &Technique) -> bool {
-        self.seen && technique.maps.uses_seen()
+        self.visible_demand && technique.maps.uses_visible_demand()
     }
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for Inputs {
             BoxSource::Objects => "given the objects' boxes",
             BoxSource::Clusters => "given the triangle clusters' boxes",
         })?;
-        f.write_str(if self.seen { " and what the frame before showed" } else { " alone" })
+        f.write_str(if self.visible_demand { " and what the frame before showed" } else { " alone" })
     }
 }
 
@@ -60,13 +60,25 @@ pub struct NamedInputs {
 
 /// The names that stand for a preset with an input.
 pub const NAMED_INPUTS: [NamedInputs; 4] = [
-    NamedInputs { name: "clusters-1", preset: "focused-1", inputs: Inputs { boxes: BoxSource::Clusters, seen: true } },
-    NamedInputs { name: "clusters-4", preset: "focused-4", inputs: Inputs { boxes: BoxSource::Clusters, seen: false } },
-    NamedInputs { name: "histogram-4", preset: "focused-4", inputs: Inputs { boxes: BoxSource::Clusters, seen: true } },
+    NamedInputs {
+        name: "clusters-1",
+        preset: "focused-1",
+        inputs: Inputs { boxes: BoxSource::Clusters, visible_demand: true },
+    },
+    NamedInputs {
+        name: "clusters-4",
+        preset: "focused-4",
+        inputs: Inputs { boxes: BoxSource::Clusters, visible_demand: false },
+    },
+    NamedInputs {
+        name: "histogram-4",
+        preset: "focused-4",
+        inputs: Inputs { boxes: BoxSource::Clusters, visible_demand: true },
+    },
     NamedInputs {
         name: "windows-boxes-4",
         preset: "windows-4",
-        inputs: Inputs { boxes: BoxSource::Clusters, seen: false },
+        inputs: Inputs { boxes: BoxSource::Clusters, visible_demand: false },
     },
 ];
 

@@ -45,12 +45,12 @@ fn samples() -> [Sample; 7] {
 /// A technique of which no parameter has its default value.
 fn all_fields() -> Technique {
     Technique {
-        maps: Maps::Slices(Slices {
+        maps: Maps::Cascades(Cascades {
             count: 3,
             shape: Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 },
             splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 16_777_216.0, f32::MAX]),
             selection: MapSelection::ViewDepth { overlap: 0.1 },
-            stabilise: Stabilise::Snap { max_waste: 3.0 },
+            stabilise: Stabilise::Snap { max_oversize: 3.0 },
         }),
         fit: MapSettings {
             max_distance: 80.25,
@@ -81,17 +81,18 @@ fn all_fields() -> Technique {
 /// Single fields in each of the nested structs.
 fn some_fields() -> Technique {
     let hold = Hysteresis::default().with_look_ahead(60);
-    let slices = Slices::default().with_splits(SplitScheme::Practical(0.7)).with_stabilise(Stabilise::Hysteresis(hold));
-    let mut technique = Technique::default().with_maps(slices).with_max_distance(f32::MIN);
+    let cascades =
+        Cascades::default().with_splits(SplitScheme::Practical(0.7)).with_stabilise(Stabilise::Hysteresis(hold));
+    let mut technique = Technique::default().with_maps(cascades).with_max_distance(f32::MIN);
     technique.bias.slope = 1.0;
     technique.softness.radius = SoftRadius::SunAngle(0.01);
     technique
 }
 
 fn not_finite() -> Technique {
-    let choice = MapSelection::ViewDepth { overlap: f32::INFINITY };
-    let slices = Slices::default().with_splits(SplitScheme::Practical(f32::NAN)).with_selection(choice);
-    let mut technique = Technique::default().with_maps(slices);
+    let selection = MapSelection::ViewDepth { overlap: f32::INFINITY };
+    let cascades = Cascades::default().with_splits(SplitScheme::Practical(f32::NAN)).with_selection(selection);
+    let mut technique = Technique::default().with_maps(cascades);
     technique.fit.up = Vec3::new(f32::NEG_INFINITY, f32::NAN, f32::MAX);
     technique.fit.border = Some(-f32::NAN);
     technique

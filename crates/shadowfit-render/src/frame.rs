@@ -23,10 +23,9 @@ pub struct Frame<'a> {
     /// Whether maps that would be drawn as they were last are not drawn again: pictures and statistics are the same, and
     /// times are left as they were. Measurements of what it takes to draw maps leave this off.
     pub maps_may_stay: bool,
-    /// Eye and unit forward direction (world space, metres) whose view depths choose among maps that are
-    /// read by view depth; the
-    /// camera's own where `None`.
-    pub choice: Option<(DVec3, Vec3)>,
+    /// Eye (world space, metres) and unit forward direction that view depths are counted from, by which points select
+    /// among maps that are read by view depth. `None` for the camera's.
+    pub reader: Option<(DVec3, Vec3)>,
     /// Which casters are drawn into the maps.
     pub culling: Culling,
     /// Whether shadows are drawn.
@@ -64,7 +63,7 @@ impl<'a> Frame<'a> {
             maps,
             maps_stay: false,
             maps_may_stay: false,
-            choice: None,
+            reader: None,
             culling: Culling::default(),
             shadows: true,
             atmosphere,
@@ -82,11 +81,11 @@ impl<'a> Frame<'a> {
     /// The same frame seen through another camera, while points still choose their maps from this one's.
     #[must_use]
     pub fn seen_through(self, camera: impl Into<Camera>) -> Self {
-        Self { camera: camera.into(), choice: Some(self.chooser()), ..self }
+        Self { camera: camera.into(), reader: Some(self.reader()), ..self }
     }
 
-    /// Eye and unit forward direction from which view depths are counted.
-    pub(crate) fn chooser(&self) -> (DVec3, Vec3) {
-        self.choice.unwrap_or((self.camera.eye, self.camera.forward.normalize()))
+    /// Eye and unit forward direction that view depths are counted from.
+    pub(crate) fn reader(&self) -> (DVec3, Vec3) {
+        self.reader.unwrap_or((self.camera.eye, self.camera.forward.normalize()))
     }
 }

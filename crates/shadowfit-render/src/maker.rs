@@ -168,14 +168,14 @@ pub fn part_buffers(number: InstanceNumber, streams: Streams) -> [Option<wgpu::V
     const TANGENTS: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Float32x4];
     const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x2, 4 => Float32x4];
     const FIRST_TRIANGLE: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, first_triangle));
-    const HOLDER: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, holder));
+    const FIRST_MAP: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, first_map));
     let stream = |array_stride: usize, step_mode, attributes| {
         Some(wgpu::VertexBufferLayout { array_stride: array_stride as u64, step_mode, attributes })
     };
     let [positions, normals, tangents, surface] = STRIDES;
     let instance = match number {
         InstanceNumber::FirstTriangle => &FIRST_TRIANGLE,
-        InstanceNumber::Holder => &HOLDER,
+        InstanceNumber::Holder => &FIRST_MAP,
     };
     let each = wgpu::VertexStepMode::Vertex;
     [

@@ -177,7 +177,7 @@ impl Renderer {
         let plan = self.prepare(gpu, scene, frame, Drawn::Shaded(frame.overlay), target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        self.resolve_edges(gpu, &mut encoder, scene, frame, &plan, Extent { size: target.size, samples: self.samples });
+        self.trace_edges(gpu, &mut encoder, scene, frame, &plan, Extent { size: target.size, samples: self.samples });
         self.scene_pass(gpu, &mut encoder, scene, &plan, target);
         self.over_pass(gpu, &mut encoder, frame, &plan, target);
         if let (Some(encoding), Some(encoded)) = (&self.pipelines.encoding, &target.encoded) {
@@ -224,7 +224,7 @@ impl Renderer {
         self.timer.begin_probe(gpu, frame.maps_stay);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        self.resolve_edges(gpu, &mut encoder, scene, &frame, &plan, Extent { size: targets.size, samples: 1 });
+        self.trace_edges(gpu, &mut encoder, scene, &frame, &plan, Extent { size: targets.size, samples: 1 });
         self.probe_pass(&mut encoder, scene, &plan, targets, true);
         self.timer.resolve(&mut encoder);
         gpu.submit([encoder.finish()]);

@@ -32,8 +32,8 @@ pub struct GpuScene {
     /// Bounds of all instances, relative to the eye.
     boxes: Vec<shadowfit::Aabb>,
     data: Vec<InstanceData>,
-    /// [`InstanceData::holder`] of each instance, in frames that show them; else empty.
-    holders: Vec<u32>,
+    /// [`InstanceData::first_map`] of each instance, in frames that show them; else empty.
+    first_maps: Vec<u32>,
     pub(crate) instance_buffer: wgpu::Buffer,
     /// Number of the pose, unlike that of any other pose of any scene.
     pose: u64,
@@ -128,7 +128,7 @@ impl GpuScene {
             eye: DVec3::ZERO,
             boxes: Vec::new(),
             data: Vec::new(),
-            holders: Vec::new(),
+            first_maps: Vec::new(),
             instance_buffer: instance_buffer(&gpu.device, count.max(1)),
             pose: 0,
             rays: None,
@@ -229,7 +229,7 @@ impl GpuScene {
     /// Starts a frame's instance list, for positions relative to `eye` (world space, metres).
     pub fn begin_frame(&mut self, eye: DVec3) {
         self.data.clear();
-        self.holders.clear();
+        self.first_maps.clear();
         self.eye = eye;
         let relative = |point: Vec3| (point.as_dvec3() - eye).as_vec3();
         let boxes = self.instances.iter().map(|instance| instance.bounds);
@@ -243,13 +243,13 @@ impl GpuScene {
     }
 
     /// Sets which maps hold the casters of this frame: bit i of a caster's mask stands for map i.
-    pub(crate) fn set_holders(&mut self, masks: &[u8]) {
-        self.holders.clear();
-        self.holders.resize(self.instances.len(), 0);
+    pub(crate) fn set_maps_by_caster(&mut self, masks: &[u8]) {
+        self.first_maps.clear();
+        self.first_maps.resize(self.instances.len(), 0);
         let mut of_instances = vec![None; self.instances.len()];
         self.casters.merge_masks(masks, &mut of_instances);
-        for (holder, mask) in self.holders.iter_mut().zip(of_instances) {
-            *holder = match mask {
+        for (stored, mask) in self.first_maps.iter_mut().zip(of_instances) {
+            *stored = match mask {
                 None => 0,
                 Some(0) => 1,
                 Some(mask) => 2 + u8::trailing_zeros(mask),
@@ -293,8 +293,8 @@ impl GpuScene {
                 if !bounds.is_empty() && keep(bounds) {
                     distance = distance.min(((bounds.min + bounds.max) * 0.5).length());
                     let data = instance_data(&instance.world_from_mesh, self.eye, instance.first_triangle);
-                    let holder = self.holders.get(member).copied().unwrap_or(0);
-                    self.data.push(InstanceData { holder, ..data });
+                    let first_map = self.first_maps.get(member).copied().unwrap_or(0);
+                    self.data.push(InstanceData { first_map, ..data });
                 }
             }
             let instances = start..self.data.len() as u32;
@@ -463,7 +463,7 @@ fn instance_data(world_from_mesh: &Mat4, eye: DVec3, first_triangle: u32) -> Ins
     InstanceData {
         rows: [relative.row(0).to_array(), relative.row(1).to_array(), relative.row(2).to_array()],
         first_triangle,
-        holder: 0,
+        first_map: 0,
         padding: [0; 2],
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt::Write as _;
 
 use shadowfit_params::figures::{EDGE_COLORS, ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
-use shadowfit_wgpu::resolve::resolved_wgsl;
+use shadowfit_wgpu::exact_edges::exact_factor_wgsl;
 use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
 use crate::Overlay;
@@ -57,7 +57,7 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     [
         FRAME,
         &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)),
-        &resolved_wgsl(&WgslOptions::group(FRAME_GROUP), FACTORS_BINDING),
+        &exact_factor_wgsl(&WgslOptions::group(FRAME_GROUP), FACTORS_BINDING),
         &material(2),
         REFLECTANCE,
         include_str!("shaders/scene.wgsl"),

@@ -12,9 +12,9 @@ pub(crate) enum Pass {
     /// Into a map, by its number.
     Shadow(usize),
     Probe,
-    /// Depths and normals that edges are resolved from.
+    /// Depths and normals that edges are traced from.
     Surfaces,
-    /// The resolve pass.
+    /// The edge passes.
     Edges,
     Scene,
     /// The shaded pass of a further picture of maps that a frame before it drew.
@@ -35,7 +35,7 @@ pub struct PassTimes {
     pub maps_ms: [Option<f32>; MAX_MAPS],
     /// The probe pass.
     pub probe_ms: Option<f32>,
-    /// The passes that edges are resolved by: depths and normals, and rays.
+    /// The passes that edges are traced by: depths and normals, and rays.
     pub edges_ms: Option<f32>,
     /// The shaded pass.
     pub scene_ms: Option<f32>,

@@ -156,7 +156,7 @@ pub struct InstanceData {
     pub first_triangle: u32,
     /// The map that holds it, for [`Overlay::Casters`](crate::Overlay::Casters): its index plus 2, 1 if no map does, 0 for
     /// what casts nothing.
-    pub holder: u32,
+    pub first_map: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: [u32; 2],
 }

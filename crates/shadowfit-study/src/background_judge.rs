@@ -207,7 +207,7 @@ mod tests {
     }
 
     /// The same maps whatever frame came before.
-    const UNTOLD: Inputs = Inputs { boxes: BoxSource::Clusters, seen: false };
+    const UNTOLD: Inputs = Inputs { boxes: BoxSource::Clusters, visible_demand: false };
 
     impl Drawn {
         fn new() -> Self {

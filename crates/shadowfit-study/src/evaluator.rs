@@ -12,7 +12,7 @@ use shadowfit_render::{
 use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::ShadowMapError;
-use shadowfit_wgpu::resolve::EdgeResult;
+use shadowfit_wgpu::exact_edges::EdgeOutcome;
 
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
@@ -201,7 +201,7 @@ impl Evaluator {
         }
         let seen = self.draw_probe(gpu, scene, &Probed { view, maps, choice: None })?;
         let pixels = seen.arrive(gpu).await?.pixels;
-        let traced = self.renderer.edge_result() == EdgeResult::Traced;
+        let traced = self.renderer.edge_result() == EdgeOutcome::Traced;
         let traced = self.renderer.take_edge_counts().filter(|_| traced);
         let before = self.frame_before(gpu, scene, view).await?;
         self.note_view(view, maps);
@@ -373,7 +373,7 @@ impl Evaluator {
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
         let Probed { view, maps, choice } = *probed;
         let atmosphere = view.atmosphere();
-        let frame = Frame { choice, ..self.frame(view, maps, &atmosphere) };
+        let frame = Frame { reader: choice, ..self.frame(view, maps, &atmosphere) };
         self.make_rays(gpu, scene)?;
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use shadowfit::demand;
 use shadowfit::demand::needed_texel;
-use shadowfit::demand::{Seen, SeenSpace};
+use shadowfit::demand::{VisibleDemand, VisibleDemandSpace};
 use shadowfit::{Camera, FitError, FitInput, FittedMaps, ShadowFitter, Technique, ViewFrustum};
 use shadowfit_params::Inputs;
 use shadowfit_truth::Tracer;
@@ -84,7 +84,7 @@ impl PosedScene {
         };
         let camera = self.camera_for_rays(view.camera);
         let seen = see_by_rays(&rays.tracer, camera, view.direction, fitter.technique())?;
-        fitter.see(seen.moved(self.origin()));
+        fitter.set_visible_demand(seen.moved(self.origin()));
         Ok(())
     }
 }
@@ -94,17 +94,17 @@ impl PosedScene {
 ///
 /// # Errors
 ///
-/// As [`SeenSpace::new`].
+/// As [`VisibleDemandSpace::new`].
 pub fn see_by_rays(
     tracer: &Tracer,
     camera: impl Into<Camera>,
     direction: Vec3,
     technique: &Technique,
-) -> Result<Seen, FitError> {
+) -> Result<VisibleDemand, FitError> {
     let camera: Camera = camera.into();
     let settings = &technique.fit;
-    let space = SeenSpace::new(&camera.frustum()?, direction, settings.up, settings.max_distance)?;
-    let mut seen = Seen::new(space);
+    let space = VisibleDemandSpace::new(&camera.frustum()?, direction, settings.up, settings.max_distance)?;
+    let mut seen = VisibleDemand::new(space);
     let world_from_view = camera.view_from_world().inverse();
     let [right, up, back] =
         [world_from_view.x_axis, world_from_view.y_axis, world_from_view.z_axis].map(|axis| axis.truncate().as_dvec3());
@@ -203,7 +203,7 @@ mod tests {
         let seen = |scene: &PreparedScene, name: &str, rays: RayUse| {
             let (mut fitter, inputs) = fitter(name);
             scene.see(&mut fitter, inputs, &view(9.0, false), rays).expect("a camera that makes sense");
-            fitter.seen().cloned()
+            fitter.visible_demand().cloned()
         };
         for name in ["windows-4", "histogram-4"] {
             assert_eq!(seen(&scene, name, RayUse::IfReady), None, "{name}");
@@ -224,7 +224,7 @@ mod tests {
         let is_told = |name: &str| {
             let (mut fitter, inputs) = fitter(name);
             scene.see(&mut fitter, inputs, &view(9.0, true), RayUse::Wait).expect("a camera that makes sense");
-            fitter.seen().is_some()
+            fitter.visible_demand().is_some()
         };
         assert_eq!(["clusters-4", "stable-4", "windows-boxes-4"].map(is_told), [false; 3]);
         assert_eq!(["histogram-4", "windows-4"].map(is_told), [true; 2]);

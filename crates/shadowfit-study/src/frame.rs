@@ -64,7 +64,7 @@ mod tests {
         let atmosphere = view.atmosphere();
         let inside = view.frame(&[], &atmosphere);
         let drawn = inside.seen_through(outside);
-        assert_eq!((drawn.camera.eye, drawn.choice), (outside.eye, Some((DVec3::ZERO, Vec3::NEG_Z))));
-        assert_eq!(inside.choice, None);
+        assert_eq!((drawn.camera.eye, drawn.reader), (outside.eye, Some((DVec3::ZERO, Vec3::NEG_Z))));
+        assert_eq!(inside.reader, None);
     }
 }

@@ -10,6 +10,9 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 /// View depth, in metres, of the end of maps that have none: measured maps have finite ends.
 pub(crate) const NO_END: f64 = 1e9;
 
+/// View depth, in metres, of the end of maps that no point reads by view depth.
+const NOWHERE: f64 = -NO_END;
+
 /// Maps of a descriptor in the form that is measured, for positions relative to a world position. `direction` is the
 /// light's direction of travel.
 pub(crate) fn measured(
@@ -19,10 +22,15 @@ pub(crate) fn measured(
     origin: DVec3,
 ) -> Vec<MeasuredMap> {
     let measured = |map: &FittedMap| {
-        let reach = descriptor.softness.reach_in(descriptor.filter, &map.projection).per_axis();
-        let (size, end) = (map.projection.resolution.as_dvec2(), map.depth_range().far.min(NO_END));
+        let reach = descriptor.softness.filter_radius_in(descriptor.filter, &map.projection).per_axis();
+        let (size, end) =
+            (map.projection.resolution.as_dvec2(), map.depths.map_or(NOWHERE, |range| range.far.unwrap_or(NO_END)));
         let measured = MeasuredMap::new(&clip_from(map, origin), size, end, -direction.as_dvec3());
-        measured.with_blend_near(map.depth_range().blend_near).with_reach(reach)
+        let measured = measured.with_filter_radius(reach);
+        match map.depths.and_then(|range| range.covered_from) {
+            Some(start) => measured.with_blend_near(start),
+            None => measured,
+        }
     };
     maps.iter().map(measured).collect()
 }
@@ -39,8 +47,8 @@ pub(crate) fn picture_maps<'a>(
             MapReading::Coverage { order: MapOrder::new(choice, fits.iter().map(|map| &map.projection)), blend }
         }
     };
-    let reach = descriptor.softness.reach(descriptor.filter);
-    PictureMaps { maps, reading, reach, depth_clamp: descriptor.depth_clamp }
+    let reach = descriptor.softness.filter_radius(descriptor.filter);
+    PictureMaps { maps, reading, filter_radius: reach, depth_clamp: descriptor.depth_clamp }
 }
 
 /// Clip space from positions relative to a world position.

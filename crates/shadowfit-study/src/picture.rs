@@ -7,7 +7,7 @@ use shadowfit::FittedMap;
 use shadowfit_render::ProbePixel;
 use shadowfit_truth::{Judged, MapsBefore, Truth, area, crawl, judge_while};
 use shadowfit_wgpu::ShadowMapDescriptor;
-use shadowfit_wgpu::resolve::ResolveCounts;
+use shadowfit_wgpu::exact_edges::EdgeCounts;
 
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
@@ -47,7 +47,7 @@ pub struct JudgeJob {
     /// The frame before; `None` where crawl is not measured.
     pub before: Option<FrameBefore>,
     /// How many of its pixels were traced; `None` where edges are filtered.
-    pub traced: Option<ResolveCounts>,
+    pub traced: Option<EdgeCounts>,
 }
 
 impl JudgeJob {

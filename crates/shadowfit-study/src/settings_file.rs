@@ -129,7 +129,7 @@ fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::Slices;
+    use shadowfit::Cascades;
     use shadowfit::settings::SplitScheme;
     use shadowfit_params::tool::{ErrorMarks, ViewMode};
 
@@ -164,7 +164,7 @@ mod tests {
     fn settings_are_read_back_as_they_were_written() {
         let mut settings = Settings::default();
         settings.technique =
-            settings.technique.with_maps(Slices::default().with_count(3).with_splits(SplitScheme::Practical(0.3)));
+            settings.technique.with_maps(Cascades::default().with_count(3).with_splits(SplitScheme::Practical(0.3)));
         (settings.light.hour, settings.camera.speed) = (Some(7.25), 12.5);
         (settings.view.mode, settings.view.marks) = (ViewMode::Error, ErrorMarks::Blink);
         settings.view.inset_depths = Some([0.25, 0.75]);

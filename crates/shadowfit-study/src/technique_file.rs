@@ -141,7 +141,7 @@ impl NamedTechnique {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shadowfit::Slices;
+    use shadowfit::Cascades;
     use shadowfit::glam::Vec3;
     use shadowfit::settings::SplitScheme;
 
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn up_manual_splits_and_a_height_survive_a_file() {
         let mut technique = Technique::default()
-            .with_maps(Slices::default().with_splits(SplitScheme::Manual([0.1, 2.5, 7.0, 11.0, 12.3, 13.0, 99.9])))
+            .with_maps(Cascades::default().with_splits(SplitScheme::Manual([0.1, 2.5, 7.0, 11.0, 12.3, 13.0, 99.9])))
             .with_resolution(1024, 768);
         technique.fit.up = Vec3::Z;
         technique.fit.border = Some(0.0);

@@ -52,7 +52,7 @@ pub struct WhyInput {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredTexels {
     /// The middle one, from the left and from the top of the map: whole texels of [`Why::texel`]. A map that
-    /// [is stored shifted](FittedMap::wrap) has it elsewhere in its layer.
+    /// [is stored shifted](FittedMap::texel_offset) has it elsewhere in its layer.
     pub texel: [u32; 2],
     /// Its depth and those of the eight around it, rows from the top, as the map stores them: 0..=1, plain or reversed.
     /// Not a number beyond the map.

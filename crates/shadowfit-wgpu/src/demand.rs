@@ -19,7 +19,7 @@
 //!     if let Some(pass) = &mut demand
 //!         && let Some(seen) = pass.take()?
 //!     {
-//!         fitter.see(seen);
+//!         fitter.set_visible_demand(seen);
 //!     }
 //!     let views = [camera.frustum()?];
 //!     let maps = fitter.fit(&FitInput::new(&views, direction))?;

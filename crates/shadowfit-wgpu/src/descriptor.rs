@@ -30,9 +30,9 @@ pub struct ShadowMapDescriptor {
     /// being the share of the way; points beyond are lit. Both are `f32::MAX` for shadows that end with their maps.
     pub fade: [f32; 2],
     /// Which of the maps a point reads. By view depth
-    /// [`FittedMap::covered_near`](shadowfit::FittedMap::covered_near) says where maps are blended.
+    /// [`DepthRange::covered_from`](shadowfit::selection::DepthRange::covered_from) says where maps are blended.
     pub selection: MapSelection,
-    /// Whether a resolve pass traces rays where the maps are not sure. The maps, their look-up and its WGSL are the same
+    /// Whether an edge pass traces rays where the maps are not sure. The maps, their look-up and its WGSL are the same
     /// either way.
     pub edges: Edges,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.

@@ -37,9 +37,9 @@
 //!     sun.update(queue, &frame)?;
 //!
 //!     let mut encoder = device.create_command_encoder(&Default::default());
-//!     sun.render(&mut encoder, 0, |pass, piece| {
+//!     sun.render(&mut encoder, 0, |pass, region| {
 //!         pass.set_pipeline(&engine.pipeline);
-//!         for number in piece.casters {
+//!         for number in region.casters {
 //!             engine.draw_caster(pass, *number);
 //!         }
 //!     });
@@ -56,12 +56,13 @@
 //! | [`SunShadows`] | the shadows of one sun: one object for each |
 //! | [`SunShadowsDescriptor`] | how they are made: technique, bindings, texture |
 //! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, which of them move, and what stands |
-//! | [`ShadowPiece`] | one draw of a pass: casters by number, viewport, scissor rectangle |
-//! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
-//! | [`MapUpdate`], [`UpdateContent`] | a rectangle that a frame draws, for tools that show it |
+//! | [`DrawRegion`] | one draw of a pass: casters by number, viewport, scissor rectangle |
+//! | [`ShadowPass`], [`PassKind`](shadowfit::cache::PassKind) | a pass, for engines that schedule passes themselves |
+//! | [`UpdatedRect`](shadowfit::cache::UpdatedRect) | a rectangle that a frame draws, for tools that show it |
 //! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
-//! | [`SunSteps`] | how the maps of a sun that moves are held still, and cross-faded |
+//! | [`LightSteps`] | how the maps of a sun that moves are held still, and cross-faded |
 //! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
+//! | `exact_edges`, with the feature `rays` | rays instead of the filter where the texels of a map disagree |
 //! | [`SunShadowsError`] | why a technique or a frame is refused; earlier maps stay as they are |
 //!
 //! The example `engine_integration` of the repository is a whole engine around this loop, and its guide
@@ -75,29 +76,30 @@
 //!   map that redraws it. [`ShadowMapDescriptor`] says how large and of which format they are, and [`MapView`] from
 //!   where they are read.
 //! - [`demand`] counts the visible points of a depth buffer.
-//! - [`SunShadows::culling_pieces`] and [`culling_wgsl`] cull casters on the GPU, for engines that keep them there.
+//! - [`SunShadows::culling_regions`] and [`culling_wgsl`] cull casters on the GPU, for engines that keep them there.
 //! - [`MapTexture`] puts the maps into a texture of the engine's: one that a frame graph owns, or that suns share.
-//! - [`CasterUniform`], [`ReceiverUniform`] and [`MapUniform`] are the uniforms of the WGSL, for engines that bind them
-//!   themselves.
+//! - [`uniforms`] has those of the WGSL, for engines that bind them themselves.
 
 // Rooms, each of which uses those above it: `descriptor` says how maps are, `wgsl` writes the text of the look-ups, `maps`
-// holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `resolve` makes its
-// edges exact.
+// holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `exact_edges`
+// makes its edges exact.
 pub mod demand;
 mod descriptor;
+#[cfg(feature = "rays")]
+pub mod exact_edges;
 mod maps;
 mod pixels;
-#[cfg(feature = "rays")]
-pub mod resolve;
 mod sun;
 mod wgsl;
 
+/// The uniforms of the WGSL as `bytemuck` types, for engines that fill buffers of their own.
+pub mod uniforms {
+    pub use crate::maps::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};
+}
+
 pub use descriptor::{MapTextureError, RESOLUTIONS, ShadowMapDescriptor, ShadowMapError};
-pub use maps::{
-    CasterUniform, FadingUniform, MapTexture, MapUniform, MapView, ReceiverUniform, ShadowMap, ShadowPass, ShadowPiece,
-    layers_wgsl,
-};
-pub use shadowfit::cache::{Casters, Culling, MapUpdate, PassContent, UpdateContent, UpdateSchedule};
+pub use maps::{DrawRegion, MapTexture, MapView, ShadowMap, ShadowPass};
+pub use shadowfit::cache::{Casters, Culling, UpdateSchedule};
 pub use shadowfit::settings::MAX_MAPS;
-pub use sun::{SunFrame, SunShadows, SunShadowsDescriptor, SunShadowsError, SunSteps};
-pub use wgsl::{CullingPiece, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
+pub use sun::{LightSteps, SunFrame, SunShadows, SunShadowsDescriptor, SunShadowsError};
+pub use wgsl::{CullingRegion, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};

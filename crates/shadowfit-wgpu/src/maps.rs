@@ -7,9 +7,8 @@ pub(crate) mod texture;
 pub(crate) mod uniform;
 pub(crate) mod view;
 
-pub use cached_maps::{ShadowPass, ShadowPiece};
+pub use cached_maps::{DrawRegion, ShadowPass};
 pub use shadow_map::ShadowMap;
-pub use static_layers::layers_wgsl;
 pub use texture::MapTexture;
 pub use uniform::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};
 pub use view::MapView;

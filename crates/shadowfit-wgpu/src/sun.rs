@@ -15,12 +15,12 @@ mod steps;
 mod tools;
 
 use shadowfit::glam::{DVec3, Mat4, Vec3};
-use shadowfit::{Aabb, DepthConvention, FittedMap, Seen, ShadowFitter, ViewFrustum};
+use shadowfit::{Aabb, DepthConvention, FittedMap, ShadowFitter, ViewFrustum, VisibleDemand};
 
 use crate::demand::{DemandPass, DemandPassError, DemandView, supported};
 use crate::maps::cached_maps::CachedMaps;
 use crate::{
-    Culling, CullingPiece, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, ShadowPiece, UpdateSchedule,
+    Culling, CullingRegion, DrawRegion, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, UpdateSchedule,
 };
 
 use other_set::OtherSet;
@@ -29,7 +29,7 @@ use steps::StepState;
 pub use descriptor::SunShadowsDescriptor;
 pub use error::SunShadowsError;
 pub use frame::SunFrame;
-pub use steps::SunSteps;
+pub use steps::LightSteps;
 
 /// The shadows of one directional light: its maps, the parts of them that are kept, and what the last frames showed.
 ///
@@ -108,7 +108,7 @@ impl SunShadows {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         group: u32,
-        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, &DrawRegion<'_>),
     ) {
         for pass in self.passes() {
             pass.render(encoder, group, &mut draw);
@@ -206,7 +206,7 @@ impl SunShadows {
     }
 
     /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
-    /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
+    /// `group`. Each of its regions is then [set](DrawRegion::set) and drawn.
     pub fn begin_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
@@ -217,11 +217,11 @@ impl SunShadows {
         pass.begin(encoder, group, timestamps)
     }
 
-    /// What a shader finds the casters of each piece by ([`culling_wgsl`](crate::culling_wgsl)), for engines that keep
-    /// their casters on the GPU: a record for each [`ShadowPiece`] of [`Self::passes`], by its
-    /// [number](ShadowPiece::number). Planes are relative to [`SunFrame::origin`].
-    pub fn culling_pieces(&self) -> impl Iterator<Item = CullingPiece> {
-        self.passes().flat_map(|pass| pass.culling_pieces())
+    /// What a shader finds the casters of each region by ([`culling_wgsl`](crate::culling_wgsl)), for engines that keep
+    /// their casters on the GPU: a record for each [`DrawRegion`] of [`Self::passes`], by its
+    /// [number](DrawRegion::number). Planes are relative to [`SunFrame::origin`].
+    pub fn culling_regions(&self) -> impl Iterator<Item = CullingRegion> {
+        self.passes().flat_map(|pass| pass.culling_regions())
     }
 }
 
@@ -264,10 +264,10 @@ impl SunShadows {
 impl SunShadows {
     /// Holds the maps of a sun that moves: its **light steps**. [`Self::update`] is given the true direction in each
     /// frame, and makes the maps for a direction that it holds until a map's edge would be off by
-    /// [some texels](SunSteps::texels), so that what is drawn is kept in between. Shading goes on with the true
+    /// [some texels](LightSteps::texels), so that what is drawn is kept in between. Shading goes on with the true
     /// direction. `None`, as it is in the beginning, follows the sun in each frame.
     ///
-    /// With a [fade](SunSteps::fade) there is a second set of maps, of as many bytes. When the sun steps, its maps are
+    /// With a [fade](LightSteps::fade) there is a second set of maps, of as many bytes. When the sun steps, its maps are
     /// drawn one by one, a map in each frame, while the old ones are read; then the look-up reads both for as many
     /// frames as the fade has, and the new ones alone after that. Maps that cannot be kept are drawn all at once. While
     /// a step is under way no other begins, and windows follow [what is seen](Self::record_demand) in the new maps alone,
@@ -281,7 +281,7 @@ impl SunShadows {
     ///
     /// [`SunShadowsError::Fit`] for a number of texels that makes no sense, and as [`Self::new`]. Everything stays as
     /// it is then.
-    pub fn set_light_steps(&mut self, steps: Option<SunSteps>) -> Result<bool, SunShadowsError> {
+    pub fn set_light_steps(&mut self, steps: Option<LightSteps>) -> Result<bool, SunShadowsError> {
         if let Some(steps) = &steps {
             steps.check()?;
         }
@@ -295,7 +295,7 @@ impl SunShadows {
     }
 
     /// The light steps.
-    pub fn light_steps(&self) -> Option<SunSteps> {
+    pub fn light_steps(&self) -> Option<LightSteps> {
         self.steps.map(|state| state.settings)
     }
 }
@@ -344,10 +344,10 @@ impl SunShadows {
     /// Tells what a picture showed to the maps of the newest direction. Those that are read before them, or are faded out,
     /// keep their windows where they are: a window that is replaced while it is read changes the shadow from one frame to
     /// the next.
-    fn see(&mut self, seen: Seen) {
+    fn see(&mut self, seen: VisibleDemand) {
         match &mut self.other {
-            Some(other) if self.steps.is_some_and(|steps| steps.is_drawing()) => other.fitter.see(seen),
-            _ => self.fitter.see(seen),
+            Some(other) if self.steps.is_some_and(|steps| steps.is_drawing()) => other.fitter.set_visible_demand(seen),
+            _ => self.fitter.set_visible_demand(seen),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The WGSL of casters and receivers, put together from the pieces in `wgsl/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
-mod culling_piece;
+mod culling_region;
 mod fading;
 
 use shadowfit::DepthConvention;
@@ -9,7 +9,7 @@ use shadowfit::settings::{FilterKind, MapFormat, MapSelection, Softness};
 
 use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
 
-pub use culling_piece::CullingPiece;
+pub use culling_region::CullingRegion;
 
 /// Look-ups over the disc of [`FilterKind::Pcss`].
 const PCSS_TAPS: u32 = 16;
@@ -53,7 +53,7 @@ impl WgslOptions<'_> {
         let mut text = pieces
             .replace("GROUP", &self.group.to_string())
             .replace("MAX_MAPS", &MAX_MAPS.to_string())
-            .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string());
+            .replace("MAX_REGION_PLANES", &CullingRegion::MAX_PLANES.to_string());
         for binding in 0..3 {
             text = text.replace(&format!("BINDING_{binding}"), &first_binding.saturating_add(binding).to_string());
         }
@@ -92,15 +92,15 @@ pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) 
 ///
 /// | function | tells |
 /// |---|---|
-/// | `shadowfit_draws_box(piece, moves, min, max) -> bool` | whether a caster in a box must be drawn into a piece: `piece` is its number, `moves` whether the caster moves |
-/// | `shadowfit_draws_sphere(piece, moves, centre, radius) -> bool` | the same of a sphere |
-/// | `shadowfit_draws_oriented_box(piece, moves, centre, half_axes) -> bool` | the same of a turned box; `half_axes` are the three from its centre to the middles of its faces |
+/// | `shadowfit_draws_box(region, moves, min, max) -> bool` | whether a caster in a box must be drawn into a region: `region` is its number, `moves` whether the caster moves |
+/// | `shadowfit_draws_sphere(region, moves, centre, radius) -> bool` | the same of a sphere |
+/// | `shadowfit_draws_oriented_box(region, moves, centre, half_axes) -> bool` | the same of a turned box; `half_axes` are the three from its centre to the middles of its faces |
 ///
 /// Shapes are in world axes, in metres, relative to the origin of the frame. They are the twins of the tests of
 /// [`shadowfit::CasterVolume`].
 ///
-/// Reads a storage buffer of [`CullingPiece`]s at binding 0 of the group: those of
-/// [`SunShadows::culling_pieces`](crate::SunShadows::culling_pieces).
+/// Reads a storage buffer of [`CullingRegion`]s at binding 0 of the group: those of
+/// [`SunShadows::culling_regions`](crate::SunShadows::culling_regions).
 pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
     options.fill(include_str!("wgsl/culling.wgsl"), 0)
 }
@@ -137,7 +137,7 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
         &look_up.concat(),
         include_str!("wgsl/look_up.wgsl"),
         &filter(descriptor.filter),
-        &choice(descriptor),
+        &selection(descriptor),
         include_str!("wgsl/turn.wgsl"),
         include_str!("wgsl/factor.wgsl"),
     ];
@@ -152,20 +152,20 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
 /// compared number to the format of the map, and may give the least normal number for zero.
 pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>, backend: wgpu::Backend) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
-    let wrap = |entry: u32| {
+    let texel_offset = |entry: u32| {
         let map = format!("shadowfit_receiver.maps[{entry}]");
         format!(
-            "    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.wrap;\n    }}\n"
+            "    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.texel_offset;\n    }}\n"
         )
     };
-    let wraps = format!(
+    let offsets = format!(
         "
 // Where the first texel of a map lies in its layer.
-fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
+fn shadowfit_texel_offset(layer: u32) -> vec2<f32> {{
 {}    return vec2<f32>(0.0);
 }}
 ",
-        (0..maps).map(wrap).collect::<String>()
+        (0..maps).map(texel_offset).collect::<String>()
     );
     let is_reversed = descriptor.depth == DepthConvention::Reversed;
     let compared = include_str!("wgsl/texel_compared.wgsl").replace("IS_REVERSED", &is_reversed.to_string());
@@ -174,7 +174,7 @@ fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
         (false, wgpu::Backend::Gl) => &compared,
         (false, _) => texture(descriptor.format).1,
     };
-    let one_set = [load, &wraps, include_str!("wgsl/stored.wgsl")].concat();
+    let one_set = [load, &offsets, include_str!("wgsl/stored.wgsl")].concat();
     let text = if descriptor.cross_fades { fading::stored(&one_set) } else { one_set };
     options.fill(&text, descriptor.first_binding)
 }
@@ -254,25 +254,25 @@ fn shadowfit_disc_taps(disc: shadowfit_Disc, projected: shadowfit_Projected) -> 
 
 /// The search for a point's maps, and a map by its place in the order: one branch per map, since software rasterisers
 /// take twenty times as long for a loop over an array of uniforms.
-fn choice(descriptor: &ShadowMapDescriptor) -> String {
+fn selection(descriptor: &ShadowMapDescriptor) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
     let map = |entry: u32| format!("shadowfit_receiver.maps[{entry}]");
     let try_map = |entry: u32| {
         let map = map(entry);
         format!(
-            "    if shadowfit_is_open(choice, {entry}, view_depth, {map}.far, {map}.blend_near) {{
+            "    if shadowfit_is_open(selection, {entry}, view_depth, {map}.far, {map}.blend_near) {{
         let free = shadowfit_free({entry}u, {map}, position);
-        choice = shadowfit_try(choice, {entry}, view_depth, {map}.far, {map}.blend_near, free);
+        selection = shadowfit_try(selection, {entry}, view_depth, {map}.far, {map}.blend_near, free);
     }}
 "
         )
     };
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
     let rule = match descriptor.selection {
-        MapSelection::Coverage { .. } => include_str!("wgsl/choice_coverage.wgsl"),
-        MapSelection::ViewDepth { .. } => include_str!("wgsl/choice_view_depth.wgsl"),
+        MapSelection::Coverage { .. } => include_str!("wgsl/selection_coverage.wgsl"),
+        MapSelection::ViewDepth { .. } => include_str!("wgsl/selection_view_depth.wgsl"),
     };
-    let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.selection.blend());
+    let (reach, blend) = (descriptor.softness.filter_radius(descriptor.filter), descriptor.selection.blend());
     format!(
         "
 const SHADOWFIT_REACH: f32 = {reach:?};
@@ -280,14 +280,14 @@ const SHADOWFIT_BLEND: f32 = {blend:?};
 
 {rule}
 // The maps that a point reads: none beyond the end of shadows.
-fn shadowfit_choose(position: vec3<f32>) -> shadowfit_Choice {{
+fn shadowfit_select(position: vec3<f32>) -> shadowfit_Selection {{
     let view_depth = shadowfit_view_depth(position);
-    var choice = shadowfit_Choice(-1, -1, 1.0, -1, 0.0);
-{}    choice.first = select(choice.first, choice.clamped, choice.first < 0);
+    var selection = shadowfit_Selection(-1, -1, 1.0, -1, 0.0);
+{}    selection.first = select(selection.first, selection.clamped, selection.first < 0);
     if shadowfit_faded(position) >= 1.0 {{
-        return shadowfit_Choice(-1, -1, 1.0, -1, 0.0);
+        return shadowfit_Selection(-1, -1, 1.0, -1, 0.0);
     }}
-    return choice;
+    return selection;
 }}
 
 // The map at a place in the order.

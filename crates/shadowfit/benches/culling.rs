@@ -45,7 +45,11 @@ fn fitted() -> FittedMaps {
 fn swept(fitted: &FittedMaps) -> Vec<CasterVolume> {
     let views = views();
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
-    let volumes = fitted.iter().map(|map| CasterVolume::swept(&map.projection, &sweep(map.covered_near, map.far)));
+    let volumes = fitted.iter().map(|map| {
+        let range = map.depths.expect("a range");
+        let [near, far] = [range.covered_from.expect("a cascade"), range.far.unwrap_or(f64::from(f32::MAX))];
+        CasterVolume::swept(&map.projection, &sweep(near as f32, far as f32))
+    });
     volumes.collect::<Result<_, _>>().expect("good sweeps")
 }
 

@@ -10,7 +10,7 @@ use shadowfit::Clusters;
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace, PIXELS};
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapSettings, Shape, SplitScheme, Stabilise};
-use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique, fit};
+use shadowfit::{Aabb, Boxes, Cascades, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique, fit};
 
 /// A camera that turns a little with each call, so that no result can be kept.
 fn camera(turn: &mut f32) -> PerspectiveCamera {
@@ -189,7 +189,7 @@ fn against_bevy(c: &mut Criterion) {
     let bounds = [10.0, 21.5, 46.4, 100.0];
     let mut splits = [0.0; 7];
     splits[..3].copy_from_slice(&bounds[..3]);
-    let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap { max_waste: 1.8 });
+    let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap { max_oversize: 1.8 });
     let settings = Technique { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
     let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let (mut fitter, mut maps) = (FitState::new(), FittedMaps::default());
@@ -213,9 +213,9 @@ fn against_bevy(c: &mut Criterion) {
 }
 
 fn settings(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> Technique {
-    let slices = Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() };
+    let cascades = Cascades { shape: Shape::new(kind), splits, stabilise, ..Cascades::default() };
     let fit = MapSettings::default().with_casters(CasterPolicy::PerObject).with_max_distance(f32::MAX);
-    Technique::default().with_maps(slices).with_fit(fit)
+    Technique::default().with_maps(cascades).with_fit(fit)
 }
 
 /// Boxes of 2 to 6 m on a plain of 120 m around the camera.
@@ -303,7 +303,7 @@ fn hit(eye: Vec3, ray: Vec3, aabb: &Aabb) -> Option<(f32, Vec3)> {
     (enter[axis] > 0.0 && enter[axis] < leave).then_some((enter[axis], normal))
 }
 
-/// Presets along a walk: windows with what the frame before showed and without, and the stillest slices beside them.
+/// Presets along a walk: windows with what the frame before showed and without, and the stillest cascades beside them.
 fn windows(c: &mut Criterion) {
     let mut group = c.benchmark_group("4 windows beside stable maps");
     for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {

@@ -9,7 +9,7 @@ pub use crate::bias::depth_storage::{DepthStorage, depth_step, depth_step_at};
 use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
 use crate::base::{DepthConvention, FitError, checks};
-use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
+use crate::bias::{Bias, FilterRadius, SQUARED_SINE_ROUNDING, Slope, depth_precision};
 use crate::projection::LightProjection;
 
 /// Screen pixels that one shadow texel covers on a surface.
@@ -144,14 +144,14 @@ impl Coverage {
     }
 }
 
-/// Where a world position, in metres, lies in a map, for a filter of the given [`Reach`]. Inside is
+/// Where a world position, in metres, lies in a map, for a filter of the given [`FilterRadius`]. Inside is
 /// defined by [`LightProjection::covers`]; a point outside across the light is [`Coverage::Aside`] at any
 /// depth.
 ///
 /// # Errors
 ///
 /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the point or the reach.
-pub fn coverage(fit: &LightProjection, reach: impl Into<Reach>, point: DVec3) -> Result<Coverage, FitError> {
+pub fn coverage(fit: &LightProjection, reach: impl Into<FilterRadius>, point: DVec3) -> Result<Coverage, FitError> {
     checks::point("the point", point)?;
     let reach = reach.into().checked()?;
     let at = texture_point(fit, point - fit.origin)?;
@@ -305,7 +305,7 @@ pub struct AcneMargin {
 
 /// Predicted margin of a bias against acne at a world position (f64, metres) on a surface with the
 /// given **geometric** normal (world axes, any length, either side): the bias given there less the
-/// bias that its plane needs for a filter of the given reach [on hardware](Reach::on_hardware) and
+/// bias that its plane needs for a filter of the given reach [on hardware](FilterRadius::on_hardware) and
 /// a map of the given storage. `None` where the map does not cover the point.
 ///
 /// With the normal offset h, the depth bias d of [`Bias::on_plane`] and the depth range R the
@@ -320,7 +320,7 @@ pub struct AcneMargin {
 pub fn acne_margin(
     fit: &LightProjection,
     bias: &Bias,
-    reach: impl Into<Reach>,
+    reach: impl Into<FilterRadius>,
     storage: impl Into<DepthStorage>,
     point: DVec3,
     normal: Vec3,

@@ -5,15 +5,15 @@ use glam::{DVec2, DVec3};
 
 use crate::base::{FitError, checks};
 use crate::bias::Bias;
+use crate::cascades::{self, HeldCascades};
 use crate::content::Content;
 use crate::demand::histogram::DepthBounds;
 use crate::fits::{self, FitRule, Frame, MapUse, PlacedMap, PlacedMaps, check_least_texel};
 use crate::input::{FitInput, Scratch};
 use crate::light::Light;
-use crate::light::grid::GridAnchor;
-use crate::map::{FittedMap, FittedMaps, PlacedBy};
+use crate::light::grid::GridPosition;
+use crate::map::{FittedMap, FittedMaps, PlacementSource};
 use crate::projection::LightProjection;
-use crate::slices::{self, HeldSlices};
 use crate::technique::settings::{BiasSettings, CasterPolicy, FitSettings};
 use crate::technique::{Maps, Technique, Windows};
 use crate::view::{Range, ViewFrustum};
@@ -43,7 +43,7 @@ struct LastFrame {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Held {
-    Slices(HeldSlices),
+    Cascades(HeldCascades),
     Windows(HeldWindows),
 }
 
@@ -65,12 +65,13 @@ impl FitState {
     /// # Errors
     ///
     /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
-    /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of slices outside 2..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and hold settings, softness, fade, depth steps or rays that are out of range;
-    /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
-    /// [`FitError::NotFinite`] for biases that are not finite, or not at the size of a map's texels;
-    /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
-    /// without a range [is empty](LightProjection::is_empty). An error leaves the fitter as it was.
+    /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of cascades outside 2..=8, an overlap or λ
+    /// outside 0..=1, a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and
+    /// hold settings, softness, fade, depth steps or rays that are out of range; [`FitError::ClampedCasters`] for a
+    /// filter that depth clamp leaves without the distances that it needs; [`FitError::NotFinite`] for biases that are
+    /// not finite, or not at the size of a map's texels; [`FitError::NearNotBelowFar`] for manual splits that do not
+    /// ascend. Manual splits before or beyond what is shadowed are not an error: a map without a range
+    /// [is empty](LightProjection::is_empty). An error leaves the fitter as it was.
     pub fn fit(
         &mut self,
         input: &FitInput,
@@ -113,7 +114,7 @@ impl FitState {
         for (map, placed) in maps.take(technique.maps.count() as usize).iter_mut().zip(placed.iter().flatten()) {
             write(map, placed, &frame)?;
         }
-        maps.placed_by = placed_by(&held, input, technique);
+        maps.placement = placement(&held, input, technique);
         // 5. What the next frame begins with.
         let (direction, view) = (light.direction(), input.views[0]);
         self.last = Some(LastFrame { technique: *technique, direction, view, held });
@@ -129,47 +130,49 @@ impl FitState {
     }
 }
 
-/// Places the maps of a frame as windows or as slices of the view.
+/// Places the maps of a frame as windows or as cascades.
 fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError> {
     let windows = before.and_then(|held| if let Held::Windows(held) = held { Some(held) } else { None });
-    let slices = before.and_then(|held| if let Held::Slices(held) = held { Some(held) } else { None });
+    let cascades = before.and_then(|held| if let Held::Cascades(held) = held { Some(held) } else { None });
     match &frame.technique.maps {
         Maps::Windows(settings) => {
             windows::place(frame, settings, windows, points).map(|(maps, held)| (maps, Held::Windows(held)))
         }
-        Maps::Slices(settings) => {
-            slices::place(frame, settings, slices, points).map(|(maps, held)| (maps, Held::Slices(held)))
+        Maps::Cascades(settings) => {
+            cascades::place(frame, settings, cascades, points).map(|(maps, held)| (maps, Held::Cascades(held)))
         }
-        Maps::One(one) => {
-            slices::place(frame, &one.slice(), slices, points).map(|(maps, held)| (maps, Held::Slices(held)))
+        Maps::Single(one) => {
+            cascades::place(frame, &one.slice(), cascades, points).map(|(maps, held)| (maps, Held::Cascades(held)))
         }
     }
 }
 
 /// What the maps of a frame were placed by.
-fn placed_by(held: &Held, input: &FitInput, technique: &Technique) -> PlacedBy {
+fn placement(held: &Held, input: &FitInput, technique: &Technique) -> PlacementSource {
     let is_told = match held {
         Held::Windows(windows) => !windows.is_guess(),
-        Held::Slices(_) => technique.maps.uses_seen() && input.histogram.is_some_and(|counted| !counted.is_empty()),
+        Held::Cascades(_) => {
+            technique.maps.uses_visible_demand() && input.histogram.is_some_and(|counted| !counted.is_empty())
+        }
     };
-    if is_told { PlacedBy::LastFrame } else { PlacedBy::Boxes }
+    if is_told { PlacementSource::LastFrame } else { PlacementSource::Boxes }
 }
 
 /// Writes a map in place, since it is large.
 fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), FitError> {
-    let PlacedMap { volume, near, far, covered_near } = placed;
+    let PlacedMap { volume, depths } = placed;
     map.projection =
         LightProjection::from_volume(frame.content.origin, volume, frame.rule.resolution, frame.rule.convention)?;
     map.bias = Bias::from_texels(&frame.technique.bias, frame.technique.format, &map.projection).checked()?;
-    map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
-    (map.near, map.far, map.covered_near) = (*near, *far, *covered_near);
+    map.grid_position = volume.grid.as_ref().and_then(GridPosition::of);
+    map.depths = *depths;
     Ok(())
 }
 
-/// The fewest slices of the view that are enough: the least count, up to that of the technique, for
-/// which the 95% quantile of pixels per texel with the best splits is at most `waste` times that with
+/// The fewest cascades that are enough: the least count, up to that of the technique, for
+/// which the 95% quantile of pixels per texel with the best splits is at most `max_oversize` times that with
 /// the technique's count. Of other kinds of maps
-/// the [slices](Maps::as_slices) that are nearest to them count.
+/// the [cascades](Maps::as_cascades) that are nearest to them count.
 ///
 /// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
 /// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)
@@ -203,14 +206,14 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
 ///
 /// # Errors
 ///
-/// As [`FitState::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
+/// As [`FitState::fit`], and [`FitError::OutOfRange`] for an oversize outside 1..=100.
 pub fn fewest_maps(
     input: &FitInput,
     technique: &Technique,
-    waste: f32,
+    max_oversize: f32,
     scratch: &mut Scratch,
 ) -> Result<u32, FitError> {
-    let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
+    let max_oversize = checks::within("the oversize of fewer maps", f64::from(max_oversize), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;
     if technique.maps.count() == 1 || !fits::is_shadowed(input.views, technique.fit.max_distance) {
         return Ok(1);
@@ -218,7 +221,7 @@ pub fn fewest_maps(
     let (content, _) = Content::new(input.scene(), scratch.storage)?;
     let range = whole_range(input, technique.fit.max_distance);
     let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view: None };
-    Ok(slices::fewest(&frame, &technique.maps.as_slices(), waste))
+    Ok(cascades::fewest(&frame, &technique.maps.as_cascades(), max_oversize))
 }
 
 /// Everything that is shadowed.

@@ -4,7 +4,7 @@ use glam::{DVec2, Vec3};
 
 use crate::base::Boxes;
 use crate::content::normal_cone::NormalCone;
-use crate::content::{BoxTree, Scene};
+use crate::content::{Scene, StaticBoxes};
 use crate::demand::grid::DemandGrid;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
 use crate::view::ViewFrustum;
@@ -59,11 +59,10 @@ pub struct FitInput<'a> {
     /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension). An empty slice means
     /// that nothing casts.
     pub casters: Option<Boxes<'a>>,
-    /// Boxes that receive and cast shadows beside those of the two lists, handed over once in a hierarchy, so that a
-    /// frame costs what is in reach: for thousands of boxes that stand. With them the lists need not be known: what is
-    /// `None` adds nothing.
+    /// A hierarchy of boxes that receive and cast shadows beside the two lists. The cost of a frame depends on the boxes
+    /// nearby, not on the total. Use it for thousands of static boxes. With it a list that is `None` adds nothing.
     #[cfg(feature = "alloc")]
-    pub standing: Option<&'a BoxTree>,
+    pub static_boxes: Option<&'a StaticBoxes>,
     /// The depths that the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
@@ -86,7 +85,7 @@ impl<'a> FitInput<'a> {
             receiver_cones: &[],
             casters: None,
             #[cfg(feature = "alloc")]
-            standing: None,
+            static_boxes: None,
             histogram: None,
             demand: &[],
             depth_bounds: None,
@@ -97,7 +96,7 @@ impl<'a> FitInput<'a> {
     #[inline]
     pub(crate) fn scene(&self) -> Scene<'a> {
         let Self { views, direction, receivers, receiver_cones, casters, .. } = *self;
-        Scene { views, direction, receivers, receiver_cones, casters, standing: self.tree() }
+        Scene { views, direction, receivers, receiver_cones, casters, static_boxes: self.tree() }
     }
 
     /// Whether it is known what casts shadows.
@@ -106,18 +105,18 @@ impl<'a> FitInput<'a> {
     }
 
     #[cfg(feature = "alloc")]
-    fn tree(&self) -> Option<&'a BoxTree> {
-        self.standing
+    fn tree(&self) -> Option<&'a StaticBoxes> {
+        self.static_boxes
     }
 
     #[cfg(not(feature = "alloc"))]
     #[expect(clippy::unused_self, reason = "as with an allocator")]
-    fn tree(&self) -> Option<&'a BoxTree> {
+    fn tree(&self) -> Option<&'a StaticBoxes> {
         None
     }
 
     /// Number of elements of [`Scratch`] that is enough for any fit of this input: that of
-    /// [`Scratch::required`] for its lists, and room for the outline of standing boxes. Maps that are
+    /// [`Scratch::required`] for its lists, and room for the outline of static boxes. Maps that are
     /// [held](crate::settings::Stabilise::Hysteresis) look at the views of two frames ahead, for which two more views
     /// count.
     pub fn scratch(&self) -> usize {
@@ -128,7 +127,7 @@ impl<'a> FitInput<'a> {
     }
 }
 
-/// Boxes that make up the outline of standing ones: far more than it has corners in any scene that was tried.
+/// Boxes that make up the outline of static ones: far more than it has corners in any scene that was tried.
 const STANDING_OUTLINE: usize = 128;
 
 /// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.

@@ -40,7 +40,7 @@
 //! whole view.
 //!
 //! [`Technique::default`] is the one to begin with: [`Windows`], which are sharp and hardly
-//! ever make an edge crawl. Tell the fitter what the last frame showed ([`ShadowFitter::see`]);
+//! ever make an edge crawl. Tell the fitter what the last frame showed ([`ShadowFitter::set_visible_demand`]);
 //! `shadowfit-wgpu` counts it in the depth buffer by a compute pass. Without it the fit looks through the
 //! boxes in each frame: texels are a third wider, and with a thousand boxes a fit takes three times as long
 //! or more. [`PRESETS`] has other techniques by name, each with a line that says when to take it. The
@@ -108,14 +108,14 @@
 //! | which map a point reads, by coverage or by view depth | [`selection`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
 //! | splits chosen by what the last frame showed | [`demand`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
-//! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::see`], [`FitInput::demand`] |
+//! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::set_visible_demand`], [`FitInput::demand`] |
 //! | how many maps are enough | [`fewest_maps`] |
 //! | boxes that hug large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
-//! | thousands of boxes that stand, handed over once | [`BoxTree`], [`FitInput::standing`], feature `alloc` |
+//! | thousands of static boxes, given once | [`StaticBoxes`], [`FitInput::static_boxes`], feature `alloc` |
 //! | static casters drawn only where the map is new: the passes of each frame as data, for any graphics API | [`cache`], feature `alloc` |
 //! | the texels of a map that can be kept, for a cache of your own | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
-//! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`], [`spot`] |
+//! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`](spot::SpotLight), [`spot`] |
 //! | a proof that no map has a hole | [`proof`] |
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
@@ -128,7 +128,7 @@
 //!   depth range that a [`DepthConvention`] names; texture space u right, v down.
 //! - Matrices are named `dst_from_src`. Their world inputs are **relative to an origin** in f64,
 //!   the eye unless moved: [`LightProjection::relative_to`] and [`LightProjection::world_matrices`] convert.
-//! - A light is its **direction of travel**, of a [`SpotLight`] along its axis. Where a source speaks
+//! - A light is its **direction of travel**, of a [`SpotLight`](spot::SpotLight) along its axis. Where a source speaks
 //!   of the direction toward the light, `to_light = -direction`.
 //! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except what needs the
 //!   feature `alloc`; a [`ShadowFitter`] and a [`MapCache`](cache::MapCache) allocate while their scene grows, and not in
@@ -141,9 +141,9 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | [`ShadowFitter`], [`Seen`], [`BoxTree`], `Clusters` and [`cache`], for which an allocator is enough |
+//! | `alloc` | [`ShadowFitter`], [`VisibleDemand`], [`StaticBoxes`], `Clusters` and [`cache`], for which an allocator is enough |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
-//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
+//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`](spot::SpotBias) and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
 //!
 //! This crate's vectors are those of the [`glam`] that it re-exports, 0.33 (from 0.33.2) or 0.34.
@@ -195,7 +195,7 @@ mod light {
     pub(crate) use axes::{Light, LightAxes, Roll, is_same_direction, is_vertical};
     pub(crate) use column::Column;
     pub(crate) use outline::{Outline, OutlineScratch};
-    pub use volume::Constraint;
+    pub use volume::BoundSource;
     pub(crate) use volume::Volume;
 }
 
@@ -209,14 +209,14 @@ pub mod demand {
     #[cfg(feature = "alloc")]
     mod rows;
     #[cfg(feature = "alloc")]
-    mod seen;
+    mod visible_demand;
 
     pub use grid::{CELLS, DemandGrid, DemandSpace, LEVELS, MIN_FACING, PIXELS, SIDE};
     pub use histogram::{DepthBounds, DepthHistogram, needed_texel};
     #[cfg(feature = "alloc")]
     pub use rows::DepthRows;
     #[cfg(feature = "alloc")]
-    pub use seen::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
+    pub use visible_demand::{CLASSES, COUNTS, DEPTHS, VisibleDemand, VisibleDemandSpace};
 }
 
 mod input;
@@ -225,7 +225,7 @@ mod projection;
 
 mod fits;
 
-mod slices;
+mod cascades;
 
 mod windows;
 
@@ -234,6 +234,12 @@ pub mod culling;
 pub mod selection;
 
 mod map;
+
+/// How [`StaticBoxes`] changed between frames.
+#[cfg(feature = "alloc")]
+pub mod static_boxes {
+    pub use crate::content::tree::{BoxChange, BoxRevision};
+}
 
 /// What can be kept of the maps of the last frame: the texels of a map that moved, and the direction of the light.
 mod keep {
@@ -261,22 +267,21 @@ pub use bias::Bias;
 pub use content::clusters::Clusters;
 pub use content::normal_cone::NormalCone;
 #[cfg(feature = "alloc")]
-pub use content::tree::{BoxChange, BoxRevision, BoxTree};
+pub use content::tree::StaticBoxes;
 pub use culling::CasterVolume;
 #[cfg(feature = "alloc")]
-pub use demand::Seen;
+pub use demand::VisibleDemand;
 pub use fits::{fit, fit_scene};
 pub use fitter::{FitState, fewest_maps};
 pub use glam;
 pub use input::{FitInput, Scratch};
 pub use keep::{light_steps, scroll};
-pub use light::Constraint;
-pub use map::{FittedMap, FittedMaps, PlacedBy};
+pub use light::BoundSource;
+pub use map::{FittedMap, FittedMaps, PlacementSource};
 pub use projection::{LightProjection, WorldMatrices};
 #[cfg(feature = "alloc")]
 pub use shadow_fitter::ShadowFitter;
-pub use spot::{SpotBias, SpotFit, SpotLight};
-pub use technique::{Maps, OneMap, PRESETS, Preset, Slices, Technique, Windows, settings};
+pub use technique::{Cascades, Maps, PRESETS, Preset, SingleMap, Technique, Windows, settings};
 pub use view::{Camera, Lens, PerspectiveCamera, ViewFrustum};
 
 /// Runs the example of the README as a test.

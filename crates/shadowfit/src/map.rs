@@ -5,7 +5,7 @@ use core::ops::Deref;
 use glam::{DVec3, UVec2};
 
 use crate::bias::{Bias, rounding};
-use crate::light::grid::GridAnchor;
+use crate::light::grid::GridPosition;
 use crate::projection::LightProjection;
 use crate::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use crate::technique::Technique;
@@ -19,38 +19,31 @@ pub struct FittedMap {
     pub projection: LightProjection,
     /// The technique's biases for this map's texels and depth range.
     pub bias: Bias,
-    /// View depth from which points choose this map, in metres, where maps are [read by view
-    /// depth](crate::settings::MapSelection::ViewDepth). By coverage it says for which part of the view the
-    /// map was made: of [windows](crate::Windows) for all of it.
-    pub near: f32,
-    /// View depth up to which points choose this map by view depth, in metres: they take the first map that
-    /// ends beyond them. Of slices the last one has no end. Where splits coincide there is no range: such maps end
-    /// at `f32::MIN` before all others, and begin at `f32::MAX` after them.
-    pub far: f32,
-    /// View depth from which this map covers what is seen, in metres: before `near` where the
-    /// maps overlap. The end of its range for a [window](crate::Windows) that is not the
-    /// last one, since it need not hold all of any depth.
-    pub covered_near: f32,
+    /// The view depths that the map was made for; of a [window](crate::Windows) those of the whole view. Points read it
+    /// there if maps are [read by view depth](crate::settings::MapSelection::ViewDepth). The last cascade has no end.
+    /// Where splits coincide a map has no depths of its own: in front of all others it has `None`, and no point reads
+    /// it by view depth. Behind all others it begins where shadows end, and points read it that the maps in front do
+    /// not hold.
+    pub depths: Option<DepthRange>,
     /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::scroll::Scroll) and
     /// [tiles](crate::scroll::tiles) are made from.
-    pub anchor: Option<GridAnchor>,
-    /// Where the map's first texel is stored in its texture, in texels: texel t at (t + wrap) mod size, so that a map
-    /// that moves keeps what it still covers where it is ([`Scroll::wrap`](crate::scroll::Scroll::wrap)). Fits leave it
-    /// zero.
-    pub wrap: UVec2,
+    pub grid_position: Option<GridPosition>,
+    /// Where the map's first texel is stored in its texture, in texels: texel t at `(t + texel_offset) % size`, so that
+    /// a map that moves keeps what it still covers where it is
+    /// ([`Scroll::texel_offset`](crate::scroll::Scroll::texel_offset)). Fits leave it zero.
+    pub texel_offset: UVec2,
 }
 
 impl FittedMap {
     /// A single map for all view depths.
     pub fn new(fit: LightProjection, bias: Bias) -> Self {
-        Self { projection: fit, bias, near: f32::MIN, far: f32::MAX, covered_near: f32::MIN, ..Self::default() }
+        Self { projection: fit, bias, depths: Some(DepthRange::ALL), ..Self::default() }
     }
 
-    /// This map as one of several that are read by view depth and end one after the other, in metres, without a blend
-    /// from the map in front of it.
+    /// This map as one of several that are read by view depth.
     #[must_use]
-    pub const fn ending_at(mut self, far: f32) -> Self {
-        (self.far, self.covered_near) = (far, f32::MAX);
+    pub const fn with_depths(mut self, depths: DepthRange) -> Self {
+        self.depths = Some(depths);
         self
     }
 
@@ -62,13 +55,6 @@ impl FittedMap {
         let more = (rounding(&projection) - rounding(&self.projection)).max(0.0) as f32;
         Self { projection, bias: self.bias.widened(more, &projection), ..*self }
     }
-
-    /// Where points read the map by view depth.
-    pub fn depth_range(&self) -> DepthRange {
-        // A map without a range behind all others is read where those in front leave points out.
-        let far = if self.near == f32::MAX { f32::MAX } else { self.far };
-        DepthRange { blend_near: f64::from(self.covered_near), far: f64::from(far) }
-    }
 }
 
 /// The maps of one frame, nearest first, windows finest first. There are none in a frame without shadows, whose views
@@ -79,13 +65,13 @@ pub struct FittedMaps {
     maps: [FittedMap; MAX_MAPS],
     count: usize,
     /// What the maps were placed by.
-    pub placed_by: PlacedBy,
+    pub placement: PlacementSource,
 }
 
 /// What told a fit where surfaces are seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum PlacedBy {
+pub enum PlacementSource {
     /// The boxes of the receivers, or the views alone where there are none: nothing else was told, nothing else is
     /// used by the technique, or what was told belongs to another light or has another size.
     #[default]
@@ -138,13 +124,11 @@ impl FittedMaps {
         match technique.maps.selection() {
             selection @ MapSelection::Coverage { blend } => {
                 let order = MapOrder::new(selection, self.iter().map(|map| &map.projection));
-                let (reach, blend) = (f64::from(technique.reach()), f64::from(blend));
-                by_coverage(order.iter(), reach, blend, |map| self[map].projection.free_texels(point))
+                let (reach, blend) = (f64::from(technique.filter_radius()), f64::from(blend));
+                by_coverage(order.iter(), reach, blend, |map| self[map].projection.texels_to_edge(point))
             }
             MapSelection::ViewDepth { .. } => {
-                by_view_depth(self.iter().map(FittedMap::depth_range), view_depth, |map| {
-                    self[map].projection.covers(point)
-                })
+                by_view_depth(self.iter().map(|map| map.depths), view_depth, |map| self[map].projection.covers(point))
             }
         }
     }

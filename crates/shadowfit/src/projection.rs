@@ -10,7 +10,7 @@ use glam::{DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
-use crate::light::{Constraint, LightAxes, Volume};
+use crate::light::{BoundSource, LightAxes, Volume};
 
 /// An orthographic view-projection of a directional light.
 ///
@@ -47,9 +47,9 @@ pub struct LightProjection {
     /// Distance between the near and the far plane, in metres.
     pub depth_range: f32,
     /// Bound of the distance from [`Self::origin`] to the corners of the receivers' boxes that the map is for, in metres.
-    /// Slices of a view share one bound, which also holds the corners of their maps. 0 if it is not known. A shader rounds
-    /// a vertex by a share of its distance, and a large triangle that reaches into the map is off by the rounding of its
-    /// vertices. [Biases](crate::bias) cover that.
+    /// Cascades of a view share one bound, which also holds the corners of their maps. 0 if it is not known. A shader
+    /// rounds a vertex by a share of its distance, and a large triangle that reaches into the map is off by the
+    /// rounding of its vertices. [Biases](crate::bias) cover that.
     #[cfg_attr(feature = "serde", serde(default))]
     pub vertex_distance: f32,
     /// Width and height of the map, in texels.
@@ -57,7 +57,7 @@ pub struct LightProjection {
     /// Depth range of the clip space.
     pub depth: DepthConvention,
     /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
-    pub set_by: [Constraint; 6],
+    pub bounds_from: [BoundSource; 6],
     /// Whether no receiver is in view: the map is then fitted to the view itself, and its shadow
     /// pass may be skipped. Where no receivers are known, only maps whose range has no part of the
     /// view are empty.
@@ -116,7 +116,7 @@ impl LightProjection {
             vertex_distance: volume.vertex_distance as f32,
             resolution,
             depth,
-            set_by: volume.set_by,
+            bounds_from: volume.bounds_from,
             is_empty: volume.is_empty,
         })
     }
@@ -161,7 +161,7 @@ impl LightProjection {
 
     /// Texels between a world position, in metres, and the nearest of the map's sides; `None` where the
     /// map does not [cover](Self::covers) it. It may be slightly negative, by rounding.
-    pub fn free_texels(&self, point: DVec3) -> Option<f64> {
+    pub fn texels_to_edge(&self, point: DVec3) -> Option<f64> {
         let p = self.project(point);
         let (min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
         let free = (p - min).min(max - p).truncate() / self.texel_size.as_dvec2();
@@ -370,7 +370,7 @@ impl Rows {
         );
         let (min, max) = (middle - half, middle + half);
         let axes = LightAxes { x: axes[0].as_vec3(), y: axes[1].as_vec3(), z: (axes[2] * -travel).as_vec3() };
-        let volume = Volume::covering(axes, min, max, [Constraint::default(); 6], false);
+        let volume = Volume::covering(axes, min, max, [BoundSource::default(); 6], false);
         Volume { light_z: max.z, depth_range: half.z * 2.0, ..volume }
     }
 }

@@ -130,7 +130,7 @@ impl MapOrder {
 ///
 /// `order` has the maps' indices, the finest first, each once; `reach` and `blend` are texels. `free`
 /// says how many texels of a map lie between the point and the nearest side, or `None` where the map
-/// does not hold the point ([`LightProjection::free_texels`]).
+/// does not hold the point ([`LightProjection::texels_to_edge`]).
 ///
 /// The first map that has `reach` texels free is read, and blended with the next one that has, by
 /// weights that are linear in the first one's free texels: from 0 at `reach` to 1 at
@@ -163,33 +163,58 @@ pub fn by_coverage(
     first.map(|(map, _)| map).or(clamped).map(|map| MapRead { map, blend: None })
 }
 
-/// View depths of a map, in metres.
+/// View depths of a map: distances from the eye along the view's forward direction, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthRange {
-    /// Where it is blended into from the map in front of it; at that map's end or beyond for no
-    /// blend.
-    pub blend_near: f64,
-    /// Where it ends.
-    pub far: f64,
+    /// Where it begins.
+    pub near: f64,
+    /// Where it ends: points read the first map that ends beyond them. `None` for a map without an end, such as the last
+    /// cascade, which is read as far as shadows reach.
+    pub far: Option<f64>,
+    /// From where on the map holds everything that is visible, up to its end. It lies before `near` where maps overlap,
+    /// and points are blended from the map in front into this one from there on. `None` for a map that need not hold
+    /// all of any depth, such as a [window](crate::Windows) that is not the last one; no point is blended into it by
+    /// view depth.
+    pub covered_from: Option<f64>,
+}
+
+impl DepthRange {
+    /// All view depths, also those behind the eye, which orthographic views have.
+    pub const ALL: Self = Self { near: f32::MIN as f64, far: None, covered_from: Some(f32::MIN as f64) };
+
+    /// The range of a map that other code fitted: it need not hold all of it.
+    pub const fn new(near: f64, far: Option<f64>) -> Self {
+        Self { near, far, covered_from: None }
+    }
+
+    /// Whether the map ends beyond a view depth.
+    pub fn ends_beyond(&self, view_depth: f64) -> bool {
+        view_depth < self.far.unwrap_or(f64::MAX)
+    }
 }
 
 /// The maps that a point reads by view depth; `None` where no map from there on holds it.
 ///
-/// `ranges` are those of the maps, in order of their ends. `holds` says whether a map holds the point
-/// ([`LightProjection::covers`]). The first map that ends beyond the point's view depth is read, or the
+/// `ranges` are those of the maps, in order of their ends; none reads a map without one. `holds` says whether a map
+/// holds the point ([`LightProjection::covers`]). The first map that ends beyond the point's view depth is read, or the
 /// next later one that holds the point; it is blended into the map behind it, if that holds the
 /// point, by weights that are linear in the view depth, from where that one's range begins to overlap
 /// to its own end.
 pub fn by_view_depth(
-    ranges: impl IntoIterator<Item = DepthRange>,
+    ranges: impl IntoIterator<Item = Option<DepthRange>>,
     view_depth: f64,
     holds: impl Fn(usize) -> bool,
 ) -> Option<MapRead> {
     let mut maps = ranges.into_iter().enumerate();
-    let (map, own) = maps.find(|(index, range)| view_depth < range.far && holds(*index))?;
+    let (map, own) = maps.find_map(|(index, range)| {
+        let range = range.filter(|range| range.ends_beyond(view_depth))?;
+        holds(index).then_some((index, range))
+    })?;
     let blend = maps.next().and_then(|(next, range)| {
-        let is_between = view_depth > range.blend_near && range.blend_near < own.far;
-        let weight = (view_depth - range.blend_near) / (own.far - range.blend_near);
+        let (start, end) = range?.covered_from.zip(own.far)?;
+        let is_between = view_depth > start && start < end;
+        let weight = (view_depth - start) / (end - start);
         (is_between && holds(next)).then_some(MapBlend { map: next, weight })
     });
     Some(MapRead { map, blend })

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use crate::{FitError, FitInput, FitState, FittedMaps, Maps, Scratch, Seen, Technique};
+use crate::{FitError, FitInput, FitState, FittedMaps, Maps, Scratch, Technique, VisibleDemand};
 
 /// Elements of scratch memory for the outline of what a map must hold: that of most scenes has far fewer corners.
 const OUTLINE: usize = 4096;
@@ -13,14 +13,14 @@ const OUTLINE: usize = 4096;
 /// Fits a technique's maps frame by frame. One for each sun.
 ///
 /// It remembers the frames before, owns its scratch memory, which grows once, and takes [what an earlier frame
-/// showed](Seen), whenever that is known.
+/// showed](VisibleDemand), whenever that is known.
 #[derive(Clone, Debug, Default)]
 pub struct ShadowFitter {
     technique: Technique,
     history: FitState,
     fitted: FittedMaps,
     scratch: Vec<DVec2>,
-    seen: Option<Seen>,
+    visible: Option<VisibleDemand>,
 }
 
 impl ShadowFitter {
@@ -42,35 +42,35 @@ impl ShadowFitter {
     /// Forgets all earlier frames: after a camera cut, or when a new level begins.
     pub fn reset(&mut self) {
         self.history.reset();
-        self.seen = None;
+        self.visible = None;
     }
 
-    /// Tells what a picture of an earlier frame showed. It serves until something newer is told: late or wrong counts
+    /// Sets what a picture of an earlier frame showed. It is used until it is replaced: late or wrong counts
     /// cost sharpness, never coverage.
-    pub fn see(&mut self, seen: Seen) {
-        self.seen = Some(seen);
+    pub fn set_visible_demand(&mut self, visible: VisibleDemand) {
+        self.visible = Some(visible);
     }
 
-    /// What was told last.
-    pub fn seen(&self) -> Option<&Seen> {
-        self.seen.as_ref()
+    /// The visible demand that was set last.
+    pub fn visible_demand(&self) -> Option<&VisibleDemand> {
+        self.visible.as_ref()
     }
 
     /// Fits the maps of a frame. Where the input says neither [`FitInput::demand`] nor [`FitInput::histogram`], it is
-    /// completed by what was [told](Self::see) of earlier frames.
+    /// completed by what was [set](Self::set_visible_demand) of earlier frames.
     ///
     /// # Errors
     ///
     /// As [`FitState::fit`]. What is remembered stays as it was; there are no maps of this frame then.
     pub fn fit(&mut self, input: &FitInput) -> Result<&FittedMaps, FitError> {
-        let told = self.seen.take();
-        let seen = told.as_ref().filter(|_| input.demand.is_empty() && input.histogram.is_none());
-        let grid = seen.map(Seen::demand);
-        let fitted = self.fit_growing(&match seen {
-            Some(seen) => FitInput { demand: grid.as_slice(), histogram: Some(seen.histogram()), ..*input },
+        let told = self.visible.take();
+        let visible = told.as_ref().filter(|_| input.demand.is_empty() && input.histogram.is_none());
+        let grid = visible.map(VisibleDemand::demand);
+        let fitted = self.fit_growing(&match visible {
+            Some(visible) => FitInput { demand: grid.as_slice(), histogram: Some(visible.histogram()), ..*input },
             None => *input,
         });
-        self.seen = told;
+        self.visible = told;
         if let Err(error) = fitted {
             self.fitted = FittedMaps::default();
             return Err(error);
@@ -97,7 +97,7 @@ impl ShadowFitter {
         }
     }
 
-    /// Elements of scratch memory that fits of an input need, standing boxes in view and long outlines apart.
+    /// Elements of scratch memory that fits of an input need, static boxes in view and long outlines apart.
     fn usual_scratch(&self, input: &FitInput) -> usize {
         let [receivers, casters] =
             [input.receivers, input.casters].map(|boxes| boxes.map_or(0, |list| list.boxes.len()));
@@ -121,8 +121,8 @@ mod tests {
     use glam::{DVec3, Vec3};
 
     use super::*;
-    use crate::demand::SeenSpace;
-    use crate::{Aabb, Boxes, PerspectiveCamera, PlacedBy};
+    use crate::demand::VisibleDemandSpace;
+    use crate::{Aabb, Boxes, PerspectiveCamera, PlacementSource};
 
     #[test]
     fn what_was_seen_places_the_maps_until_the_fitter_forgets_it() {
@@ -144,18 +144,19 @@ mod tests {
         let mut fitter = ShadowFitter::new(&technique);
         let by_boxes = *fitter.fit(&input).expect("maps");
 
-        let space = SeenSpace::new(&views[0], sun, technique.fit.up, technique.fit.max_distance).expect("a space");
-        let mut seen = Seen::new(space);
+        let space =
+            VisibleDemandSpace::new(&views[0], sun, technique.fit.up, technique.fit.max_distance).expect("a space");
+        let mut visible = VisibleDemand::new(space);
         let step = Vec3::X * 0.01;
         for metre in 100..140_u8 {
             let place = Vec3::new(0.0, -2.0, -f32::from(metre));
-            seen.count_cell(space.demand.index(place, Vec3::Y, step, Vec3::Z * 0.01).expect("a cell"));
+            visible.count_cell(space.demand.index(place, Vec3::Y, step, Vec3::Z * 0.01).expect("a cell"));
         }
         fitter.reset();
-        fitter.see(seen.clone());
+        fitter.set_visible_demand(visible.clone());
         let by_grid = *fitter.fit(&input).expect("maps");
         assert_ne!(by_grid, by_boxes);
-        assert_eq!((by_boxes.placed_by, by_grid.placed_by), (PlacedBy::Boxes, PlacedBy::LastFrame));
+        assert_eq!((by_boxes.placement, by_grid.placement), (PlacementSource::Boxes, PlacementSource::LastFrame));
         let holds = |maps: &FittedMaps| {
             (100..140_u8).any(|metre| maps[0].projection.covers(DVec3::new(0.0, 0.0, -f64::from(metre))))
         };
@@ -164,9 +165,9 @@ mod tests {
         assert_eq!(*fitter.fit(&input).expect("maps"), by_boxes);
 
         // What is told of another light is of no use, and said not to be used.
-        fitter.see(seen);
+        fitter.set_visible_demand(visible);
         let other = FitInput { direction: Vec3::new(-0.8, -0.3, 0.2), ..input };
-        assert_eq!(fitter.fit(&other).expect("maps").placed_by, PlacedBy::Boxes);
+        assert_eq!(fitter.fit(&other).expect("maps").placement, PlacementSource::Boxes);
 
         fitter.fit(&FitInput { direction: Vec3::ZERO, ..input }).expect_err("no direction");
         assert!(fitter.fitted().is_empty());

@@ -1,7 +1,7 @@
 //! Nothing that runs every frame allocates: a global allocator counts.
 
 use allocation_counter::measure;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::cache::{CacheFrame, CacheSettings, Casters, Culling, MapCache, UpdateSchedule};
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
@@ -13,8 +13,8 @@ use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, MAX_MAPS, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, BoxTree, Boxes, CasterVolume, FitInput, FitState, PRESETS, PerspectiveCamera, Scratch, ShadowFitter, Slices,
-    Technique, ViewFrustum, fit,
+    Aabb, Boxes, Cascades, CasterVolume, FitInput, FitState, PRESETS, PerspectiveCamera, Scratch, ShadowFitter,
+    StaticBoxes, Technique, ViewFrustum, fit,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -94,11 +94,11 @@ fn no_fit_of_several_maps_allocates() {
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
     for kind in KINDS {
-        for stabilise in [Stabilise::Off, Stabilise::Snap { max_waste: 1.8 }, Stabilise::default()] {
+        for stabilise in [Stabilise::Off, Stabilise::Snap { max_oversize: 1.8 }, Stabilise::default()] {
             for splits in [SplitScheme::Logarithmic, SplitScheme::Practical(0.5), SplitScheme::FromBoxes] {
-                let slices = Slices { count: 4, shape: Shape::new(kind), stabilise, splits, ..Slices::default() };
+                let cascades = Cascades { count: 4, shape: Shape::new(kind), stabilise, splits, ..Cascades::default() };
                 let fit = MapSettings::default().with_casters(CasterPolicy::PerObject);
-                let settings = Technique::default().with_maps(slices).with_fit(fit);
+                let settings = Technique::default().with_maps(cascades).with_fit(fit);
                 let (what, mut fitter) = (format!("{settings:?}"), FitState::new());
                 for _ in 0..2 {
                     let mut scratch = Scratch::new(&mut storage);
@@ -141,7 +141,7 @@ fn no_fit_of_windows_allocates() {
 #[test]
 fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
     let (views, objects) = (views(), objects());
-    let mut tree = BoxTree::of(Boxes::world(&objects)).expect("good boxes");
+    let mut tree = StaticBoxes::from_boxes(Boxes::world(&objects)).expect("good boxes");
     for preset in PRESETS {
         let mut fitter = ShadowFitter::new(&preset.technique());
         for frame in 0..6_u16 {
@@ -149,7 +149,7 @@ fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
             let aabb = tree.get(fallen).expect("it is in use");
             tree.set(fallen, Aabb::new(aabb.min + 0.1, aabb.max + 0.1)).expect("it is in use");
             let fit = |fitter: &mut ShadowFitter| {
-                let input = FitInput { standing: Some(&tree), ..FitInput::new(&views, DIRECTION) };
+                let input = FitInput { static_boxes: Some(&tree), ..FitInput::new(&views, DIRECTION) };
                 let maps = *fitter.fit(&input).expect("maps");
                 let volumes = maps.caster_volumes(&views, &preset.technique()).expect("volumes");
                 let mut found = 0;
@@ -169,7 +169,7 @@ fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
 #[test]
 fn no_plan_of_cached_maps_allocates_in_steady_frames() {
     let (technique, listed) = (Technique::default(), objects());
-    let tree = BoxTree::of(Boxes::world(&listed[..800])).expect("good boxes");
+    let tree = StaticBoxes::from_boxes(Boxes::world(&listed[..800])).expect("good boxes");
     let mut boxes = listed[800..].to_vec();
     let moves: Vec<bool> = (0..boxes.len()).map(|number| number % 50 == 0).collect();
     for (culling, schedule) in [
@@ -184,10 +184,12 @@ fn no_plan_of_cached_maps_allocates_in_steady_frames() {
             let up = if frame % 2 == 0 { 0.1 } else { -0.1 };
             boxes.iter_mut().zip(&moves).filter(|(_, moves)| **moves).for_each(|(aabb, _)| aabb.max.y += up);
             let (views, casters) = ([eye.frustum().expect("a good camera")], Boxes::world(&boxes));
-            let input = FitInput { casters: Some(casters), standing: Some(&tree), ..FitInput::new(&views, DIRECTION) };
+            let input =
+                FitInput { casters: Some(casters), static_boxes: Some(&tree), ..FitInput::new(&views, DIRECTION) };
             let maps = *fitter.fit(&input).expect("maps");
             let casters = Casters { boxes: casters, moves: &moves, keys: &[] };
-            let frame_of = CacheFrame { standing: Some(&tree), ..CacheFrame::new(&maps, casters, &views, DIRECTION) };
+            let frame_of =
+                CacheFrame { static_boxes: Some(&tree), ..CacheFrame::new(&maps, casters, &views, DIRECTION) };
             if frame < 60 {
                 cache.update(&frame_of).expect("a plan");
             } else {
@@ -205,14 +207,14 @@ fn no_proof_and_no_scrolling_allocates() {
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Scratch::required(objects.len(), views.len())];
     let mut scratch = Scratch::new(&mut storage);
-    let slices = Slices { shape: Shape::new(FitKind::Sphere), ..Slices::default() };
+    let cascades = Cascades { shape: Shape::new(FitKind::Sphere), ..Cascades::default() };
     let fit = MapSettings::default().with_casters(CasterPolicy::PerObject);
-    let settings = Technique::default().with_maps(slices).with_fit(fit);
+    let settings = Technique::default().with_maps(cascades).with_fit(fit);
     let mut fitter = FitState::new();
     let before = fitter.fit(&input, &settings, &mut scratch).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut scratch).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
-        let query = CoverageQuery::of_map(map, &settings, Reach::POINT);
+        let query = CoverageQuery::of_map(map, &settings, FilterRadius::POINT);
         let verified = without_allocation("verify", || prove(&input, &map.projection, &query, &mut scratch));
         assert!(verified.expect("a good map").is_proven());
         let scroll = without_allocation("scroll", || Scroll::between(before, map));
@@ -232,7 +234,9 @@ fn no_culling_allocates() {
     let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); MAX_MAPS];
     for count in [1, 2] {
         for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
-            let sweep = Sweep { near: map.covered_near, far: map.far, ..Sweep::new(&views[..count]) };
+            let range = map.depths.expect("a range");
+            let [near, far] = [range.covered_from.expect("a cascade"), range.far.unwrap_or(100.0)].map(|x| x as f32);
+            let sweep = Sweep { near, far, ..Sweep::new(&views[..count]) };
             *volume =
                 without_allocation("sweep", || CasterVolume::swept(&map.projection, &sweep)).expect("a good sweep");
         }

@@ -54,7 +54,7 @@ const QUICK_FEATURES: &str = "shadowfit-wgpu/rays,shadowfit-truth/gpu";
 /// The tests that share a process in the quick tier: the tests of all WGSL, and one file of drawing tests for each way in
 /// which Rust and WGSL can disagree.
 const QUICK_SHARING: [&str; 8] =
-    ["wgsl::", "parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "wrap_gpu", "culling_gpu", "cut_outs_gpu"];
+    ["wgsl::", "parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "texel_offset_gpu", "culling_gpu", "cut_outs_gpu"];
 
 /// Longer runs of random cases and of the window in the tier `--all`, by environment variable. A value that is set
 /// already stays.
@@ -76,7 +76,7 @@ const SOFTWARE_ONLY: [(&str, &str); 2] = [
 
 /// Tests of pixels that a second software driver draws too: one file for each way in which drivers differ, in half a minute.
 const SECOND_DRIVER: [&str; 5] =
-    ["clamp_gpu", "exact_counts_gpu", "fade_gpu", "wrap_gpu::float", "cached_maps_gpu::gpu_reversed"];
+    ["clamp_gpu", "exact_counts_gpu", "fade_gpu", "texel_offset_gpu::float", "cached_maps_gpu::gpu_reversed"];
 
 /// The tiers, for people who named another one.
 pub(crate) const TIERS: &str = "The tiers of tests are:\n  \

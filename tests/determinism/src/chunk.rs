@@ -2,7 +2,8 @@
 
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{BiasSettings, MapFormat};
-use shadowfit::{DepthConvention, FitError, SpotBias, SpotLight};
+use shadowfit::spot::{SpotBias, SpotLight};
+use shadowfit::{DepthConvention, FitError};
 
 use crate::numbers::{self, ByKind, Numbers};
 use crate::random::Random;
@@ -17,8 +18,8 @@ const LAMPS: u32 = 50;
 /// What a chunk's fits are of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Single maps, slices and lamps.
-    Slices,
+    /// Single maps, cascades and lamps.
+    Cascades,
     /// Windows.
     Windows,
 }
@@ -32,16 +33,16 @@ pub fn run(kind: Kind, seed: u64, index: u64) -> Result<u64, String> {
     let mut numbers = ByKind::new();
     let mut random = Random::stream(seed, index);
     match kind {
-        Kind::Slices => {
+        Kind::Cascades => {
             for _ in 0..LAMPS {
                 // What is refused gives no number.
-                let _ = lamp(&mut random, &mut numbers.one_map);
+                let _ = lamp(&mut random, &mut numbers.single_map);
             }
             numbers::add(random, FITS - LAMPS, &mut numbers);
         }
         Kind::Windows => windows::add(random, FITS, |_| true, &mut numbers),
     }
-    let all = [numbers.one_map, numbers.slices, numbers.windows];
+    let all = [numbers.single_map, numbers.cascades, numbers.windows];
     if !all.into_iter().all(Numbers::are_finite) {
         return Err("a number is not finite".to_owned());
     }

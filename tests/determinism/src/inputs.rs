@@ -9,7 +9,7 @@ use shadowfit::settings::{
     MapSettings, RectangleKind, Shape, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitError, FitInput, Maps, PerspectiveCamera, Slices, Technique, ViewFrustum,
+    Aabb, Boxes, Cascades, DepthConvention, FitError, FitInput, Maps, PerspectiveCamera, Technique, ViewFrustum,
 };
 
 use crate::random::Random;
@@ -209,18 +209,18 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
     let count = 1 + random.below(5);
     let (splits, overlap) = (random.pick(&schemes), random.pick(&[0.0, 0.1, 0.5]));
     let stability = random.pick(&[0, 1, 2]);
-    let hold = Hysteresis { margin: 0.02, max_growth: 1.4, max_waste: random.between(1.2, 3.0), look_ahead: 32 };
+    let hold = Hysteresis { margin: 0.02, max_growth: 1.4, max_oversize: random.between(1.2, 3.0), look_ahead: 32 };
     // One in four once had a rule of its own for the nearest map; the draw stays, so that all others do.
     if random.once_in(4) {
         kind(random);
     }
     let stabilise = match stability {
         0 => Stabilise::Off,
-        1 => Stabilise::Snap { max_waste: hold.max_waste },
+        1 => Stabilise::Snap { max_oversize: hold.max_oversize },
         _ => Stabilise::Hysteresis(hold),
     };
     let technique = Technique {
-        maps: Slices { count, shape, splits, selection: MapSelection::ViewDepth { overlap }, stabilise }.into(),
+        maps: Cascades { count, shape, splits, selection: MapSelection::ViewDepth { overlap }, stabilise }.into(),
         fit: MapSettings { max_distance: f32::MAX, ..map },
         filter: FilterKind::Point,
         softness: Softness::default(),
@@ -235,7 +235,7 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
 /// The technique with maps that are read by coverage.
 pub(crate) fn by_coverage(technique: Technique) -> Technique {
     match technique.maps {
-        Maps::Slices(slices) => technique.with_maps(slices.with_selection(MapSelection::default())),
+        Maps::Cascades(cascades) => technique.with_maps(cascades.with_selection(MapSelection::default())),
         _ => technique,
     }
 }

@@ -3,11 +3,12 @@
 //! The first hash covers whatever values print as, so that it also changes when a field is renamed or added. Those over
 //! numbers change only if an engine gets another number for the same settings, all of which are written out here.
 
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::culling::{Sweep, cull};
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::{BiasSettings, CasterPolicy};
 use shadowfit::{Bias, CasterVolume, FitError, FitState, FittedMap, LightProjection, Scratch};
 
@@ -17,10 +18,10 @@ use crate::random::Random;
 /// Frames of a camera's flight.
 const FRAMES: u32 = 6;
 
-/// Adds the numbers of so many fits: single maps, and slices read by view depth.
+/// Adds the numbers of so many fits: single maps, and cascades read by view depth.
 pub(crate) fn add(random: Random, fits: u32, numbers: &mut ByKind) {
     let storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
-    let mut run = Run { random, one_map: &mut numbers.one_map, slices: &mut numbers.slices, storage };
+    let mut run = Run { random, single_map: &mut numbers.single_map, cascades: &mut numbers.cascades, storage };
     let mut done = 0;
     while done < fits {
         // What is refused gives no number.
@@ -30,8 +31,8 @@ pub(crate) fn add(random: Random, fits: u32, numbers: &mut ByKind) {
 
 struct Run<'a> {
     random: Random,
-    one_map: &'a mut Numbers,
-    slices: &'a mut Numbers,
+    single_map: &'a mut Numbers,
+    cascades: &'a mut Numbers,
     storage: Vec<DVec2>,
 }
 
@@ -42,7 +43,7 @@ impl Run<'_> {
         if !self.random.once_in(8) {
             let settings = fit_settings(&mut self.random, &scene.camera);
             let fit = fit_scene(&scene.input(), &settings, &mut Scratch::new(&mut self.storage))?;
-            self.one_map.fit(&fit);
+            self.single_map.fit(&fit);
             self.follow(&scene, &fit, settings.map.casters)?;
             return Ok(1);
         }
@@ -52,7 +53,7 @@ impl Run<'_> {
         let mut fitter = FitState::new();
         for _ in 0..FRAMES {
             let maps = fitter.fit(&scene.input(), &settings, &mut Scratch::new(&mut self.storage))?;
-            let numbers = if settings.maps.count() > 1 { &mut *self.slices } else { &mut *self.one_map };
+            let numbers = if settings.maps.count() > 1 { &mut *self.cascades } else { &mut *self.single_map };
             for map in maps.iter() {
                 numbers.map(map);
             }
@@ -64,7 +65,12 @@ impl Run<'_> {
     /// Biases and culling by a fit.
     fn follow(&mut self, scene: &Scene, fit: &LightProjection, casters: CasterPolicy) -> Result<(), FitError> {
         let random = &mut self.random;
-        let reach = random.pick(&[Reach::POINT, Reach::HARDWARE_2X2, Reach::kernel(3), Reach::kernel(5)]);
+        let reach = random.pick(&[
+            FilterRadius::POINT,
+            FilterRadius::HARDWARE_2X2,
+            FilterRadius::kernel(3),
+            FilterRadius::kernel(5),
+        ]);
         let storage = random.pick(&[DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32]);
         let settings = BiasSettings {
             constant: random.scale(-2, 1),
@@ -78,23 +84,23 @@ impl Run<'_> {
             Bias::automatic(reach, storage, fit)?,
             Bias::automatic_receiver_plane(reach, storage, fit)?,
         ] {
-            self.one_map.f32s(&[bias.constant_depth, bias.slope_depth, bias.normal_offset, bias.receiver_plane]);
+            self.single_map.f32s(&[bias.constant_depth, bias.slope_depth, bias.normal_offset, bias.receiver_plane]);
         }
         let far = scene.camera.far * self.random.between(0.3, 1.0);
         let normal_offset = self.random.between(0.0, 0.1);
-        let sweep = Sweep { views: &scene.views, near: f32::MIN, far, reach, normal_offset };
+        let sweep = Sweep { views: &scene.views, near: f32::MIN, far, filter_radius: reach, normal_offset };
         let swept = CasterVolume::swept(fit, &sweep)?;
         let volumes = [swept, swept.cut_at_near_plane(fit), CasterVolume::of_map(fit, casters), fit.caster_volume()];
         let mut masks = [0; 24];
         cull(&volumes, scene.origin, &scene.casters, &mut masks);
         for volume in volumes {
-            self.one_map.place(volume.origin);
+            self.single_map.place(volume.origin);
             for plane in volume.active_planes() {
-                self.one_map.f32s(&plane.to_array());
+                self.single_map.f32s(&plane.to_array());
             }
         }
         for mask in masks {
-            self.one_map.bits(u64::from(mask));
+            self.single_map.bits(u64::from(mask));
         }
         Ok(())
     }
@@ -103,15 +109,15 @@ impl Run<'_> {
 /// A hash for each kind of technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ByKind {
-    pub(crate) one_map: Numbers,
-    pub(crate) slices: Numbers,
+    pub(crate) single_map: Numbers,
+    pub(crate) cascades: Numbers,
     pub(crate) windows: Numbers,
 }
 
 impl ByKind {
     pub(crate) fn new() -> Self {
         let new = Numbers::new();
-        Self { one_map: new, slices: new, windows: new }
+        Self { single_map: new, cascades: new, windows: new }
     }
 }
 
@@ -139,13 +145,21 @@ impl Numbers {
     /// One of several maps.
     pub(crate) fn map(&mut self, map: &FittedMap) {
         self.fit(&map.projection);
-        self.f32s(&[map.near, map.far, map.covered_near]);
-        if let Some(anchor) = map.anchor {
-            for line in anchor.first {
+        self.depths(map.depths);
+        if let Some(grid_position) = map.grid_position {
+            for line in grid_position.first {
                 self.bits(line.cast_unsigned());
             }
-            self.f64s(&[anchor.texel.x, anchor.texel.y, anchor.depth[0], anchor.depth[1]]);
+            self.f64s(&[grid_position.texel.x, grid_position.texel.y, grid_position.depth[0], grid_position.depth[1]]);
         }
+    }
+
+    /// View depths in f32, as shaders compare them: no end is `f32::MAX`, and no range `f32::MIN`.
+    fn depths(&mut self, depths: Option<DepthRange>) {
+        self.f32s(&depths.map_or([f32::MIN; 3], |DepthRange { near, far, covered_from }| {
+            let far = far.map_or(f32::MAX, |far| far as f32);
+            [near as f32, far, covered_from.map_or(far, |near| near as f32)]
+        }));
     }
 
     pub(crate) fn bits(&mut self, bits: u64) {

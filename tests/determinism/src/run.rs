@@ -1,12 +1,12 @@
 //! Runs fits, and all that engines ask of them.
 
-use shadowfit::bias::{Reach, normal_offset, receiver_plane_depth};
+use shadowfit::bias::{FilterRadius, normal_offset, receiver_plane_depth};
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::demand::{DepthHistogram, needed_texel};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, pixels_per_texel, share_of_map};
 use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
 use shadowfit::{Bias, CasterVolume, FitError, FitState, LightProjection, Scratch};
 
@@ -23,7 +23,7 @@ pub(crate) fn run(fits: u32) -> Outcome {
         random: Random::new(1),
         hash: Hash::new(),
         storage: vec![DVec2::ZERO; Scratch::required(64, 8)],
-        light: LightSteps::default(),
+        light: LightStepState::default(),
         fits: 0,
         refused: 0,
     };
@@ -40,7 +40,7 @@ struct Run {
     random: Random,
     hash: Hash,
     storage: Vec<DVec2>,
-    light: LightSteps,
+    light: LightStepState,
     fits: u32,
     refused: u32,
 }
@@ -71,7 +71,7 @@ impl Run {
     fn lights(&mut self, scene: &Scene) -> Result<(), FitError> {
         // In f64, which no target computes by SIMD.
         let sun = scene.direction.as_dvec3().normalize().as_vec3();
-        let settings = LightStepSettings::default().with_texels(100.0).with_fade(0.5);
+        let settings = LightSteps::default().with_texels(100.0).with_fade(0.5);
         let step = self.light.update(scene.direction, &settings, self.random.between(0.0, 0.4))?;
         let (right, down) = (self.random.vector(), self.random.vector());
         let texel = needed_texel(right, down, sun);
@@ -90,9 +90,9 @@ impl Run {
         let filter = random.pick(&[FilterKind::Point, FilterKind::Hardware2x2]);
         let reach = random.pick(&[
             filter.into(),
-            Reach::kernel(5),
-            Reach::POINT.over_disc(3.0),
-            Reach { disc: Vec2::splat(0.5) / fit.texel_size, ..Reach::POINT },
+            FilterRadius::kernel(5),
+            FilterRadius::POINT.over_disc(3.0),
+            FilterRadius { disc: Vec2::splat(0.5) / fit.texel_size, ..FilterRadius::POINT },
         ]);
         let storage = random.pick(&[DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32]);
         let settings =
@@ -126,12 +126,13 @@ impl Run {
         &mut self,
         scene: &Scene,
         fit: &LightProjection,
-        reach: Reach,
+        reach: FilterRadius,
         normal_offset: f32,
         casters: CasterPolicy,
     ) -> Result<(), FitError> {
         let far = scene.camera.far * self.random.between(0.3, 1.0);
-        let swept = CasterVolume::swept(fit, &Sweep { far, reach, normal_offset, ..Sweep::new(&scene.views) })?;
+        let swept =
+            CasterVolume::swept(fit, &Sweep { far, filter_radius: reach, normal_offset, ..Sweep::new(&scene.views) })?;
         let volumes = [swept, swept.cut_at_near_plane(fit), CasterVolume::of_map(fit, casters), fit.caster_volume()];
         let mut masks = [[0; 24]; 3];
         cull(&volumes, scene.origin, &scene.casters, &mut masks[0]);

@@ -1,4 +1,4 @@
-//! The numbers of maps that are read by coverage: windows, with a demand grid and without, slices of the view, and
+//! The numbers of maps that are read by coverage: windows, with a demand grid and without, cascades, and
 //! single maps.
 
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
@@ -39,9 +39,9 @@ fn flight(
         settings = settings.with_count(1 + random.below(8));
         &mut numbers.windows
     } else if settings.maps.count() > 1 {
-        &mut numbers.slices
+        &mut numbers.cascades
     } else {
-        &mut numbers.one_map
+        &mut numbers.single_map
     };
     let (mut fitter, mut demand) = (FitState::new(), None);
     for _ in 0..FRAMES {

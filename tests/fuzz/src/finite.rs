@@ -1,9 +1,10 @@
 //! What a fit promises: an error, or numbers that are all finite.
 
 use shadowfit::glam::{DVec3, Mat4, UVec2, Vec3};
+use shadowfit::spot::SpotLight;
 use shadowfit::{
     Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FittedMaps, LightProjection, PerspectiveCamera,
-    ShadowFitter, SpotLight, Technique,
+    ShadowFitter, Technique,
 };
 
 /// Fits a frame, and checks all that is said of it.
@@ -45,9 +46,18 @@ pub(crate) fn check_maps(maps: &FittedMaps) {
         let bias = map.bias;
         let numbers = [bias.constant_depth, bias.slope_depth, bias.normal_offset, bias.receiver_plane];
         assert!(numbers.iter().all(|number| number.is_finite()), "{bias:?}");
-        assert!([map.near, map.far, map.covered_near].iter().all(|depth| depth.is_finite()), "{map:?}");
-        if let Some(anchor) = map.anchor {
-            assert!(anchor.texel.is_finite() && anchor.depth.iter().all(|depth| depth.is_finite()), "{anchor:?}");
+        assert!(
+            map.depths.is_none_or(|range| {
+                let depths = [Some(range.near), range.far, range.covered_from];
+                depths.iter().flatten().all(|depth| depth.is_finite())
+            }),
+            "{map:?}"
+        );
+        if let Some(grid_position) = map.grid_position {
+            assert!(
+                grid_position.texel.is_finite() && grid_position.depth.iter().all(|depth| depth.is_finite()),
+                "{grid_position:?}"
+            );
         }
     }
 }

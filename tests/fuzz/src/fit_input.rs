@@ -6,9 +6,10 @@ use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, Hysteresis, MapFormat, MapSelection, MapSettings, RectangleKind,
     Shape, SoftRadius, Softness, SplitScheme, Stabilise,
 };
+use shadowfit::spot::SpotLight;
 use shadowfit::{
-    Aabb, BoxTree, Boxes, DepthConvention, FitError, FitInput, Maps, OneMap, PRESETS, PerspectiveCamera, ShadowFitter,
-    Slices, SpotLight, Technique, ViewFrustum, Windows,
+    Aabb, Boxes, Cascades, DepthConvention, FitError, FitInput, Maps, PRESETS, PerspectiveCamera, ShadowFitter,
+    SingleMap, StaticBoxes, Technique, ViewFrustum, Windows,
 };
 
 use super::bytes::Bytes;
@@ -40,8 +41,8 @@ fn frame(bytes: &mut Bytes, fitter: &mut ShadowFitter, camera: &PerspectiveCamer
         views.push(PerspectiveCamera { eye: camera.eye + bytes.dvec3(1.0), ..*camera }.frustum()?);
     }
     let origin = if bytes.below(2) == 0 { DVec3::ZERO } else { bytes.dvec3(1e5) };
-    let [receivers, casters, standing] = [0; 3].map(|_| boxes(bytes));
-    let standing = standing.and_then(|boxes| BoxTree::of(Boxes { origin, boxes: &boxes }).ok());
+    let [receivers, casters, static_boxes] = [0; 3].map(|_| boxes(bytes));
+    let static_boxes = static_boxes.and_then(|boxes| StaticBoxes::from_boxes(Boxes { origin, boxes: &boxes }).ok());
     let bins: Vec<u32> = (0..bytes.below(48)).map(|_| bytes.u32()).collect();
     let classes = bytes.below(4);
     let histogram = DepthHistogram { near: bytes.f32(0.1, 1.0), far: bytes.f32(10.0, 1e3), bins: &bins, classes };
@@ -50,7 +51,7 @@ fn frame(bytes: &mut Bytes, fitter: &mut ShadowFitter, camera: &PerspectiveCamer
     let input = FitInput {
         receivers: receivers.as_deref().map(listed),
         casters: casters.as_deref().map(listed),
-        standing: standing.as_ref(),
+        static_boxes: static_boxes.as_ref(),
         histogram: Some(histogram).filter(|_| classes > 0),
         depth_bounds: Some(bounds).filter(|_| bytes.below(2) == 1),
         ..FitInput::new(&views, bytes.vec3(1.0))
@@ -125,12 +126,14 @@ fn technique(bytes: &mut Bytes) -> Technique {
         return preset;
     }
     let maps = match bytes.below(4) {
-        0 => {
-            Windows { count: bytes.below(10) as u32, blend: bytes.f32(0.0, 64.0), max_depth_waste: bytes.f32(1.0, 4.0) }
-                .into()
+        0 => Windows {
+            count: bytes.below(10) as u32,
+            blend: bytes.f32(0.0, 64.0),
+            max_depth_oversize: bytes.f32(1.0, 4.0),
         }
-        1 => OneMap { shape: shape(bytes), stabilise: stabilise(bytes) }.into(),
-        _ => slices(bytes),
+        .into(),
+        1 => SingleMap { shape: shape(bytes), stabilise: stabilise(bytes) }.into(),
+        _ => cascades(bytes),
     };
     let fit = MapSettings {
         max_distance: bytes.f32(1.0, 1e3),
@@ -172,13 +175,13 @@ fn stabilise(bytes: &mut Bytes) -> Stabilise {
     let hold = Hysteresis {
         margin: bytes.f32(0.0, 0.5),
         max_growth: bytes.f32(1.0, 3.0),
-        max_waste: bytes.f32(1.0, 4.0),
+        max_oversize: bytes.f32(1.0, 4.0),
         look_ahead: if bytes.below(8) == 7 { bytes.u32() } else { bytes.below(64) as u32 },
     };
-    bytes.pick(&[Stabilise::Off, Stabilise::Snap { max_waste: hold.max_waste }, Stabilise::Hysteresis(hold)])
+    bytes.pick(&[Stabilise::Off, Stabilise::Snap { max_oversize: hold.max_oversize }, Stabilise::Hysteresis(hold)])
 }
 
-fn slices(bytes: &mut Bytes) -> Maps {
+fn cascades(bytes: &mut Bytes) -> Maps {
     let mut cut = bytes.f32(0.1, 1.0);
     let manual = [0; 7].map(|_| {
         cut += bytes.f32(0.0, 50.0);
@@ -196,7 +199,7 @@ fn slices(bytes: &mut Bytes) -> Maps {
         MapSelection::ViewDepth { overlap: bytes.f32(0.0, 1.0) },
         MapSelection::Coverage { blend: bytes.f32(0.0, 64.0) },
     ];
-    Slices {
+    Cascades {
         count: bytes.below(10) as u32,
         shape: shape(bytes),
         splits: bytes.pick(&schemes),

@@ -4,9 +4,8 @@ use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{
-    Aabb, Boxes, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, SpotLight, Technique, ViewFrustum,
-};
+use shadowfit::spot::SpotLight;
+use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique, ViewFrustum};
 
 use super::finite::{check_maps, check_spot, fit_simple_scene};
 

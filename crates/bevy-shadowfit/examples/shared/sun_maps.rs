@@ -43,7 +43,10 @@ impl SunMaps {
             maps: self.cascades.iter().zip(bounds).map(map).collect(),
             size,
             blend: if has_windows {
-                LookupBlend::Coverage { reach: filter.reach().into(), blend: MapSelection::DEFAULT_BLEND.into() }
+                LookupBlend::Coverage {
+                    reach: filter.filter_radius().into(),
+                    blend: MapSelection::DEFAULT_BLEND.into(),
+                }
             } else {
                 LookupBlend::ViewDepth { overlap: (*overlap_proportion).into() }
             },

@@ -9,7 +9,7 @@ use bevy::light::{CascadeShadowConfig, Cascades, DirectionalLight, DirectionalLi
 use bevy::mesh::MeshPlugin;
 use bevy::prelude::*;
 use bevy_shadowfit::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::glam::{DMat4, DVec2, DVec3, UVec2, Vec3 as FitVec3};
 use shadowfit::proof::{CoverageQuery, prove as prove_map};
 use shadowfit::settings::CasterPolicy;
@@ -167,7 +167,7 @@ pub fn prove(app: &mut App, light: Entity, camera: Entity) {
         let query = CoverageQuery {
             near: near.min(far),
             far,
-            reach: Reach::from(2.5),
+            filter_radius: FilterRadius::from(2.5),
             normal_offset: sun.shadow_normal_bias * std::f32::consts::SQRT_2 * cascade.texel_size,
             is_shared: false,
             casters: CasterPolicy::DepthClamp,

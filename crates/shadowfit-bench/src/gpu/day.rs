@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3, Vec3};
 use shadowfit::PerspectiveCamera;
 use shadowfit_params::tool::LightSettings;
 use shadowfit_render::{Gpu, read_texture};
-use shadowfit_wgpu::SunSteps;
+use shadowfit_wgpu::LightSteps;
 
 use super::Bench;
 use super::edges::{Change, Factors, Surfaces};
@@ -30,10 +30,10 @@ const REAL: f64 = core::f64::consts::TAU / 86_400.0;
 #[derive(Clone, Copy)]
 struct Way {
     name: &'static str,
-    steps: Option<SunSteps>,
+    steps: Option<LightSteps>,
 }
 
-const AT_ONCE: SunSteps = SunSteps { texels: 1.0, fade: 0 };
+const AT_ONCE: LightSteps = LightSteps { texels: 1.0, fade: 0 };
 
 const WAYS: [Way; 4] = [
     Way { name: "followed in each frame", steps: None },
@@ -146,8 +146,8 @@ fn day(bench: &Bench, scene: &BenchScene, run: &Run<'_>) -> Result<Taken> {
         if frame < warm_up {
             continue;
         }
-        let pieces = engine.sun.passes().flat_map(|pass| pass.pieces());
-        taken.texels.push(pieces.map(|piece| f64::from(piece.scissor[2]) * f64::from(piece.scissor[3])).sum());
+        let regions = engine.sun.passes().flat_map(|pass| pass.regions());
+        taken.texels.push(regions.map(|region| f64::from(region.scissor[2]) * f64::from(region.scissor[3])).sum());
         taken.gpu.push(time);
         if !walks {
             let picture = match &mut picture {

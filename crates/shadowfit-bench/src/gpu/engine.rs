@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, FittedMap, PerspectiveCamera, Technique};
 use shadowfit_render::passes::{DEPTH_FORMAT, Maker, Shape, depth};
 use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
-use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, SunSteps, WgslOptions, caster_wgsl};
+use shadowfit_wgpu::{Casters, LightSteps, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 use super::scene::BenchScene;
@@ -91,7 +91,7 @@ impl<'a> Engine<'a> {
     }
 
     /// Holds the maps of a sun that moves.
-    pub(crate) fn set_light_steps(&mut self, steps: Option<SunSteps>) -> Result<()> {
+    pub(crate) fn set_light_steps(&mut self, steps: Option<LightSteps>) -> Result<()> {
         if self.sun.set_light_steps(steps)? {
             self.caster_pipeline = caster_pipeline(&Maker { device: &self.gpu.device, samples: 1 }, self.sun.map());
         }
@@ -160,9 +160,9 @@ impl<'a> Engine<'a> {
             let query = timer.and_then(|timer| timer.begin("shadow", encoder));
             let times = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
             let mut pass = self.sun.begin_pass(encoder, &shadow, 0, times);
-            for piece in shadow.pieces() {
-                piece.set(&mut pass);
-                self.draw(&mut pass, piece.casters);
+            for region in shadow.regions() {
+                region.set(&mut pass);
+                self.draw(&mut pass, region.casters);
             }
             drop(pass);
             if let Some(timer) = timer {

@@ -3,12 +3,13 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use shadowfit::cache::UpdatedRect;
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
-use shadowfit::{Aabb, PerspectiveCamera, Seen, Technique, demand};
+use shadowfit::{Aabb, PerspectiveCamera, Technique, VisibleDemand, demand};
 use shadowfit_render::GpuProfilerQuery;
 use shadowfit_wgpu::demand::{DemandPass, DemandView};
-use shadowfit_wgpu::{Culling, MapUpdate, ShadowMap, ShadowMapDescriptor, SunShadows, UpdateSchedule};
+use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, SunShadows, UpdateSchedule};
 
 use super::Bench;
 use super::engine::{Engine, SIZE};
@@ -56,9 +57,9 @@ pub(crate) struct Taken {
 impl Taken {
     /// Counts what a frame drew.
     fn count(&mut self, sun: &SunShadows) {
-        let draws = sun.passes().flat_map(|pass| pass.pieces()).map(|piece| piece.casters.len());
+        let draws = sun.passes().flat_map(|pass| pass.regions()).map(|region| region.casters.len());
         self.draws.push(draws.sum::<usize>() as f64);
-        let texels = |update: MapUpdate| f64::from(update.rect.size.x) * f64::from(update.rect.size.y);
+        let texels = |update: UpdatedRect| f64::from(update.rect.size.x) * f64::from(update.rect.size.y);
         self.texels.push(sun.updates().into_iter().map(texels).sum());
         self.cleared += usize::from(sun.passes().any(|pass| pass.is_cleared()));
     }
@@ -233,7 +234,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
                 let query = times.begin("bare", encoder);
                 let writes = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
                 let mut pass = map.begin_pass(encoder, shadow.map(), 0, writes);
-                let casters = bare.order.sorted(shadow.pieces().flat_map(|piece| piece.casters).copied().collect());
+                let casters = bare.order.sorted(shadow.regions().flat_map(|region| region.casters).copied().collect());
                 if bare.is_cut {
                     let rect = TexelRect::of_box(&maps[shadow.map()].projection, &seen, camera.eye);
                     pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
@@ -327,7 +328,7 @@ pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table>
 }
 
 /// Points in the grid, cells that have some, and octaves of texels that do.
-fn counts(seen: &Seen) -> [f64; 3] {
+fn counts(seen: &VisibleDemand) -> [f64; 3] {
     let counts = seen.demand().counts;
     let has_some = |counts: &[u32]| counts.iter().any(|count| *count > 0);
     let points: u32 = counts.iter().sum();

@@ -9,7 +9,7 @@ use shadowfit::settings::{Edges, FilterKind};
 use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Technique};
 use shadowfit_rays::{MeshId, RayInstance, RayMesh, RayScene, RayWgslOptions, rays_wgsl};
 use shadowfit_render::{GpuProfilerQuery, GpuTimer, bindings};
-use shadowfit_wgpu::resolve::{ResolveCounts, ResolvePass, ResolveView};
+use shadowfit_wgpu::exact_edges::{EdgeCounts, EdgePass, EdgeView};
 use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl};
 
 use super::Bench;
@@ -250,9 +250,9 @@ impl Meshes {
 struct Times {
     look_up: Vec<f64>,
     classes: Vec<f64>,
-    resolve: Vec<f64>,
+    both: Vec<f64>,
     rays: Vec<f64>,
-    counts: Vec<ResolveCounts>,
+    counts: Vec<EdgeCounts>,
 }
 
 /// Times edges along the walk, in pictures of some heights.
@@ -272,7 +272,7 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
         note: format!(
             "Compute passes over the depth buffer of the {}, medians along the walk: the look-up for every pixel, PCF 5×5 or for a sun with a radius of 0.27° PCSS; finding the \
              pixels that the maps are not sure of, with a budget of none; rays for each of these; and as many rays for \
-             every pixel that faces the light. Shares are of the pixels, the ratio is that of resolving to rays for all.",
+             every pixel that faces the light. Shares are of the pixels, the ratio is that of both passes to rays for all.",
             scene.name
         ),
         columns: [
@@ -295,13 +295,13 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
 
 fn row([width, height]: [u32; 2], rays: String, times: Times) -> Vec<String> {
     let pixels = f64::from(width) * f64::from(height);
-    let part = |count: fn(&ResolveCounts) -> u32| {
+    let part = |count: fn(&EdgeCounts) -> u32| {
         let parts = times.counts.iter().map(|counts| f64::from(count(counts)) / pixels);
         format!("{:.1}%", 100.0 * median(parts.collect()))
     };
     let (facing, traced) = (part(|counts| counts.facing), part(|counts| counts.unsure));
-    let difference = times.resolve.iter().zip(&times.classes).map(|(both, classes)| both - classes).collect();
-    let [look_up, classes, both, all] = [times.look_up, times.classes, times.resolve, times.rays].map(median);
+    let difference = times.both.iter().zip(&times.classes).map(|(both, classes)| both - classes).collect();
+    let [look_up, classes, both, all] = [times.look_up, times.classes, times.both, times.rays].map(median);
     let mut row = vec![format!("{width} × {height}"), rays];
     row.extend([look_up, classes, median(difference), both, all].map(ms));
     row.extend([share(both, all), facing, traced]);
@@ -314,7 +314,7 @@ fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], technique: &Technique
     let mut meshes = Meshes::new(bench, scene)?;
     let pictures = Pictures::new(bench, size, engine.sun.map(), &meshes.rays);
     engine.depth = pictures.depth.clone();
-    let mut resolve = ResolvePass::new(&gpu.device, &gpu.queue)?;
+    let mut edges = EdgePass::new(&gpu.device, &gpu.queue)?;
     let (mut timer, mut times) = (Timer::new(gpu), Times::default());
     for frame in 0..bench.frames + bench.frames / 5 {
         engine.update(frame)?;
@@ -333,26 +333,26 @@ fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], technique: &Technique
         };
         let look_up = pass(&pictures.look_up, engine.sun.map().receiver_group())?;
         let rays = pass(&pictures.rays, meshes.rays.group())?;
-        let mut resolved = |budget| {
+        let mut timed = |budget| {
             let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
-            let view = ResolveView::new(&pictures.depth, clip_from_eye, DepthConvention::Reversed, camera.eye);
+            let view = EdgeView::new(&pictures.depth, clip_from_eye, DepthConvention::Reversed, camera.eye);
             timer.frame(gpu, |encoder, timer| {
-                let query = timer.begin("resolve", encoder);
+                let query = timer.begin("edges", encoder);
                 let writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
-                let view = ResolveView { budget, ..view };
-                let result = resolve.record_timed(encoder, &engine.sun, Some(&meshes.rays), &view, writes);
+                let view = EdgeView { budget, ..view };
+                let result = edges.record_timed(encoder, &engine.sun, Some(&meshes.rays), &view, writes);
                 timer.end(query, encoder);
                 result?;
                 Ok(())
             })
         };
-        let [both, classes] = [resolved(None)?, resolved(Some(0))?];
-        let counts = resolve.take_counts();
+        let [both, classes] = [timed(None)?, timed(Some(0))?];
+        let counts = edges.take_counts();
         if frame >= bench.frames / 5 {
             times.look_up.push(look_up);
             times.rays.push(rays);
             times.classes.push(classes);
-            times.resolve.push(both);
+            times.both.push(both);
             times.counts.extend(counts);
         }
     }

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use anyhow::Result;
 use glam::DVec3;
 use shadowfit::culling::cull;
-use shadowfit::{Aabb, BoxTree, Boxes, CasterVolume, ShadowFitter, Technique};
+use shadowfit::{Aabb, Boxes, CasterVolume, ShadowFitter, StaticBoxes, Technique};
 use shadowfit_study::tell;
 
 use super::picture::{Curve, Picture, grouped};
@@ -21,7 +21,7 @@ const MOVED: usize = 1_000;
 const CALLS: usize = 20;
 
 const NOTE: &str = "Against the volumes that hold the casters of `windows-4`, all four at once: `culling::cull` over a \
-                    list, `BoxTree::cull` in a hierarchy.";
+                    list, `StaticBoxes::cull` in a hierarchy.";
 
 const COLUMNS: [&str; 7] = ["boxes", "in a map", "list", "hierarchy", "of the list", "hierarchy made", "a box moved"];
 
@@ -38,7 +38,7 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
             cull(black_box(&volumes), DVec3::ZERO, black_box(&town.boxes), black_box(&mut masks));
             Ok(())
         })?;
-        let (tree, made) = timed(|| BoxTree::of(boxes));
+        let (tree, made) = timed(|| StaticBoxes::from_boxes(boxes));
         let mut tree = tree?;
         let mut drawn = Vec::new();
         let in_tree = shortest(CALLS, || {
@@ -65,7 +65,7 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
 }
 
 /// Moves boxes from all over the tree by a metre; the time of one, in milliseconds.
-fn move_each(tree: &mut BoxTree, town: &Town) -> Result<f64> {
+fn move_each(tree: &mut StaticBoxes, town: &Town) -> Result<f64> {
     let step = town.boxes.len().div_ceil(MOVED);
     let moved: Vec<(u32, Aabb)> = (0..).zip(&town.boxes).step_by(step).map(|(i, b)| (i, *b)).collect();
     let (result, time) =
@@ -78,7 +78,7 @@ fn move_each(tree: &mut BoxTree, town: &Town) -> Result<f64> {
 fn volumes(town: &Town) -> Result<Vec<CasterVolume>> {
     let technique = Technique::default();
     let mut fitter = ShadowFitter::new(&technique);
-    fitter.see(town.seen(1, &technique)?.remove(0));
+    fitter.set_visible_demand(town.seen(1, &technique)?.remove(0));
     let views = [Town::camera(0).frustum()?];
     let maps = fitter.fit(&World::List(Boxes::world(&town.boxes)).input(&views))?;
     Ok(maps.caster_volumes(&views, &technique)?[..maps.len()].to_vec())

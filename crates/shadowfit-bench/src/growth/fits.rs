@@ -1,7 +1,7 @@
 //! Fits of a town of more and more boxes.
 
 use anyhow::{Context, Result};
-use shadowfit::{BoxTree, Boxes, Seen, ShadowFitter, Technique};
+use shadowfit::{Boxes, ShadowFitter, StaticBoxes, Technique, VisibleDemand};
 use shadowfit_study::tell;
 
 use super::picture::{Curve, Picture, grouped};
@@ -24,8 +24,8 @@ const WAYS: [Way; 4] = [
     Way { name: "stable-4", preset: "stable-4", is_told: false },
 ];
 
-const NOTE: &str = "From a list of boxes (`FitInput::receivers` and `casters`) and from a hierarchy (`FitInput::standing`). \
-                    *Seen* is told what the frame before showed; the others estimate that from the boxes. Worst frames \
+const NOTE: &str = "From a list of boxes (`FitInput::receivers` and `casters`) and from a hierarchy (`FitInput::static_boxes`). \
+                    *VisibleDemand* is told what the frame before showed; the others estimate that from the boxes. Worst frames \
                     are said in medians, too.";
 
 const COLUMNS: [&str; 8] =
@@ -41,7 +41,7 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     for count in extent.sizes() {
         let town = Town::new(count);
         let boxes = Boxes::world(&town.boxes);
-        let tree = BoxTree::of(boxes)?;
+        let tree = StaticBoxes::from_boxes(boxes)?;
         let seen = town.seen(extent.frames, &Technique::default())?;
         for (way, curves) in WAYS.iter().zip(list_curves.iter_mut().zip(&mut tree_curves)) {
             let list = walk(World::List(boxes), way, &seen, extent)?;
@@ -70,7 +70,7 @@ fn cells(times: &Times) -> Vec<String> {
 }
 
 /// Times of the fits along the walk.
-fn walk(world: World<'_>, way: &Way, seen: &[Seen], extent: &Extent) -> Result<Times> {
+fn walk(world: World<'_>, way: &Way, seen: &[VisibleDemand], extent: &Extent) -> Result<Times> {
     let technique = Technique::preset(way.preset).context("no such preset")?;
     let mut times = Times::default();
     for _ in 0..extent.rounds {
@@ -78,7 +78,7 @@ fn walk(world: World<'_>, way: &Way, seen: &[Seen], extent: &Extent) -> Result<T
         let mut round = Vec::new();
         for frame in 0..LEAD + extent.frames {
             if let Some(seen) = frame.checked_sub(1).and_then(|before| seen.get(before)).filter(|_| way.is_told) {
-                fitter.see(seen.clone());
+                fitter.set_visible_demand(seen.clone());
             }
             let views = [Town::camera(frame).frustum()?];
             let input = world.input(&views);

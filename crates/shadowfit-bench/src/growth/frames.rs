@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glam::Vec3;
-use shadowfit::{Aabb, BoxTree, Boxes, FitInput, Seen, Technique, Windows};
+use shadowfit::{Aabb, Boxes, FitInput, StaticBoxes, Technique, VisibleDemand, Windows};
 use shadowfit_render::Gpu;
 use shadowfit_study::tell;
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows};
@@ -40,7 +40,7 @@ const CASTERS: usize = 10_000;
 const NOTE: &str = "`windows-4`, told what was seen; the camera walks in all rows but those at rest. `update` is the fit and \
                     all that follows up to the passes, nothing of which is drawn; the columns after it are without the \
                     fit: median, worst, and the frame after them in which one static caster more is there. *List* has all \
-                    casters in the frame's list; *hierarchy* has those that stand in a `BoxTree` (`SunFrame::standing`).";
+                    casters in the frame's list; *hierarchy* has those that stand in a `StaticBoxes` (`SunFrame::static_boxes`).";
 
 const COLUMNS: [&str; 9] = [
     "casters, what moves",
@@ -165,7 +165,7 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
 struct Run<'a> {
     gpu: &'a Gpu,
     town: &'a Town,
-    seen: &'a [Seen],
+    seen: &'a [VisibleDemand],
     extent: &'a Extent,
 }
 
@@ -184,7 +184,7 @@ impl Run<'_> {
                 if let Some(seen) =
                     frame.checked_sub(1).and_then(|before| self.seen.get(if way.walks { before } else { 0 }))
                 {
-                    sun.fitter_mut().see(seen.clone());
+                    sun.fitter_mut().set_visible_demand(seen.clone());
                 }
                 casters.bob(frame);
                 if frame == last {
@@ -208,7 +208,7 @@ struct Handed {
     at_rest: Vec<Aabb>,
     boxes: Vec<Aabb>,
     moves: Vec<bool>,
-    standing: Option<BoxTree>,
+    static_boxes: Option<StaticBoxes>,
 }
 
 impl Handed {
@@ -217,18 +217,18 @@ impl Handed {
         let numbered = boxes.iter().copied().enumerate();
         if !is_tree {
             let moves = (0..boxes.len()).map(moves).collect();
-            return Ok(Self { at_rest: boxes.to_vec(), boxes: boxes.to_vec(), moves, standing: None });
+            return Ok(Self { at_rest: boxes.to_vec(), boxes: boxes.to_vec(), moves, static_boxes: None });
         }
-        let (moving, standing): (Vec<_>, Vec<_>) = numbered.partition(|(number, _)| moves(*number));
-        let [moving, standing] =
-            [moving, standing].map(|list| list.into_iter().map(|(_, aabb)| aabb).collect::<Vec<_>>());
-        let standing = Some(BoxTree::of(Boxes::world(&standing))?);
-        Ok(Self { moves: vec![true; moving.len()], boxes: moving.clone(), at_rest: moving, standing })
+        let (moving, static_boxes): (Vec<_>, Vec<_>) = numbered.partition(|(number, _)| moves(*number));
+        let [moving, static_boxes] =
+            [moving, static_boxes].map(|list| list.into_iter().map(|(_, aabb)| aabb).collect::<Vec<_>>());
+        let static_boxes = Some(StaticBoxes::from_boxes(Boxes::world(&static_boxes))?);
+        Ok(Self { moves: vec![true; moving.len()], boxes: moving.clone(), at_rest: moving, static_boxes })
     }
 
     /// A static caster comes.
     fn add(&mut self, aabb: Aabb) -> Result<()> {
-        match &mut self.standing {
+        match &mut self.static_boxes {
             Some(tree) => drop(tree.insert(aabb)?),
             None => self.boxes.push(aabb),
         }
@@ -248,13 +248,13 @@ impl Handed {
     /// Times of the two halves of a frame.
     fn time(&self, gpu: &Gpu, sun: &mut SunShadows, place: usize) -> Result<[f64; 2]> {
         let views = [Town::camera(place).frustum()?];
-        let (boxes, standing) = (Boxes::world(&self.boxes), self.standing.as_ref());
+        let (boxes, static_boxes) = (Boxes::world(&self.boxes), self.static_boxes.as_ref());
         let casters = Casters { boxes, moves: &self.moves, ..Casters::default() };
-        let frame = SunFrame { standing, ..SunFrame::new(&views, Town::direction(), boxes, casters) };
+        let frame = SunFrame { static_boxes, ..SunFrame::new(&views, Town::direction(), boxes, casters) };
         let input = FitInput {
             receivers: Some(boxes),
             casters: Some(boxes),
-            standing,
+            static_boxes,
             ..FitInput::new(&views, frame.direction)
         };
         let (fitted, fit) = timed(|| sun.fit(&input).copied());

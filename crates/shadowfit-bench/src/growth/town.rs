@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use shadowfit::{Aabb, BoxTree, Boxes, FitInput, PerspectiveCamera, Seen, Technique, ViewFrustum};
+use shadowfit::{Aabb, Boxes, FitInput, PerspectiveCamera, StaticBoxes, Technique, ViewFrustum, VisibleDemand};
 use shadowfit_study::see_by_rays;
 use shadowfit_truth::Tracer;
 
@@ -65,7 +65,7 @@ impl Town {
     }
 
     /// What each of the first frames shows, by rays.
-    pub(crate) fn seen(&self, frames: usize, technique: &Technique) -> Result<Vec<Seen>> {
+    pub(crate) fn seen(&self, frames: usize, technique: &Technique) -> Result<Vec<VisibleDemand>> {
         let in_reach = self.boxes.iter().filter(|aabb| aabb.min.length().min(aabb.max.length()) < FAR * 1.5);
         let tracer = Tracer::new(self.boxes.iter().take(1).chain(in_reach.skip(1)).flat_map(triangles));
         let see = |frame| Ok(see_by_rays(&tracer, Self::camera(frame), Self::direction(), technique)?);
@@ -79,7 +79,7 @@ pub(crate) enum World<'a> {
     /// In each frame.
     List(Boxes<'a>),
     /// Once.
-    Tree(&'a BoxTree),
+    Tree(&'a StaticBoxes),
 }
 
 impl<'a> World<'a> {
@@ -88,7 +88,7 @@ impl<'a> World<'a> {
         let input = FitInput::new(views, Town::direction());
         match self {
             Self::List(boxes) => FitInput { receivers: Some(boxes), casters: Some(boxes), ..input },
-            Self::Tree(tree) => FitInput { standing: Some(tree), ..input },
+            Self::Tree(tree) => FitInput { static_boxes: Some(tree), ..input },
         }
     }
 }

@@ -10,7 +10,8 @@ pub mod test;
 use glam::{DVec3, Vec3};
 use shadowfit::bias::acos_epsilon;
 use shadowfit::settings::FilterKind;
-use shadowfit::{FitError, PerspectiveCamera, SpotLight};
+use shadowfit::spot::SpotLight;
+use shadowfit::{FitError, PerspectiveCamera};
 
 use crate::lamp::{self, Lamp};
 use crate::mapped::{

@@ -7,7 +7,7 @@ mod street;
 use core::f32::consts::FRAC_PI_2;
 
 use glam::{DVec3, Vec3};
-use shadowfit::SpotLight;
+use shadowfit::spot::SpotLight;
 
 use crate::mapped::{SampleFormat, SampleMapSettings, Shading};
 use crate::options::{OptionKind, SampleOption, SampleValues};

@@ -3,9 +3,10 @@
 pub mod test;
 
 use glam::UVec2;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::diagnostics::DepthStorage;
-use shadowfit::{DepthConvention, FitError, PerspectiveCamera, SpotBias, SpotFit, SpotLight};
+use shadowfit::spot::{SpotBias, SpotFit, SpotLight};
+use shadowfit::{DepthConvention, FitError, PerspectiveCamera};
 
 use crate::mapped::{LightImage, LightPlace, MapRead, SampleFormat, SampleLight, SampleMapSettings, ShadowTest};
 use crate::options::{OptionKind, SampleOption, SampleValues};
@@ -61,7 +62,7 @@ impl Lamp {
     /// Our test, with the least bias that clears planes: each look-up is compared with the plane's own depth, so that the
     /// bias covers the reach of one.
     fn our_test(&self, lit_outside: bool) -> Result<ShadowTest, FitError> {
-        let bias = SpotBias::automatic_receiver_plane(Reach::HARDWARE_2X2, DepthStorage::Float32, &self.fit)?;
+        let bias = SpotBias::automatic_receiver_plane(FilterRadius::HARDWARE_2X2, DepthStorage::Float32, &self.fit)?;
         let rise = self.fit.texel_size * self.fit.depth_scale() as f32;
         let numbers = [bias.constant_depth, bias.distance_depth, bias.constant_offset, bias.receiver_plane];
         Ok(ShadowTest {

@@ -1,8 +1,8 @@
 //! Our test of a lamp's map in Rust, as `test.wgsl` has it; a test compares the two, and both with the core's own.
 
 use glam::{Mat4, Vec2, Vec3};
-use shadowfit::SpotBias;
 use shadowfit::bias::MIN_COSINE;
+use shadowfit::spot::SpotBias;
 
 /// Change of the stored depth over a texel along u and along v on a plane with a unit normal toward the light.
 ///
@@ -25,10 +25,11 @@ pub fn compared_depth(depth: f32, distance: f32, bias: &SpotBias, gradient: Vec2
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, UVec2};
-    use shadowfit::bias::Reach;
+    use shadowfit::DepthConvention;
+    use shadowfit::bias::FilterRadius;
     use shadowfit::diagnostics::DepthStorage;
+    use shadowfit::spot::SpotLight;
     use shadowfit::spot::depth_gradient;
-    use shadowfit::{DepthConvention, SpotLight};
 
     use super::*;
 
@@ -36,7 +37,7 @@ mod tests {
     fn the_core_has_the_same_gradient_and_the_same_bias_of_a_lamp() {
         let lamp = SpotLight::toward(DVec3::new(1.0, 6.0, 2.0), DVec3::new(0.0, 0.0, -1.0), 1.2, 1.5, 0.5, 40.0);
         let fit = lamp.fit(UVec2::new(512, 256), DepthConvention::ZeroToOne).expect("a lamp");
-        let bias = SpotBias::automatic_receiver_plane(Reach::HARDWARE_2X2, DepthStorage::Float32, &fit);
+        let bias = SpotBias::automatic_receiver_plane(FilterRadius::HARDWARE_2X2, DepthStorage::Float32, &fit);
         let bias = bias.expect("a bias");
         let fit = fit.relative_to(DVec3::ZERO);
         let rise = fit.texel_size * fit.depth_scale() as f32;

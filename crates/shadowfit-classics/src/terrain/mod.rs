@@ -9,7 +9,8 @@ pub mod test;
 use core::f32::consts::FRAC_PI_4;
 
 use glam::{DVec3, Vec3};
-use shadowfit::{FitError, PerspectiveCamera, SpotLight};
+use shadowfit::spot::SpotLight;
+use shadowfit::{FitError, PerspectiveCamera};
 
 use crate::lamp::{self, Lamp};
 use crate::mapped::{

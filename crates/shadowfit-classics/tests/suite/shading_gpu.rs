@@ -2,8 +2,8 @@
 //! out of the piece that it stands in.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
-use shadowfit::SpotBias;
 use shadowfit::bias::acos_bias;
+use shadowfit::spot::SpotBias;
 use shadowfit_classics::headlight::real_shadow;
 use shadowfit_classics::mapped::point::image_uv;
 use shadowfit_classics::{comparison, lamp, terrain, xna};

@@ -10,7 +10,7 @@ use shadowfit::glam::UVec2;
 use shadowfit::settings::{
     CasterPolicy, Edges, FilterKind, FitKind, MAX_MAPS, MapFormat, MapSelection, SoftRadius, SplitScheme,
 };
-use shadowfit::{Maps, Slices, Technique};
+use shadowfit::{Cascades, Maps, Technique};
 use shadowfit_egui::Panel;
 use shadowfit_params::tool::{InsetMaps, Settings};
 use shadowfit_params::{Kind, Number, PARAMETERS, Value, parameter};
@@ -20,13 +20,13 @@ use crate::host::{
     type_into, unset_box, wait_for_the_tooltip,
 };
 
-/// Settings of slices under which every row of the table is shown and has an effect, but the one of the other
+/// Settings of cascades under which every row of the table is shown and has an effect, but the one of the other
 /// choice of splits, λ or the manual ones, of the other choice of maps, blend or overlap, and of the other measure of
 /// softness.
 pub(crate) fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
-    technique.maps = Slices { count: MAX_MAPS as u32, splits, ..Slices::default() }.into();
+    technique.maps = Cascades { count: MAX_MAPS as u32, splits, ..Cascades::default() }.into();
     technique.fit.resolution = UVec2::new(2048, 1024);
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
@@ -42,7 +42,7 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
 pub(crate) fn all_rows() -> [Settings; 3] {
     let manual = SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
     let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
-    let by_view_depth = Slices { selection: MapSelection::ViewDepth { overlap: 0.1 }, ..slices(&settings[1]) };
+    let by_view_depth = Cascades { selection: MapSelection::ViewDepth { overlap: 0.1 }, ..cascades(&settings[1]) };
     settings[1].technique.maps = by_view_depth.into();
     settings[2].technique.maps = settings[2].technique.maps.as_windows().into();
     settings[2].technique.softness.radius = SoftRadius::Metres(0.05);
@@ -50,10 +50,10 @@ pub(crate) fn all_rows() -> [Settings; 3] {
     settings
 }
 
-/// The slices of settings that have some.
-fn slices(settings: &Settings) -> Slices {
-    let Maps::Slices(slices) = settings.technique.maps else { panic!("they have slices") };
-    slices
+/// The cascades of settings that have some.
+fn cascades(settings: &Settings) -> Cascades {
+    let Maps::Cascades(cascades) = settings.technique.maps else { panic!("they have cascades") };
+    cascades
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn showing_the_panel_changes_no_setting() {
     settings.technique.bias.normal_offset = 1.234_567;
     settings.technique.fit.resolution = UVec2::new(641, 481);
     settings.technique.fit.border = Some(1.234_567);
-    settings.technique.maps = Slices::default().with_splits(SplitScheme::Practical(0.123_456_7)).into();
+    settings.technique.maps = Cascades::default().with_splits(SplitScheme::Practical(0.123_456_7)).into();
     settings.camera.speed = 1e9;
     settings.view.inset_map = 7;
     let mut harness = open_harness(Host { settings, ..Host::default() });
@@ -255,7 +255,7 @@ fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
         (SplitScheme::Practical(0.7), true, false),
         (SplitScheme::Manual([1.0; MAX_MAPS - 1]), false, true),
     ] {
-        harness.state_mut().settings.technique.maps = Slices::default().with_splits(splits).into();
+        harness.state_mut().settings.technique.maps = Cascades::default().with_splits(splits).into();
         harness.run();
         assert_eq!(shown(&harness, "splits.lambda"), lambda);
         // Four maps have three splits between them.
@@ -263,7 +263,7 @@ fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
         assert!(!shown(&harness, "splits.manual_4"));
     }
     type_into(&mut harness, "splits.manual_2", "12.5");
-    let SplitScheme::Manual(splits) = slices(&harness.state().settings).splits else { panic!("they stay manual") };
+    let SplitScheme::Manual(splits) = cascades(&harness.state().settings).splits else { panic!("they stay manual") };
     assert_eq!(splits[..3], [1.0, 12.5, 1.0]);
 }
 

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use shadowfit::Constraint;
+use shadowfit::BoundSource;
 use shadowfit::Technique;
 use shadowfit::diagnostics::DepthRounding;
 use shadowfit::settings::MAX_MAPS;
@@ -47,7 +47,7 @@ fn map(index: usize) -> MapFigures {
     let scale = 4.0_f32.powf(index as f32);
     MapFigures {
         view_depths: Some([0.1 + 6.0 * (scale - 1.0), 0.1 + 6.0 * (4.0 * scale - 1.0)]),
-        set_by: [Constraint::Receivers; 6],
+        bounds_from: [BoundSource::Receivers; 6],
         is_empty: false,
         extent: [8.2 * scale, 8.2 * scale],
         texel_size: [0.004 * scale, 0.004 * scale],
@@ -122,7 +122,7 @@ pub(crate) fn busy() -> Host {
 pub(crate) fn wide_map() -> MapFigures {
     MapFigures {
         view_depths: Some([888.8, 8888.8]),
-        set_by: [Constraint::CasterExtension; 6],
+        bounds_from: [BoundSource::CasterExtension; 6],
         is_empty: false,
         extent: [888.8, 888.8],
         texel_size: [0.8888, 0.8888],

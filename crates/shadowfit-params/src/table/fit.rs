@@ -1,7 +1,7 @@
 //! The rows of the fit of each map.
 
 use shadowfit::settings::{CasterPolicy, FitKind, RectangleKind, Shape};
-use shadowfit::{Maps, OneMap, Slices};
+use shadowfit::{Cascades, Maps, SingleMap};
 
 use super::{always_active, or_greatest, pull_near, unless_greatest};
 use crate::field::{Field, choice, code, field};
@@ -12,7 +12,7 @@ use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset, Value};
 /// map that the table allows.
 const WIDEST_BORDER: f64 = 32.0;
 
-/// What the options of the kind stand for: the rule of slices or of one map, or windows.
+/// What the options of the kind stand for: the rule of cascades or of one map, or windows.
 const KINDS: [Option<FitKind>; 6] = [
     Some(FitKind::Focused),
     None,
@@ -105,8 +105,8 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "Along the light's own axes: larger, but it turns only when the light does.",
             },
         ]),
-        field: choice!(technique.maps, Maps::Slices(Slices { shape: Shape { rectangle: part, .. }, .. })
-            | Maps::One(OneMap { shape: Shape { rectangle: part, .. }, .. }) => part
+        field: choice!(technique.maps, Maps::Cascades(Cascades { shape: Shape { rectangle: part, .. }, .. })
+            | Maps::Single(SingleMap { shape: Shape { rectangle: part, .. }, .. }) => part
             in [RectangleKind::MinimumArea, RectangleKind::MinimumSquare, RectangleKind::AxisAligned]),
         inert: |s| {
             (!matches!(kind(s), Some(FitKind::Oriented | FitKind::Focused)))

@@ -21,16 +21,16 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: always_active,
     },
     Parameter {
-        id: "input.seen",
+        id: "input.visible_demand",
         group: Group::Input,
         label: "The frame before",
         unit: "",
-        help: "Whether the fit is told what the frame before showed: windows are placed by it, and slices split. Without it \
+        help: "Whether the fit is told what the frame before showed: windows are placed by it, and cascades split. Without it \
            what is visible is guessed from the boxes, which costs sharpness and nothing else.",
         kind: Kind::Toggle,
-        field: field!(inputs.seen),
+        field: field!(inputs.visible_demand),
         inert: |s| {
-            (!s.technique.maps.uses_seen())
+            (!s.technique.maps.uses_visible_demand())
                 .then_some("These maps do not go by it; set Fit to Windows, or Splits to From what is visible.")
         },
     },

@@ -1,7 +1,7 @@
 //! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
 use shadowfit::settings::{MAX_MAPS, MapSelection, SplitScheme};
-use shadowfit::{Maps, Slices, Windows};
+use shadowfit::{Cascades, Maps, Windows};
 
 use super::always_active;
 use crate::field::{Field, Plain as _, code, field};
@@ -76,7 +76,7 @@ pub(super) const ROWS: &[Parameter] = &[
         ]),
         field: Field {
             get: |s| {
-                Some(Value::Option(match slices(s)?.splits {
+                Some(Value::Option(match cascades(s)?.splits {
                     SplitScheme::FromHistogram => 0,
                     SplitScheme::FromBoxes => 1,
                     SplitScheme::Practical(_) => 2,
@@ -86,7 +86,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 }))
             },
             set: |s, value| {
-                let Maps::Slices(Slices { splits, .. }) = &mut s.technique.maps else { return };
+                let Maps::Cascades(Cascades { splits, .. }) = &mut s.technique.maps else { return };
                 *splits = match (value, *splits) {
                     (Value::Option(0), _) => SplitScheme::FromHistogram,
                     (Value::Option(1), _) => SplitScheme::FromBoxes,
@@ -111,8 +111,8 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
            them evenly. 0.5 is a good start.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
-        field: field!(technique.maps, Maps::Slices(Slices { splits: SplitScheme::Practical(lambda), .. }) => lambda),
-        inert: |s| match slices(s).map(|slices| slices.splits) {
+        field: field!(technique.maps, Maps::Cascades(Cascades { splits: SplitScheme::Practical(lambda), .. }) => lambda),
+        inert: |s| match cascades(s).map(|cascades| cascades.splits) {
             None => no_splits(s),
             Some(SplitScheme::Practical(_)) => None,
             _ => Some("Only practical splits have a lambda; set Splits to Practical (splits.scheme = practical)."),
@@ -126,9 +126,9 @@ pub(super) const ROWS: &[Parameter] = &[
     manual::<5>("splits.manual_6", "Map 6 ends"),
     manual::<6>("splits.manual_7", "Map 7 ends"),
     Parameter {
-        id: "splits.choice",
+        id: "splits.selection",
         group: Group::Splits,
-        label: "Choice",
+        label: "Selection",
         unit: "",
         help: "Which of the maps a point reads.",
         kind: Kind::Choice(&[
@@ -144,22 +144,22 @@ pub(super) const ROWS: &[Parameter] = &[
             },
         ]),
         field: Field {
-            get: |s| Some(Value::Option(usize::from(!slices(s)?.selection.is_by_coverage()))),
+            get: |s| Some(Value::Option(usize::from(!cascades(s)?.selection.is_by_coverage()))),
             set: |s, value| {
-                let Maps::Slices(Slices { selection: choice, .. }) = &mut s.technique.maps else { return };
-                *choice = match (value, *choice) {
+                let Maps::Cascades(Cascades { selection, .. }) = &mut s.technique.maps else { return };
+                *selection = match (value, *selection) {
                     (Value::Option(0), MapSelection::ViewDepth { .. }) => MapSelection::default(),
                     (Value::Option(1), MapSelection::Coverage { .. }) => MapSelection::ViewDepth { overlap: 0.0 },
-                    (_, choice) => choice,
+                    (_, selection) => selection,
                 };
             },
             code: code!(maps),
             is_of_variant: true,
         },
         inert: |s| match s.technique.maps {
-            Maps::One(_) => Some("One map leaves no choice; raise the number of maps."),
+            Maps::Single(_) => Some("One map leaves nothing to select; raise the number of maps."),
             Maps::Windows(_) => Some("Windows are always read by coverage; choose another fit."),
-            Maps::Slices(_) => None,
+            Maps::Cascades(_) => None,
         },
     },
     Parameter {
@@ -178,12 +178,12 @@ pub(super) const ROWS: &[Parameter] = &[
             unset: None,
         }),
         field: field!(technique.maps, Maps::Windows(Windows { blend, .. })
-            | Maps::Slices(Slices { selection: MapSelection::Coverage { blend }, .. }) => blend),
+            | Maps::Cascades(Cascades { selection: MapSelection::Coverage { blend }, .. }) => blend),
         inert: |s| match s.technique.maps.selection() {
             _ if s.technique.maps.count() < 2 => Some("One map is blended into none; raise the number of maps."),
             MapSelection::Coverage { .. } => None,
             MapSelection::ViewDepth { .. } => Some(
-                "Maps that are read by view depth are blended over the overlap; set Choice to By coverage (splits.choice = \
+                "Maps that are read by view depth are blended over the overlap; set Selection to By coverage (splits.selection = \
              coverage).",
             ),
         },
@@ -196,15 +196,15 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
            them. It hides the line between two maps, and costs a little of their sharpness.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
-        field: field!(technique.maps, Maps::Slices(Slices { selection: MapSelection::ViewDepth { overlap }, .. }) => overlap),
+        field: field!(technique.maps, Maps::Cascades(Cascades { selection: MapSelection::ViewDepth { overlap }, .. }) => overlap),
         inert: |s| match s.technique.maps {
             Maps::Windows(_) => Some("Windows are blended toward their borders, over the blend; choose another fit."),
-            Maps::One(_) => Some("One map overlaps with none; raise the number of maps."),
-            Maps::Slices(Slices { selection: MapSelection::Coverage { .. }, .. }) => Some(
-                "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \
+            Maps::Single(_) => Some("One map overlaps with none; raise the number of maps."),
+            Maps::Cascades(Cascades { selection: MapSelection::Coverage { .. }, .. }) => Some(
+                "Maps that are read by coverage are blended toward their borders; set Selection to By view depth (splits.selection \
              = view_depth).",
             ),
-            Maps::Slices(_) => None,
+            Maps::Cascades(_) => None,
         },
     },
 ];
@@ -219,11 +219,11 @@ const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Para
         help: "Distance from the camera, along its view, at which this map ends and the next one begins. Each has to be \
                greater than the one before.",
         kind: Kind::Number(Number { min: 0.0, max: 100_000.0, step: 0.1, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.maps, Maps::Slices(Slices { splits: SplitScheme::Manual(splits), .. }) => splits[MAP]),
-        inert: |s| match slices(s) {
+        field: field!(technique.maps, Maps::Cascades(Cascades { splits: SplitScheme::Manual(splits), .. }) => splits[MAP]),
+        inert: |s| match cascades(s) {
             None => no_splits(s),
-            Some(Slices { splits: SplitScheme::Manual(_), count, .. }) if MAP + 1 < *count as usize => None,
-            Some(Slices { splits: SplitScheme::Manual(_), .. }) => {
+            Some(Cascades { splits: SplitScheme::Manual(_), count, .. }) if MAP + 1 < *count as usize => None,
+            Some(Cascades { splits: SplitScheme::Manual(_), .. }) => {
                 Some("There is no such map; raise the number of maps.")
             }
             Some(_) => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
@@ -231,18 +231,16 @@ const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Para
     }
 }
 
-/// The slices of the view, if the maps are any.
-fn slices(s: &Settings) -> Option<&Slices> {
-    if let Maps::Slices(slices) = &s.technique.maps { Some(slices) } else { None }
+/// The cascades, if the maps are any.
+fn cascades(s: &Settings) -> Option<&Cascades> {
+    if let Maps::Cascades(cascades) = &s.technique.maps { Some(cascades) } else { None }
 }
 
 /// Why there are no splits, or `None` where there are some.
 fn no_splits(s: &Settings) -> Option<&'static str> {
     match s.technique.maps {
-        Maps::Windows(_) => {
-            Some("Windows are no slices of the view, so there is nothing to split; choose another fit.")
-        }
-        Maps::One(_) => Some("One map has no splits; raise the number of maps."),
-        Maps::Slices(_) => None,
+        Maps::Windows(_) => Some("Windows are no cascades, so there is nothing to split; choose another fit."),
+        Maps::Single(_) => Some("One map has no splits; raise the number of maps."),
+        Maps::Cascades(_) => None,
     }
 }

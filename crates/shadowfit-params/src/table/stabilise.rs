@@ -1,17 +1,17 @@
 //! The rows of the stabilisation.
 
 use shadowfit::settings::{Hysteresis, Stabilise};
-use shadowfit::{Maps, OneMap, Slices, Windows};
+use shadowfit::{Cascades, Maps, SingleMap, Windows};
 
 use crate::field::{Field, code, field};
 use crate::tool::Settings;
 use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
 
-/// A number of kept slices or of one kept map.
+/// A number of kept cascades or of one kept map.
 macro_rules! held {
     ($part:ident) => {
-        field!(technique.maps, Maps::Slices(Slices { stabilise: Stabilise::Hysteresis(hold), .. })
-            | Maps::One(OneMap { stabilise: Stabilise::Hysteresis(hold), .. }) => hold.$part)
+        field!(technique.maps, Maps::Cascades(Cascades { stabilise: Stabilise::Hysteresis(hold), .. })
+            | Maps::Single(SingleMap { stabilise: Stabilise::Hysteresis(hold), .. }) => hold.$part)
     };
 }
 
@@ -48,11 +48,13 @@ pub(super) const ROWS: &[Parameter] = &[
             },
             set: |s, value| {
                 let Some(now) = stabilise(s) else { return };
-                let max_waste = now.max_waste();
+                let max_oversize = now.max_oversize();
                 s.technique.maps = s.technique.maps.with_stabilise(match (value, now) {
                     (Value::Option(0), Stabilise::Hysteresis(_)) => now,
-                    (Value::Option(0), _) => Stabilise::Hysteresis(Hysteresis::default().with_max_waste(max_waste)),
-                    (Value::Option(1), _) => Stabilise::Snap { max_waste },
+                    (Value::Option(0), _) => {
+                        Stabilise::Hysteresis(Hysteresis::default().with_max_oversize(max_oversize))
+                    }
+                    (Value::Option(1), _) => Stabilise::Snap { max_oversize },
                     _ => Stabilise::Off,
                 });
             },
@@ -84,20 +86,20 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: only_held,
     },
     Parameter {
-        id: "stabilise.waste",
+        id: "stabilise.max_oversize",
         group: Group::Stabilise,
-        label: "Waste",
+        label: "Oversize",
         unit: "×",
         help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
            the depths of windows are likewise. Lower is sharper, higher is calmer.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.maps, Maps::Windows(Windows { max_depth_waste: max_waste, .. })
-            | Maps::Slices(Slices {
-                stabilise: Stabilise::Snap { max_waste } | Stabilise::Hysteresis(Hysteresis { max_waste, .. }), ..
+        field: field!(technique.maps, Maps::Windows(Windows { max_depth_oversize: max_oversize, .. })
+            | Maps::Cascades(Cascades {
+                stabilise: Stabilise::Snap { max_oversize } | Stabilise::Hysteresis(Hysteresis { max_oversize, .. }), ..
             })
-            | Maps::One(OneMap {
-                stabilise: Stabilise::Snap { max_waste } | Stabilise::Hysteresis(Hysteresis { max_waste, .. }), ..
-            }) => max_waste),
+            | Maps::Single(SingleMap {
+                stabilise: Stabilise::Snap { max_oversize } | Stabilise::Hysteresis(Hysteresis { max_oversize, .. }), ..
+            }) => max_oversize),
         inert: |s| {
             (stabilise(s) == Some(Stabilise::Off)).then_some("Nothing is kept from frame to frame; turn on Stabilise.")
         },
@@ -114,11 +116,11 @@ pub(super) const ROWS: &[Parameter] = &[
     },
 ];
 
-/// What keeps slices or one map stable; `None` of windows.
+/// What keeps cascades or one map stable; `None` of windows.
 fn stabilise(s: &Settings) -> Option<Stabilise> {
     match s.technique.maps {
         Maps::Windows(_) => None,
-        Maps::Slices(Slices { stabilise, .. }) | Maps::One(OneMap { stabilise, .. }) => Some(stabilise),
+        Maps::Cascades(Cascades { stabilise, .. }) | Maps::Single(SingleMap { stabilise, .. }) => Some(stabilise),
     }
 }
 

@@ -8,8 +8,8 @@ use shadowfit_params::{Group, Kind, Value, set_from_str};
 
 use crate::{SLICES, change, row, with};
 
-/// Checks that a parameter of slices has an effect with some values, and says with a word why it has none once another one
-/// is set.
+/// Checks that a parameter of cascades has an effect with some values, and says with a word why it has none once
+/// another one is set.
 fn loses_its_effect(id: &str, base: &[(&str, &str)], (other, option): (&str, &str), word: &str) {
     let mut settings = with(&[&[SLICES], base].concat());
     assert_eq!((row(id).inert)(&settings), None, "{id}");
@@ -41,14 +41,14 @@ fn what_only_some_filters_and_formats_use_says_where_it_has_no_effect() {
 
 #[test]
 fn parameters_say_where_they_have_no_effect() {
-    // Parameter, settings of slices with which it has an effect, one that takes it away, and a word of the reason.
+    // Parameter, settings of cascades with which it has an effect, one that takes it away, and a word of the reason.
     for (id, base, (other, option), word) in [
         ("fit.rectangle", &[][..], ("fit.kind", "xna_sample"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "sphere"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "windows"), "focused"),
-        ("input.seen", &[], ("splits.scheme", "from_boxes"), "Splits"),
-        ("input.seen", &[], ("splits.count", "1"), "Splits"),
+        ("input.visible_demand", &[], ("splits.scheme", "from_boxes"), "Splits"),
+        ("input.visible_demand", &[], ("splits.count", "1"), "Splits"),
         ("fit.casters", &[], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.max_texel_ratio", &[], ("fit.kind", "windows"), "windows"),
         ("fit.max_texel_ratio", &[], ("fit.kind", "xna_sample"), "XNA"),
@@ -63,14 +63,14 @@ fn parameters_say_where_they_have_no_effect() {
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "depth_clamp"), "By extension"),
         ("splits.scheme", &[], ("splits.count", "1"), "number of maps"),
         ("splits.scheme", &[], ("fit.kind", "windows"), "Windows"),
-        ("splits.choice", &[], ("splits.count", "1"), "number of maps"),
-        ("splits.choice", &[], ("fit.kind", "windows"), "coverage"),
-        ("splits.blend", &[("splits.choice", "view_depth"), ("fit.kind", "windows")], ("splits.count", "1"), "maps"),
+        ("splits.selection", &[], ("splits.count", "1"), "number of maps"),
+        ("splits.selection", &[], ("fit.kind", "windows"), "coverage"),
+        ("splits.blend", &[("splits.selection", "view_depth"), ("fit.kind", "windows")], ("splits.count", "1"), "maps"),
         ("splits.blend", &[], ("splits.count", "1"), "number of maps"),
-        ("splits.blend", &[], ("splits.choice", "view_depth"), "By coverage"),
-        ("splits.overlap", &[("splits.choice", "view_depth")], ("splits.count", "1"), "number of maps"),
-        ("splits.overlap", &[("splits.choice", "view_depth")], ("splits.choice", "coverage"), "By view depth"),
-        ("splits.overlap", &[("splits.choice", "view_depth")], ("fit.kind", "windows"), "Windows"),
+        ("splits.blend", &[], ("splits.selection", "view_depth"), "By coverage"),
+        ("splits.overlap", &[("splits.selection", "view_depth")], ("splits.count", "1"), "number of maps"),
+        ("splits.overlap", &[("splits.selection", "view_depth")], ("splits.selection", "coverage"), "By view depth"),
+        ("splits.overlap", &[("splits.selection", "view_depth")], ("fit.kind", "windows"), "Windows"),
         ("splits.lambda", &[("splits.scheme", "practical")], ("splits.count", "1"), "number of maps"),
         ("splits.lambda", &[("splits.scheme", "practical")], ("fit.kind", "windows"), "Windows"),
         ("splits.lambda", &[("splits.scheme", "practical")], ("splits.scheme", "uniform"), "Practical"),
@@ -82,7 +82,7 @@ fn parameters_say_where_they_have_no_effect() {
         ("stabilise.margin", &[], ("fit.kind", "windows"), "Windows"),
         ("stabilise.growth", &[], ("stabilise.mode", "off"), "Stabilise"),
         ("stabilise.horizon", &[], ("stabilise.mode", "snap"), "Stabilise"),
-        ("stabilise.waste", &[], ("stabilise.mode", "off"), "Stabilise"),
+        ("stabilise.max_oversize", &[], ("stabilise.mode", "off"), "Stabilise"),
     ] {
         loses_its_effect(id, base, (other, option), word);
     }

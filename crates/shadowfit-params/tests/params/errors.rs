@@ -55,8 +55,8 @@ fn broken_settings_are_still_written_and_read() {
         technique.fit.max_distance = -0.0;
         technique.fit.border = Some(f32::NAN);
         technique.fit.up = Vec3::INFINITY;
-        if let Maps::Slices(slices) = &mut technique.maps {
-            match &mut slices.splits {
+        if let Maps::Cascades(cascades) = &mut technique.maps {
+            match &mut cascades.splits {
                 SplitScheme::Practical(lambda) => *lambda = f32::NAN,
                 SplitScheme::Manual(ends) => ends[0] = f32::INFINITY,
                 _ => {}
@@ -110,12 +110,12 @@ fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() 
         ("splits.manual_1", "3", "splits.scheme", "manual"),
         ("splits.manual_7", "300", "splits.scheme", "manual"),
     ] {
-        let slices = with(&[SLICES]);
-        let mut settings = slices;
+        let cascades = with(&[SLICES]);
+        let mut settings = cascades;
         let error = set_from_str(&mut settings, id, value).expect_err(id);
         assert!(matches!(error, params::ParameterError::NotPresent { .. }), "{error:?}");
         assert!(error.to_string().contains(id) && error.to_string().contains(first), "{error}");
-        assert_eq!(settings, slices);
+        assert_eq!(settings, cascades);
         set_from_str(&mut settings, first, option).expect(first);
         set_from_str(&mut settings, id, value).expect(id);
         assert_eq!(written(&settings, row(id)), value, "{id}");

@@ -30,7 +30,7 @@ fn starts() -> [Settings; 5] {
     [
         Settings::default(),
         with(&[("fit.kind", "focused"), ("splits.scheme", "practical")]),
-        with(&[("fit.kind", "oriented"), ("splits.scheme", "manual"), ("splits.choice", "view_depth")]),
+        with(&[("fit.kind", "oriented"), ("splits.scheme", "manual"), ("splits.selection", "view_depth")]),
         with(&[("fit.kind", "sphere"), ("splits.count", "1"), ("stabilise.mode", "snap")]),
         with(&[("softness.measure", "metres"), ("view.inset_black", "0"), ("map.edges", "traced")]),
     ]
@@ -58,5 +58,5 @@ fn change(settings: &mut Settings, parameter: &Parameter) {
     }
 }
 
-/// What makes maps slices of the view.
+/// What makes maps cascades.
 const SLICES: (&str, &str) = ("fit.kind", "focused");

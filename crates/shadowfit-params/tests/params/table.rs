@@ -128,7 +128,7 @@ fn option_names_select_their_variants() {
         ("minimum_square", RectangleKind::MinimumSquare),
         ("axis_aligned", RectangleKind::AxisAligned),
     ];
-    check("fit.rectangle", |t| t.maps.as_slices().shape.rectangle, &rectangles);
+    check("fit.rectangle", |t| t.maps.as_cascades().shape.rectangle, &rectangles);
     let casters = [
         ("list", CasterPolicy::PerObject),
         ("extend", CasterPolicy::Extend),
@@ -145,10 +145,10 @@ fn option_names_select_their_variants() {
         ("uniform", SplitScheme::Uniform),
         ("manual", SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])),
     ];
-    check("splits.scheme", |t| t.maps.as_slices().splits, &splits);
-    let snap = Stabilise::Snap { max_waste: Stabilise::default().max_waste() };
+    check("splits.scheme", |t| t.maps.as_cascades().splits, &splits);
+    let snap = Stabilise::Snap { max_oversize: Stabilise::default().max_oversize() };
     let modes = [("hysteresis", Stabilise::default()), ("snap", snap), ("off", Stabilise::Off)];
-    check("stabilise.mode", |t| t.maps.as_slices().stabilise, &modes);
+    check("stabilise.mode", |t| t.maps.as_cascades().stabilise, &modes);
     let depths = [
         ("zero_to_one", DepthConvention::ZeroToOne),
         ("reversed", DepthConvention::Reversed),

@@ -123,7 +123,7 @@ fn numbers_are_written_short() {
         ("splits.count", "4"),
         ("splits.lambda", "0.5"),
         ("splits.manual_1", ""),
-        ("stabilise.waste", "1.8"),
+        ("stabilise.max_oversize", "1.8"),
         ("map.resolution", "2048"),
         ("map.height", "square"),
         ("view.inset", "one"),

@@ -1,5 +1,5 @@
 {
-let mut technique = Technique::default().with_maps(Slices { count: 3, shape: Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 }, splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3000000000.0, 16777216.0, f32::MAX]), selection: MapSelection::ViewDepth { overlap: 0.1 }, stabilise: Stabilise::Snap { max_waste: 3.0 } });
+let mut technique = Technique::default().with_maps(Cascades { count: 3, shape: Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 }, splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3000000000.0, 16777216.0, f32::MAX]), selection: MapSelection::ViewDepth { overlap: 0.1 }, stabilise: Stabilise::Snap { max_oversize: 3.0 } });
 technique.fit.least_texel = 0.001;
 technique.fit.max_distance = 80.25;
 technique.fit.casters = CasterPolicy::DepthClamp;

@@ -1,5 +1,5 @@
 {
-let mut technique = Technique::default().with_maps(Slices { splits: SplitScheme::Practical(f32::NAN), selection: MapSelection::ViewDepth { overlap: f32::INFINITY }, ..Slices::default() });
+let mut technique = Technique::default().with_maps(Cascades { splits: SplitScheme::Practical(f32::NAN), selection: MapSelection::ViewDepth { overlap: f32::INFINITY }, ..Cascades::default() });
 technique.fit.border = Some(f32::NAN);
 technique.fit.up.x = f32::NEG_INFINITY;
 technique.fit.up.y = f32::NAN;

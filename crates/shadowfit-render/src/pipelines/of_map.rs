@@ -26,7 +26,7 @@ pub(crate) enum Drawn {
     Shaded(Overlay),
     /// A probe.
     Probe,
-    /// The depths and normals that edges are resolved from, of so many samples per pixel.
+    /// The depths and normals that edges are traced from, of so many samples per pixel.
     Surfaces(u32),
 }
 

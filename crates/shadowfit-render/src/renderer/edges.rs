@@ -1,8 +1,8 @@
-//! Exact edges: the surfaces of a picture are drawn before it, and resolved.
+//! Exact edges: the surfaces of a picture are drawn before it, and rays are traced where the maps are not sure.
 
 use shadowfit::DepthConvention;
-use shadowfit_wgpu::resolve::{
-    EdgeResult, NormalEncoding, ResolveCounts, ResolveError, ResolvePass, ResolveView, WhyFiltered,
+use shadowfit_wgpu::exact_edges::{
+    EdgeCounts, EdgeError, EdgeOutcome, EdgePass, EdgeView, FallbackReason, NormalEncoding,
 };
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError};
 use wgpu_profiler::GpuProfilerQuery;
@@ -17,13 +17,13 @@ use crate::renderer::picture::set_part;
 use crate::scene::GpuScene;
 use crate::timer::Pass;
 
-/// What resolves edges, and what it does so from.
+/// The edge pass, and the surfaces that it reads.
 #[derive(Debug)]
 pub(super) struct Edges {
-    pass: ResolvePass,
+    pass: EdgePass,
     surfaces: Option<Surfaces>,
-    counts: Option<ResolveCounts>,
-    result: EdgeResult,
+    counts: Option<EdgeCounts>,
+    result: EdgeOutcome,
 }
 
 /// Pixels and samples of a picture.
@@ -47,9 +47,9 @@ struct Surfaces {
 
 impl Edges {
     pub(super) fn new(gpu: &Gpu) -> Result<Self, ShadowMapError> {
-        let pass = ResolvePass::new(&gpu.device, &gpu.queue);
+        let pass = EdgePass::new(&gpu.device, &gpu.queue);
         let pass = pass.map_err(|error| ShadowMapError::Device(error.to_string()))?;
-        Ok(Self { pass, surfaces: None, counts: None, result: EdgeResult::Filtered(WhyFiltered::Picture) })
+        Ok(Self { pass, surfaces: None, counts: None, result: EdgeOutcome::Filtered(FallbackReason::Picture) })
     }
 
     pub(super) fn factors(&self) -> &wgpu::TextureView {
@@ -85,25 +85,25 @@ impl Surfaces {
 
 impl Renderer {
     /// How the edges of the last picture or probe came out.
-    pub fn edge_result(&self) -> EdgeResult {
+    pub fn edge_result(&self) -> EdgeOutcome {
         self.edges.result
     }
 
     /// How many pixels of a picture or probe a frame or two back were traced; `None` before the first.
-    pub fn edge_counts(&self) -> Option<ResolveCounts> {
+    pub fn edge_counts(&self) -> Option<EdgeCounts> {
         self.edges.counts
     }
 
     /// The counts of the newest picture or probe that the GPU has finished, given once.
-    pub fn take_edge_counts(&mut self) -> Option<ResolveCounts> {
+    pub fn take_edge_counts(&mut self) -> Option<EdgeCounts> {
         let counts = self.edges.pass.take_counts();
         self.edges.counts = counts.or(self.edges.counts);
         counts
     }
 
-    /// Resolves the edges of a picture of so many pixels and samples, where the shadow map says so and the scene has
+    /// Traces the edges of a picture of so many pixels and samples, where the shadow map says so and the scene has
     /// [rays](GpuScene::make_rays).
-    pub(super) fn resolve_edges(
+    pub(super) fn trace_edges(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
@@ -112,10 +112,10 @@ impl Renderer {
         plan: &Plan,
         extent: Extent,
     ) {
-        let unresolved = EdgeResult::Filtered(WhyFiltered::Picture);
-        self.edges.result = match self.why_unresolved(scene, frame) {
-            Some(why) => EdgeResult::Filtered(why),
-            None => self.resolve(gpu, encoder, scene, frame, plan, extent).unwrap_or(unresolved),
+        let untraced = EdgeOutcome::Filtered(FallbackReason::Picture);
+        self.edges.result = match self.reason_to_filter(scene, frame) {
+            Some(why) => EdgeOutcome::Filtered(why),
+            None => self.record_edge_pass(gpu, encoder, scene, frame, plan, extent).unwrap_or(untraced),
         };
         if self.edges.result != self.edges.pass.result() {
             self.edges.pass.skip();
@@ -127,20 +127,20 @@ impl Renderer {
     }
 
     /// Why a picture needs no pass before it, if so.
-    fn why_unresolved(&self, scene: &GpuScene, frame: &Frame<'_>) -> Option<WhyFiltered> {
+    fn reason_to_filter(&self, scene: &GpuScene, frame: &Frame<'_>) -> Option<FallbackReason> {
         let descriptor: &ShadowMapDescriptor = self.sun.map().descriptor();
         if !descriptor.edges.are_traced() {
-            Some(WhyFiltered::Technique)
-        } else if let Some(lack) = self.edges.pass.lacks() {
-            Some(WhyFiltered::Device(lack))
+            Some(FallbackReason::Technique)
+        } else if let Some(lack) = self.edges.pass.unsupported() {
+            Some(FallbackReason::Device(lack))
         } else if scene.rays().is_none() {
-            Some(WhyFiltered::Rays)
+            Some(FallbackReason::Rays)
         } else {
-            (!frame.shadows).then_some(WhyFiltered::Picture)
+            (!frame.shadows).then_some(FallbackReason::Picture)
         }
     }
 
-    fn resolve(
+    fn record_edge_pass(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
@@ -148,22 +148,22 @@ impl Renderer {
         frame: &Frame<'_>,
         plan: &Plan,
         extent: Extent,
-    ) -> Result<EdgeResult, ResolveError> {
+    ) -> Result<EdgeOutcome, EdgeError> {
         self.prepare_parts(gpu, scene, Drawn::Surfaces(extent.samples));
         let kept = self.edges.surfaces.take().filter(|surfaces| surfaces.extent == extent);
         let surfaces = kept.unwrap_or_else(|| Surfaces::new(&gpu.device, extent));
         self.surfaces_pass(encoder, scene, plan, &surfaces);
         let camera = frame.camera;
         let clip_from_eye = camera.clip_from_world(DepthConvention::Reversed);
-        let view = ResolveView::new(&surfaces.depth, clip_from_eye, DepthConvention::Reversed, camera.eye)
+        let view = EdgeView::new(&surfaces.depth, clip_from_eye, DepthConvention::Reversed, camera.eye)
             .with_normals(&surfaces.normals, NormalEncoding::Signed);
-        let view = ResolveView { ray_offset: frame.ray_offset, ..view };
+        let view = EdgeView { ray_offset: frame.ray_offset, ..view };
         let query = self.timer.begin(Pass::Edges, encoder);
         let timestamps = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
-        let resolved = self.edges.pass.record_timed(encoder, &self.sun, scene.rays(), &view, timestamps);
+        let outcome = self.edges.pass.record_timed(encoder, &self.sun, scene.rays(), &view, timestamps);
         self.timer.end(query, encoder);
         self.edges.surfaces = Some(surfaces);
-        resolved
+        outcome
     }
 
     /// Draws depths and normals.

@@ -18,7 +18,7 @@ pub(super) struct KnownMaps {
     maps: Vec<FittedMap>,
     direction: Vec3,
     camera: Camera,
-    chooser: (DVec3, Vec3),
+    reader: (DVec3, Vec3),
     culling: Culling,
     pose: u64,
     /// That of the layers which were drawn into.
@@ -28,9 +28,9 @@ pub(super) struct KnownMaps {
 
 impl KnownMaps {
     fn is_of(&self, scene: &GpuScene, frame: &Frame<'_>) -> bool {
-        let Self { maps, direction, camera, chooser, culling, pose, .. } = self;
+        let Self { maps, direction, camera, reader, culling, pose, .. } = self;
         maps == frame.maps
-            && (*direction, *camera, *chooser) == (frame.direction, frame.camera, frame.chooser())
+            && (*direction, *camera, *reader) == (frame.direction, frame.camera, frame.reader())
             && (*culling, *pose) == (frame.culling, scene.pose())
     }
 }
@@ -52,7 +52,7 @@ impl Renderer {
             maps: frame.maps.to_vec(),
             direction: frame.direction,
             camera: frame.camera,
-            chooser: frame.chooser(),
+            reader: frame.reader(),
             culling: frame.culling,
             pose: scene.pose(),
             layers: self.sun.receiver_group().clone(),

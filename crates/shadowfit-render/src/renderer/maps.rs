@@ -1,7 +1,7 @@
 //! The shadow passes.
 
 use shadowfit::ViewFrustum;
-use shadowfit_wgpu::{Casters, Culling, MapView, ShadowMapError, ShadowPiece, SunFrame};
+use shadowfit_wgpu::{Casters, Culling, DrawRegion, MapView, ShadowMapError, SunFrame};
 use wgpu_profiler::GpuProfilerQuery;
 
 use super::{Plan, Renderer};
@@ -20,10 +20,10 @@ impl Renderer {
         scene: &GpuScene,
         frame: &Frame<'_>,
     ) -> Result<(), ShadowMapError> {
-        let (eye, forward) = frame.chooser();
+        let (eye, forward) = frame.reader();
         let origin = frame.camera.eye;
         if frame.maps_stay {
-            return self.sun.look_from(&gpu.queue, &MapView { origin, ..MapView::from_eye(eye, forward) });
+            return self.sun.set_view(&gpu.queue, &MapView { origin, ..MapView::from_eye(eye, forward) });
         }
         // What an invalid camera sees is unknown: maps get all casters that they can store.
         let seen: Option<ViewFrustum> = frame.camera.frustum().ok();
@@ -40,13 +40,13 @@ impl Renderer {
 
     pub(super) fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
         let Some(shadow) = &plan.shadow else { return };
-        let mut pieces = shadow.iter();
+        let mut regions = shadow.iter();
         for pass in self.sun.passes() {
             let query = self.timer.begin(Pass::Shadow(pass.map()), encoder);
             let timestamps = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
             let mut opened = self.sun.begin_pass(encoder, &pass, CASTER_GROUP, timestamps);
-            for (piece, draws) in pass.pieces().zip(&mut pieces) {
-                self.draw_piece(&mut opened, scene, &piece, draws);
+            for (region, draws) in pass.regions().zip(&mut regions) {
+                self.draw_piece(&mut opened, scene, &region, draws);
             }
             drop(opened);
             self.timer.end(query, encoder);
@@ -57,10 +57,10 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         scene: &GpuScene,
-        piece: &ShadowPiece<'_>,
+        region: &DrawRegion<'_>,
         draws: &[CasterDraw],
     ) {
-        piece.set(pass);
+        region.set(pass);
         for draw in draws {
             let part = &scene.parts[draw.part];
             pass.set_pipeline(self.pipelines.of_map.caster(part));

@@ -29,7 +29,7 @@ impl Renderer {
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, query.size));
         let [x, y] = [0, 1].map(|i| query.pixel[i].min(targets.size[i] - 1));
         let frame = Frame {
-            choice: frame.choice,
+            reader: frame.reader,
             shadows: frame.shadows,
             maps_stay: true,
             scissor: Some([x, y, 1, 1]),
@@ -39,7 +39,7 @@ impl Renderer {
         let block = query.texels.filter(|block| block.map < self.sun.maps().len());
         let read = PixelRead::new(&gpu.device, *query, block.is_some());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.resolve_edges(gpu, &mut encoder, scene, &frame, &plan, Extent { size: targets.size, samples: 1 });
+        self.trace_edges(gpu, &mut encoder, scene, &frame, &plan, Extent { size: targets.size, samples: 1 });
         self.probe_pass(&mut encoder, scene, &plan, &targets, false);
         let pixel = Texels { texture: &targets.texture, corner: [x, y], size: [1, 1] };
         pixel.copy(&mut encoder, read.buffer(), 0);

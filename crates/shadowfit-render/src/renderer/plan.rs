@@ -15,7 +15,7 @@ use shadowfit_wgpu::MAX_MAPS;
 
 /// The draws of a frame's passes.
 pub(super) struct Plan {
-    /// Of each piece of each shadow pass, in their order; `None` where the maps stay.
+    /// Of each region of each shadow pass, in their order; `None` where the maps stay.
     pub(super) shadow: Option<Vec<Vec<CasterDraw>>>,
     pub(super) opaque: Vec<Draw>,
     pub(super) blended: Vec<Draw>,
@@ -44,8 +44,8 @@ impl Renderer {
             self.note_maps(scene, frame);
         }
         if frame.overlay == Overlay::Casters {
-            let masks = self.sun.holders(&scene.casters());
-            scene.set_holders(&masks);
+            let masks = self.sun.maps_by_caster(&scene.casters());
+            scene.set_maps_by_caster(&masks);
         }
         let part = frame.scissor.map(|scissor| part(scissor, size));
         let clip_from_world = Mat4::from_cols_array_2d(&uniform.clip_from_world);
@@ -64,15 +64,15 @@ impl Renderer {
         }
     }
 
-    /// The draws of the shadow passes' pieces, which are counted.
+    /// The draws of the shadow passes' regions, which are counted.
     fn plan_maps(&mut self, scene: &mut GpuScene) -> Vec<Vec<CasterDraw>> {
         let mut shadow = Vec::new();
         let mut drawn = [MapStatistics::default(); MAX_MAPS];
-        for piece in self.sun.passes().flat_map(|pass| pass.pieces()) {
+        for region in self.sun.passes().flat_map(|pass| pass.regions()) {
             let mut draws: Vec<CasterDraw> = Vec::new();
-            scene.caster_draws(piece.casters, &mut draws);
-            let map = &mut drawn[piece.map];
-            map.casters += piece.casters.len() as u32;
+            scene.caster_draws(region.casters, &mut draws);
+            let map = &mut drawn[region.map];
+            map.casters += region.casters.len() as u32;
             map.draws += draws.len() as u32;
             map.triangles +=
                 draws.iter().map(|draw| (draw.indices.len() / 3 * draw.instances.len()) as u64).sum::<u64>();

@@ -1,15 +1,15 @@
 // Surfaces in the tint of the map that they read, mixed where they read two. Comes after overlay.wgsl.
 
 fn tint_read(position: vec3<f32>) -> vec4<f32> {
-    let choice = shadowfit_choose(position);
-    if choice.first < 0 {
+    let selection = shadowfit_select(position);
+    if selection.first < 0 {
         return vec4<f32>(0.0);
     }
-    let first = frame.map_tints[shadowfit_entry(choice.first).layer];
-    if choice.second < 0 {
+    let first = frame.map_tints[shadowfit_entry(selection.first).layer];
+    if selection.second < 0 {
         return first;
     }
-    return mix(frame.map_tints[shadowfit_entry(choice.second).layer], first, choice.weight);
+    return mix(frame.map_tints[shadowfit_entry(selection.second).layer], first, selection.weight);
 }
 
 fn overlaid(in: SceneOut) -> vec4<f32> {

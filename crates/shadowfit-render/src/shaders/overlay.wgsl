@@ -29,9 +29,9 @@ fn hatching(pixel: vec2<f32>) -> f32 {
 
 // The map that weighs more in a point's shadow, by its place in the order; -1 outside every map.
 fn place_read(position: vec3<f32>) -> i32 {
-    let choice = shadowfit_choose(position);
-    let is_second = choice.second >= 0 && choice.weight < 0.5;
-    return select(choice.first, choice.second, is_second);
+    let selection = shadowfit_select(position);
+    let is_second = selection.second >= 0 && selection.weight < 0.5;
+    return select(selection.first, selection.second, is_second);
 }
 
 // Light on a surface without a colour of its own, 0..1: what shows forms and shadows under an overlay.

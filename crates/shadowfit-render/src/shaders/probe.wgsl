@@ -4,7 +4,7 @@
 // derivatives.
 fn probed(in: SceneOut, triangle: u32) -> vec2<u32> {
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    let factor = shadowfit_resolved(in.position, geometric, in.clip.xy);
+    let factor = shadowfit_exact_factor(in.position, geometric, in.clip.xy);
     if is_cut_out(in.uv, in.color.a) {
         discard;
     }

@@ -32,7 +32,7 @@ fn overlaid(in: SceneOut) -> vec4<f32> {
     let level = ceil(0.5 * log2(max(LEAST_PIXELS * max(texels.x, texels.y), 1.0)));
     let block = exp2(2.0 * level);
     let width = texels / block;
-    let at = ((map.uv_from_world * vec4<f32>(in.position, 1.0)).xy * map.size + map.wrap) / block;
+    let at = ((map.uv_from_world * vec4<f32>(in.position, 1.0)).xy * map.size + map.texel_offset) / block;
 
     let waves = wave(at, width);
     let checker = mix(DARKER, 1.0, 0.5 - 0.5 * waves.x * waves.y);

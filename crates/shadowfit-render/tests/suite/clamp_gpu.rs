@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, MapSettings, Shape};
-use shadowfit::{FitInput, PerspectiveCamera, ShadowFitter, Slices, Technique};
+use shadowfit::{Cascades, FitInput, PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Renderer, Wanted};
 use shadowfit_scene::builtin;
 use shadowfit_testing::renderer_gpu;
@@ -21,7 +21,7 @@ fn without_clamp() -> Gpu {
 /// Draws the courtyard with depth-clamped maps, whose near planes cut through its objects.
 fn picture(gpu: &Gpu, format: MapFormat) -> Vec<u8> {
     let fit = MapSettings { casters: CasterPolicy::DepthClamp, max_distance: 30.0, ..MapSettings::default() };
-    let maps = Slices { count: 2, shape: Shape::new(FitKind::FrustumAabb), ..Slices::default() }.into();
+    let maps = Cascades { count: 2, shape: Shape::new(FitKind::FrustumAabb), ..Cascades::default() }.into();
     let technique = Technique { maps, fit, filter: FilterKind::Pcf3x3, format, ..Technique::default() };
     let technique = technique.with_resolution(512, 512);
     let (eye, target) = builtin::default_camera();

@@ -26,9 +26,9 @@ fn a_picture_of_maps_that_stay_is_that_of_maps_that_are_drawn() {
     assert_eq!(pictures.picture(&stay), alone);
     // From another camera; both times the maps hold all their casters.
     let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(-2.0, 1.0, 1.0), ..seen.camera };
-    let choice = Some((seen.camera.eye, seen.camera.forward));
+    let reader = Some((seen.camera.eye, seen.camera.forward));
     let culling = Culling::WholeMap;
-    let elsewhere = Frame { camera: camera.into(), choice, culling, ..seen.frame() };
+    let elsewhere = Frame { camera: camera.into(), reader, culling, ..seen.frame() };
     let drawn = pictures.picture(&elsewhere);
     pictures.draw(&Frame { culling, ..seen.frame() });
     let stayed = pictures.picture(&Frame { maps_stay: true, ..elsewhere });
@@ -246,7 +246,7 @@ fn fewest_branches() -> Technique {
 
 fn most_branches(count: u32) -> Technique {
     let technique = Technique::preset("stable-4").expect("a preset").with_count(count).with_resolution(256, 256);
-    let by_coverage = technique.maps.as_slices().with_selection(MapSelection::default());
+    let by_coverage = technique.maps.as_cascades().with_selection(MapSelection::default());
     technique.with_maps(by_coverage).with_filter(FilterKind::Pcss)
 }
 
@@ -278,8 +278,8 @@ fn every_overlay_can_be_drawn_with_the_cheapest_look_up_and_one_with_the_dearest
 #[ignore = "every overlay with the dearest look-up: cargo xtask test --all"]
 fn every_overlay_can_be_drawn_with_the_dearest_look_up() {
     let by_view_depth = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256);
-    let slices = by_view_depth.maps.as_slices().with_selection(MapSelection::ViewDepth { overlap: 0.0 });
-    assert_overlays_are_drawn(&by_view_depth.with_maps(slices).with_filter(FilterKind::Point), &Overlay::ALL);
+    let cascades = by_view_depth.maps.as_cascades().with_selection(MapSelection::ViewDepth { overlap: 0.0 });
+    assert_overlays_are_drawn(&by_view_depth.with_maps(cascades).with_filter(FilterKind::Point), &Overlay::ALL);
     assert_overlays_are_drawn(&most_branches(4), &Overlay::ALL);
 }
 
@@ -295,7 +295,7 @@ fn casters_that_no_map_holds_are_told_from_those_that_one_holds() {
     let technique = Technique::preset("focused-1").expect("a preset").with_resolution(256, 256);
     let Stage { mut pictures, seen } = Stage::of(&technique, 1, &scene);
     pictures.draw(&seen.frame());
-    let masks = pictures.renderer.sun().holders(&pictures.scene.casters());
+    let masks = pictures.renderer.sun().maps_by_caster(&pictures.scene.casters());
     assert_eq!(masks, [1, 0]);
     let shown = |pictures: &mut Pictures, x: f64| {
         let camera =

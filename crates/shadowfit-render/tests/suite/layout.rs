@@ -91,7 +91,8 @@ fn uniforms_of_overlays_marks_and_blocks_of_texels_have_the_size_and_offsets_of_
 fn vertex_shaders_read_instances_where_the_buffer_has_them() {
     let scene = scene();
     let rows = offset_of!(InstanceData, rows);
-    let ends = [rows, rows + 16, rows + 32, offset_of!(InstanceData, first_triangle), offset_of!(InstanceData, holder)];
+    let ends =
+        [rows, rows + 16, rows + 32, offset_of!(InstanceData, first_triangle), offset_of!(InstanceData, first_map)];
     assert_eq!(packed(&scene, &at_locations(&scene, "SceneIn", &[5, 6, 7, 8])), ends);
     let caster = caster();
     assert_eq!(packed(&caster, &at_locations(&caster, "CasterIn", &[5, 6, 7])), ends[..4]);

@@ -5,7 +5,7 @@ use glam::{DVec3, UVec2};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit::{FittedMap, PerspectiveCamera, Technique};
-use shadowfit_render::{Gpu, PixelFacts, PixelQuery, TexelBlock, UpdateContent};
+use shadowfit_render::{Gpu, PixelFacts, PixelQuery, TexelBlock, UpdateKind};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_testing::read_back;
 use shadowfit_wgpu::ShadowMap;
@@ -67,14 +67,14 @@ fn assert_depths(pictures: &mut Pictures, seen: &Seen, format: MapFormat) {
         let map = number % stored.len();
         let texels = Some(TexelBlock { map, texel, radius });
         let facts = pictures.pixel(&seen.frame(), &PixelQuery { size: SIZE, pixel: [80, 45], texels });
-        let wrap = pictures.renderer.sun().maps()[map].wrap;
+        let texel_offset = pictures.renderer.sun().maps()[map].texel_offset;
         let side = radius.cast_signed() * 2 + 1;
         assert_eq!(facts.depths.len(), (side * side) as usize);
         for (index, found) in (0_i32..).zip(&facts.depths) {
             let [x, y] = [index % side, index / side];
             let at = [texel[0] + x - radius.cast_signed(), texel[1] + y - radius.cast_signed()];
             let [u, v] = at.map(|place| place.clamp(0, SIDE.cast_signed() - 1) as u32);
-            let place = (((v + wrap.y) % SIDE) * SIDE + (u + wrap.x) % SIDE) as usize * bytes;
+            let place = (((v + texel_offset.y) % SIDE) * SIDE + (u + texel_offset.x) % SIDE) as usize * bytes;
             let expected = depth(format, &stored[map][place..place + bytes]);
             assert!((found - expected).abs() <= 1e-6, "{format:?} {map} {at:?}: {found}, not {expected}");
         }
@@ -119,7 +119,7 @@ fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapp
             assert!(kept.is_cached(map));
             let mut is_drawn = vec![false; (SIDE * SIDE) as usize];
             let rects = updates.iter().filter(|update| update.map == map);
-            let parts = rects.flat_map(|update| update.rect.stored(kept.maps()[map].wrap, UVec2::splat(SIDE)));
+            let parts = rects.flat_map(|update| update.rect.stored(kept.maps()[map].texel_offset, UVec2::splat(SIDE)));
             for TexelRect { min, size } in parts.map(|part| part.stored) {
                 for row in min.y..min.y + size.y {
                     is_drawn[(row * SIDE + min.x) as usize..][..size.x as usize].fill(true);
@@ -132,10 +132,10 @@ fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapp
         }
         before = Some(now);
     }
-    let contents = [UpdateContent::All, UpdateContent::Static, UpdateContent::Mended, UpdateContent::Moving];
+    let contents = [UpdateKind::All, UpdateKind::Static, UpdateKind::Mended, UpdateKind::Moving];
     println!("{changes} changes by {contents:?}: {met:?}");
     assert!(met[1] && met[2] && met[3] && changes > 1000, "{met:?}, {changes}");
-    let is_wrapped = |map: &FittedMap| map.wrap != UVec2::ZERO;
+    let is_wrapped = |map: &FittedMap| map.texel_offset != UVec2::ZERO;
     assert!(pictures.renderer.sun().maps().iter().any(is_wrapped));
     assert_depths(&mut pictures, &seen, MapFormat::Depth32Float);
 }

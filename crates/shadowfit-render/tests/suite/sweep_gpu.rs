@@ -10,8 +10,8 @@ use shadowfit::settings::{
     SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Bias, Boxes, DepthConvention, FitInput, FitState, FittedMap, LightProjection, Maps, PerspectiveCamera,
-    Scratch, Slices, Technique, fit,
+    Aabb, Bias, Boxes, Cascades, DepthConvention, FitInput, FitState, FittedMap, LightProjection, Maps,
+    PerspectiveCamera, Scratch, Technique, fit,
 };
 use shadowfit_render::passes::material_layout;
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer};
@@ -59,8 +59,8 @@ fn away_from_the_light(_: &LightProjection, _: FilterKind) -> Bias {
 fn cases(count: u32) -> Vec<Case> {
     let maps = |kind, splits, stabilise, casters| {
         let fit = MapSettings { casters, resolution: UVec2::splat(TEXELS), ..MapSettings::default() };
-        let slices = Slices { count, shape: Shape::new(kind), splits, stabilise, ..Slices::default() };
-        Technique::default().with_maps(slices).with_fit(fit)
+        let cascades = Cascades { count, shape: Shape::new(kind), splits, stabilise, ..Cascades::default() };
+        Technique::default().with_maps(cascades).with_fit(fit)
     };
     let list = CasterPolicy::PerObject;
     let case = |name, maps| Case {
@@ -76,16 +76,19 @@ fn cases(count: u32) -> Vec<Case> {
     let mut reversed = focused;
     reversed.fit.depth = DepthConvention::Reversed;
     let clamped = maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off, CasterPolicy::DepthClamp);
-    let chosen = |technique: Technique, choice| match technique.maps {
-        Maps::Slices(slices) => technique.with_maps(slices.with_selection(choice)),
+    let chosen = |technique: Technique, selection| match technique.maps {
+        Maps::Cascades(cascades) => technique.with_maps(cascades.with_selection(selection)),
         _ => technique,
     };
     let mut all = vec![
         case("focused", focused),
         case("held", maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::default(), list)),
-        case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap { max_waste: 1.8 }, list)),
-        case("boxes of the slices", aabb),
-        Case { bias: automatic, ..case("boxes of the slices, normal offset", aabb) },
+        case(
+            "spheres",
+            maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap { max_oversize: 1.8 }, list),
+        ),
+        case("boxes of the cascades", aabb),
+        Case { bias: automatic, ..case("boxes of the cascades, normal offset", aabb) },
         Case { bias: away_from_the_light, filter: FilterKind::Point, ..case("focused, biased away", focused) },
         Case { format: MapFormat::R32Float, filter: FilterKind::Pcf3x3, ..case("focused, reversed", reversed) },
         case("focused, depth clamp", clamped),
@@ -99,7 +102,7 @@ fn cases(count: u32) -> Vec<Case> {
             ..case("focused, wide as its penumbrae", focused)
         },
     ];
-    let also = ["focused", "boxes of the slices", "boxes of the slices, normal offset", "narrow"];
+    let also = ["focused", "boxes of the cascades", "boxes of the cascades, normal offset", "narrow"];
     let others: Vec<Case> = all
         .iter()
         .filter(|case| also.contains(&case.name))
@@ -207,9 +210,11 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
     let last = fitted.len() - 1;
     let map = |(index, map): (usize, &FittedMap)| {
         let is_narrow = case.is_narrow && index < last;
-        let shape = case.technique.maps.shape().expect("slices or one map");
+        let shape = case.technique.maps.shape().expect("cascades or one map");
         let settings = FitSettings { shape, map: case.technique.fit };
-        let settings = settings.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
+        let settings = settings
+            .with_max_distance(map.depths.and_then(|range| range.far).map_or(f32::MAX, |far| far as f32))
+            .with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.projection };
         let converted = *map;
         FittedMap { projection: light, bias: (case.bias)(&light, case.filter), ..converted }
@@ -230,8 +235,8 @@ impl Drawn {
         let targets = ProbeTargets::new(&gpu.device, SIZE);
         let pixels = renderer.probe(gpu, scene, &frame, &targets).expect("a probe").pixels;
         let mut casters = [0; MAX_MAPS];
-        for piece in renderer.sun().passes().flat_map(|pass| pass.pieces()) {
-            casters[piece.map] += piece.casters.len();
+        for region in renderer.sun().passes().flat_map(|pass| pass.regions()) {
+            casters[region.map] += region.casters.len();
         }
         Self { pixels, casters }
     }
@@ -324,7 +329,7 @@ fn swept_casters_of_the_full_product_give_every_pixel_the_same_factor_and_are_fe
 fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
     let gpu = renderer_gpu();
     let atmosphere = Atmosphere::default();
-    for case in cases(2).iter().filter(|case| case.name == "boxes of the slices") {
+    for case in cases(2).iter().filter(|case| case.name == "boxes of the cascades") {
         from_other_eyes(&gpu, &atmosphere, case);
     }
 }
@@ -345,11 +350,11 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
     ] {
         let outer = PerspectiveCamera { eye, forward, ..inner };
         let frame =
-            Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(outer, direction, &maps, atmosphere) };
+            Frame { reader: Some((inner.eye, inner.forward)), ..Frame::new(outer, direction, &maps, atmosphere) };
         let [swept, all] = [Culling::Swept, Culling::WholeMap]
             .map(|culling| Drawn::new(gpu, &mut renderer, &mut scene, &frame, culling));
-        let choice = case.technique.maps.selection();
-        assert_eq!(different(&swept.pixels, &all.pixels), 0, "{choice:?}, from {eye} along {forward}");
+        let selection = case.technique.maps.selection();
+        assert_eq!(different(&swept.pixels, &all.pixels), 0, "{selection:?}, from {eye} along {forward}");
     }
 }
 

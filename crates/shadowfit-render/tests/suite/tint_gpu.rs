@@ -2,6 +2,7 @@
 //! computation here finds for it.
 
 use glam::{DVec2, DVec3, Vec3};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::{FilterKind, MapSelection, SplitScheme};
 use shadowfit::{Bias, FitInput, FitState, FittedMap, PerspectiveCamera, Scratch, Technique};
 use shadowfit_params::figures::MAP_TINTS;
@@ -34,16 +35,17 @@ fn camera() -> PerspectiveCamera {
 
 /// Fits `count` maps to the camera's view. The floor goes on behind the last one.
 fn maps(camera: &PerspectiveCamera, count: u32) -> Vec<FittedMap> {
-    let slices = Technique::preset("calm-4").expect("a preset");
+    let cascades = Technique::preset("calm-4").expect("a preset");
     let mut settings =
-        slices.with_maps(slices.maps.as_slices().with_count(count).with_splits(SplitScheme::Manual(ENDS)));
+        cascades.with_maps(cascades.maps.as_cascades().with_count(count).with_splits(SplitScheme::Manual(ENDS)));
     (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, glam::UVec2::splat(256));
     let views = [camera.frustum().expect("a camera")];
     let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
     let input = FitInput::new(&views, DIRECTION);
     let fitted = FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("maps");
-    let ends = fitted.iter().map(|map| map.far.min(LAST_END));
-    fitted.iter().zip(ends).map(|(map, far)| FittedMap::new(map.projection, Bias::default()).ending_at(far)).collect()
+    let range = |map: &FittedMap| map.depths.map(|range| DepthRange { covered_from: None, ..range });
+    let map = |map: &FittedMap| FittedMap { depths: range(map), ..FittedMap::new(map.projection, Bias::default()) };
+    fitted.iter().map(map).collect()
 }
 
 /// What the floor's point behind a position in the picture reads, in pixels.
@@ -70,7 +72,9 @@ fn seen_at(camera: &PerspectiveCamera, maps: &[FittedMap], [x, y]: [f64; 2]) -> 
     if ray.y >= 0.0 || depth >= f64::from(camera.far) {
         return Seen::Sky;
     }
-    let read = maps.iter().position(|map| depth < f64::from(map.far) && map.projection.covers(point));
+    let read = maps
+        .iter()
+        .position(|map| map.depths.is_some_and(|range| range.ends_beyond(depth)) && map.projection.covers(point));
     read.map_or(Seen::NoMap, Seen::Map)
 }
 

@@ -88,7 +88,13 @@ impl ShadowLookup {
                 MapReading::Coverage { order, blend: blend as f32 }
             }
         };
-        LightMaps { maps, reading, reach: self.filter.reach(), depth_clamp: true, reads_later_maps: false }
+        LightMaps {
+            maps,
+            reading,
+            filter_radius: self.filter.filter_radius(),
+            depth_clamp: true,
+            reads_later_maps: false,
+        }
     }
 }
 
@@ -102,7 +108,7 @@ pub enum LookupBlend {
     },
     /// By the finest map that holds the point and the filter around it.
     Coverage {
-        /// Reach of the filter, in texels.
+        /// Radius of the filter, in texels.
         reach: f64,
         /// Texels over which a map is blended into the next one.
         blend: f64,
@@ -128,7 +134,7 @@ struct AxisTaps {
 
 impl LookupFilter {
     /// Returns the greatest distance per axis, in texels, from the sample point to the centre of a texel of non-zero weight.
-    pub fn reach(self) -> f32 {
+    pub fn filter_radius(self) -> f32 {
         match self {
             Self::Hardware2x2 => 1.0,
             Self::Castano13 => 3.0,
@@ -294,7 +300,7 @@ mod tests {
                 assert!((sum - 1.0).abs() < 1e-12 && (centre - position).abs() < 0.26, "{position}: {sum} {centre}");
                 let distances = weights.iter().zip(first..).filter(|(weight, _)| **weight > 0.0);
                 let farthest = distances.map(|(_, texel)| (texel as f64 + 0.5 - position).abs()).fold(0.0, f64::max);
-                assert!(farthest <= f64::from(filter.reach()) + 1e-12, "{filter:?} at {position}: {farthest}");
+                assert!(farthest <= f64::from(filter.filter_radius()) + 1e-12, "{filter:?} at {position}: {farthest}");
             }
         }
     }
@@ -315,7 +321,7 @@ mod tests {
         let described = lookup.light_maps();
         let depths: Vec<_> = described.maps.iter().map(|map| [map.split_far, map.blend_near]).collect();
         assert_eq!(depths, [[10.0, f64::INFINITY], [20.0, 7.5]]);
-        assert_eq!((described.reading, described.reach), (MapReading::ViewDepth, 3.0));
+        assert_eq!((described.reading, described.filter_radius), (MapReading::ViewDepth, 3.0));
         let blend = LookupBlend::Coverage { reach: 3.0, blend: 8.0 };
         let described = ShadowLookup { blend, ..lookup }.light_maps();
         assert!(matches!(described.reading, MapReading::Coverage { blend: 8.0, .. }), "{:?}", described.reading);

@@ -134,9 +134,9 @@ pub struct LightMaps {
     pub maps: Vec<MeasuredMap>,
     /// Rule by which a point selects among the maps.
     pub reading: MapReading,
-    /// Reach of the filter: greatest distance per axis, in texels, from the sample point to the centre of a texel of
+    /// Radius of the filter: greatest distance per axis, in texels, from the sample point to the centre of a texel of
     /// non-zero weight.
-    pub reach: f32,
+    pub filter_radius: f32,
     /// Whether the maps also hold casters before their near plane.
     pub depth_clamp: bool,
     /// Whether a point that lies outside of the map of its view depth reads a later one. If not, it is lit.
@@ -146,7 +146,12 @@ pub struct LightMaps {
 impl LightMaps {
     /// Returns the maps in the form that a picture is judged with.
     pub fn picture_maps(&self) -> PictureMaps<'_> {
-        PictureMaps { maps: &self.maps, reading: self.reading, reach: self.reach, depth_clamp: self.depth_clamp }
+        PictureMaps {
+            maps: &self.maps,
+            reading: self.reading,
+            filter_radius: self.filter_radius,
+            depth_clamp: self.depth_clamp,
+        }
     }
 
     /// Returns whether a map that a point reads holds it.

@@ -17,7 +17,7 @@ pub(crate) struct InputArgs {
 impl InputArgs {
     /// The inputs of a technique with what is asked for changed.
     pub(crate) fn changed(&self, inputs: Inputs) -> Inputs {
-        Inputs { boxes: self.boxes.unwrap_or(inputs.boxes), seen: inputs.seen && !self.unseen }
+        Inputs { boxes: self.boxes.unwrap_or(inputs.boxes), visible_demand: inputs.visible_demand && !self.unseen }
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::{BiasSettings, MapFormat, MapSelection};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection};
 use shadowfit_render::{Gpu, Renderer};
@@ -210,8 +211,8 @@ fn descriptor(
     })
 }
 
-/// How the maps of a file are read: by coverage where no map ends, which is what a file of maps that are no slices of
-/// the view says; else by view depth.
+/// How the maps of a file are read: by coverage if no map ends, which files of maps other than cascades say; else by view
+/// depth.
 fn choice(maps: &[Vec<FitMap>]) -> MapSelection {
     let has_no_end = |map: &FitMap| map.split_far >= FitMap::NO_END;
     if maps.iter().flatten().all(has_no_end) {
@@ -228,10 +229,13 @@ pub(crate) fn view(frame: &Frame, is_first: bool) -> View {
 }
 
 fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<FittedMap>> {
-    let far = |split: f64| if split >= f64::from(view.camera.far) { f32::MAX } else { split as f32 };
+    let depths = |map: &FitMap| {
+        let is_last = map.split_far >= f64::from(view.camera.far);
+        DepthRange::new(map.split_near, (!is_last).then_some(map.split_far))
+    };
     let fitted = |map: &FitMap| {
         let fit = light_fit(map, view)?;
-        Ok(FittedMap::new(fit, Bias::from_texels(bias, format, &fit)).ending_at(far(map.split_far)))
+        Ok(FittedMap::new(fit, Bias::from_texels(bias, format, &fit)).with_depths(depths(map)))
     };
     maps.iter().map(fitted).collect()
 }

@@ -18,7 +18,7 @@ use crate::drawing::{Drawing, named_filter};
 use crate::interrupt::Interrupt;
 use crate::job::{Job, JobFrame, Prepared};
 
-/// Techniques that are compared when none is named: the sample's, this project's own stable and sharp slices, and the
+/// Techniques that are compared when none is named: the sample's, this project's own stable and sharp cascades, and the
 /// recommended one.
 const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "histogram-4", Preset::RECOMMENDED];
 

@@ -88,7 +88,7 @@ impl Contestant for Traced {
         LightMaps {
             maps: vec![MeasuredMap::new(maps, DVec2::splat(TEXELS.into()), 100.0, to_light)],
             reading: MapReading::ViewDepth,
-            reach: 1.0,
+            filter_radius: 1.0,
             depth_clamp: true,
             reads_later_maps: false,
         }

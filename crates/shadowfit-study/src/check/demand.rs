@@ -1,7 +1,7 @@
 //! The compute pass that counts what a depth buffer shows against the same counts on the CPU.
 
 use anyhow::{Result, ensure};
-use shadowfit::{DepthConvention, Seen};
+use shadowfit::{DepthConvention, VisibleDemand};
 use shadowfit_render::{Frame, ProbeTargets};
 use shadowfit_wgpu::ShadowMapDescriptor;
 use shadowfit_wgpu::demand::{DemandPass, DemandPassError, DemandView, count_on_cpu};
@@ -63,7 +63,7 @@ fn demand_view(view: &View) -> Result<DemandView> {
 }
 
 /// Waits for the counts; a browser does other things meanwhile.
-async fn arrived(bench: &Bench<'_>, pass: &mut DemandPass) -> Result<Seen> {
+async fn arrived(bench: &Bench<'_>, pass: &mut DemandPass) -> Result<VisibleDemand> {
     loop {
         bench.pause().await?;
         let counts = if cfg!(target_family = "wasm") { pass.take()? } else { pass.wait()? };
@@ -73,7 +73,7 @@ async fn arrived(bench: &Bench<'_>, pass: &mut DemandPass) -> Result<Seen> {
     }
 }
 
-fn outcome(found: &Seen, expected: &Seen) -> Outcome {
+fn outcome(found: &VisibleDemand, expected: &VisibleDemand) -> Outcome {
     let points: u32 = expected.demand().counts.iter().sum();
     let differ = |found: &[u32], expected: &[u32]| {
         // A point that is counted elsewhere is missed in one place and too many in the other.

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use shadowfit::settings::Edges;
 use shadowfit_truth::{Class, Judged, PixelTruth};
-use shadowfit_wgpu::resolve::EdgeResult;
+use shadowfit_wgpu::exact_edges::EdgeOutcome;
 
 use super::bench::{Bench, SIZE, small};
 use super::numbers::steps_in_a_pixel;
@@ -52,7 +52,7 @@ async fn run_with(bench: &mut Bench<'_>, mut truth: SharedTruth) -> Result<Outco
     let mut evaluator = bench.evaluator(&technique)?;
     bench.pause().await?;
     let judged = evaluator.judge_async(bench.gpu, &mut bench.scene, &view, &maps, &mut truth).await?;
-    if let EdgeResult::Filtered(reason) = evaluator.renderer.edge_result() {
+    if let EdgeOutcome::Filtered(reason) = evaluator.renderer.edge_result() {
         return Ok(Outcome::Unavailable(reason.to_string()));
     }
     bench.pause().await?;

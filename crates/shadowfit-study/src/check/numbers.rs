@@ -197,7 +197,8 @@ pub(super) async fn factors(gpu: &Gpu, map: &ShadowMap, points: &[Point]) -> Res
     Ok(factors)
 }
 
-/// Returns the depths that the maps store, as the look-up finds them: without the wrap of maps that are stored shifted.
+/// Returns the depths that the maps store, as the look-up finds them: without the texel offset of maps that are stored
+/// shifted.
 pub(super) async fn texels(gpu: &Gpu, map: &ShadowMap) -> Result<Vec<Texels>> {
     let descriptor = map.descriptor();
     let [width, height] = descriptor.resolution;

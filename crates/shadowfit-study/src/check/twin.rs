@@ -75,12 +75,12 @@ impl Twin<'_> {
     pub(super) fn factor(&self, point: &Point) -> Option<Range<f64>> {
         let position = Vec3::from(point.position).as_dvec3();
         let normal = Vec3::from(point.normal).as_dvec3();
-        let reach = f64::from(self.descriptor.softness.reach(self.descriptor.filter));
+        let reach = f64::from(self.descriptor.softness.filter_radius(self.descriptor.filter));
         let width = self.descriptor.selection.blend();
         let order = MapOrder::new(self.descriptor.selection, self.maps.iter().map(|map| &map.projection));
         let free = |map: usize| {
             let projection = &self.maps[map].projection;
-            projection.free_texels(projection.origin + position)
+            projection.texels_to_edge(projection.origin + position)
         };
         let is_unsure = |map: usize| {
             let uv = uv(&self.maps[map], position);
@@ -195,7 +195,7 @@ fn look_ups(descriptor: &ShadowMapDescriptor, at: DVec2, projection: &shadowfit:
     let taps = match descriptor.filter {
         FilterKind::Point => return vec![(at, 1.0)],
         // Tents reach as many texels as they have pairs; that of one is a single look-up.
-        tent if !tent.is_soft() => return self::tent(at, tent.reach() as u32),
+        tent if !tent.is_soft() => return self::tent(at, tent.filter_radius() as u32),
         FilterKind::Vogel8 => 8,
         FilterKind::Vogel32 => 32,
         _ => 16,

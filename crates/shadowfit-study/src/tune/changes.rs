@@ -108,7 +108,7 @@ fn splits() -> Vec<Change> {
     ];
     let change = |(what, splits)| {
         Change::to_maps(what, move |maps| match maps {
-            Maps::Slices(slices) => slices.with_splits(splits).into(),
+            Maps::Cascades(cascades) => cascades.with_splits(splits).into(),
             others => others,
         })
     };
@@ -130,15 +130,15 @@ fn stillness() -> Vec<Change> {
     let held = Hysteresis::default();
     let modes = [
         ("maps fitted anew in each frame", Stabilise::Off),
-        ("maps on a grid of whole texels", Stabilise::Snap { max_waste: held.max_waste }),
+        ("maps on a grid of whole texels", Stabilise::Snap { max_oversize: held.max_oversize }),
         ("maps held from frame to frame", Stabilise::Hysteresis(held)),
-        ("maps held longer", Stabilise::Hysteresis(held.with_max_waste(3.0))),
-        ("maps held for a shorter time", Stabilise::Hysteresis(held.with_max_waste(1.3).with_max_growth(1.2))),
+        ("maps held longer", Stabilise::Hysteresis(held.with_max_oversize(3.0))),
+        ("maps held for a shorter time", Stabilise::Hysteresis(held.with_max_oversize(1.3).with_max_growth(1.2))),
     ];
     let change = |(what, stabilise)| {
         Change::to_maps(what, move |maps| match maps {
             Maps::Windows(_) => maps,
-            Maps::Slices(_) | Maps::One(_) => maps.with_stabilise(stabilise),
+            Maps::Cascades(_) | Maps::Single(_) => maps.with_stabilise(stabilise),
         })
     };
     modes.into_iter().map(change).collect()
@@ -176,11 +176,11 @@ fn fine_biases() -> Vec<Change> {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::Slices;
+    use shadowfit::Cascades;
 
     use super::*;
 
-    /// What slices have already.
+    /// What cascades have already.
     const OF_SLICES: [&str; 5] = [
         "Fit: Focused on the scene",
         "the automatic bias",
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn every_change_but_those_to_what_is_already_so_makes_another_technique() {
-        let start = Technique::default().with_maps(Slices::default());
+        let start = Technique::default().with_maps(Cascades::default());
         let changes: Vec<Change> = rounds(&start, TuneScope::Everything).into_iter().flatten().collect();
         assert!(changes.len() > 20, "{}", changes.len());
         for change in changes {

@@ -92,7 +92,7 @@ impl<'a> LookUp<'a> {
             slope: if has_slope { slope } else { DVec2::ZERO },
             near: point.position + point.normal * offset + z * depth,
             steps,
-            reach: f64::from(descriptor.softness.reach_in(descriptor.filter, fit).per_axis()).min(MOST_TEXELS),
+            reach: f64::from(descriptor.softness.filter_radius_in(descriptor.filter, fit).per_axis()).min(MOST_TEXELS),
             depth_clamp: descriptor.depth_clamp,
         })
     }

@@ -42,7 +42,7 @@ fn no_map(at: &At<'_>) -> String {
 fn by_coverage(at: &At<'_>, main: usize) -> String {
     let MapReading::Coverage { order, .. } = at.maps.reading else { return String::new() };
     let finer: Vec<usize> = order.iter().take_while(|map| *map != main).collect();
-    let cut = if free_texels(at, main) < f64::from(at.maps.reach) {
+    let cut = if texels_to_edge(at, main) < f64::from(at.maps.filter_radius) {
         ", though the filter reads beyond its border"
     } else {
         ""
@@ -101,14 +101,14 @@ pub(super) fn miss(at: &At<'_>, map: usize) -> String {
         let before = length((position.depth - 1.0) * range);
         return format!("map {number_of} ends {before} before it, seen from the light");
     }
-    let free = count(free_texels(at, map), "texel");
-    let reach = number(f64::from(at.maps.reach));
+    let free = count(texels_to_edge(at, map), "texel");
+    let reach = number(f64::from(at.maps.filter_radius));
     format!("map {number_of} ends {free} beside it, and the filter reads {reach}")
 }
 
-fn free_texels(at: &At<'_>, map: usize) -> f64 {
+fn texels_to_edge(at: &At<'_>, map: usize) -> f64 {
     let measured = &at.maps.maps[map];
-    measured.free_texels(&measured.project(at.point.position))
+    measured.texels_to_edge(&measured.project(at.point.position))
 }
 
 /// The way from a point to the nearest side of a map, across the light, in metres; zero within the sides.

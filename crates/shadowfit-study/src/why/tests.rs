@@ -2,6 +2,7 @@
 //! asked about, and the light falls straight down unless a test says otherwise.
 
 use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::{FilterKind, MapSelection};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, PerspectiveCamera};
 use shadowfit_scene::builtin::default_scene;
@@ -404,27 +405,26 @@ fn the_map_by_coverage_is_the_finest_and_the_reason_says_where_the_finer_one_end
 
 #[test]
 fn the_map_by_view_depth_is_that_of_its_range() {
-    let wide = |far: f32, covered_near: f32| FittedMap {
-        far,
-        covered_near,
-        ..map(DVec3::ZERO, Vec3::NEG_Y, 300.0, 10.0, 1000)
+    let wide = |near: f64, far: Option<f64>| {
+        let depths = DepthRange { near, far, covered_from: Some(near) };
+        map(DVec3::ZERO, Vec3::NEG_Y, 300.0, 10.0, 1000).with_depths(depths)
     };
-    let slices = [wide(10.0, f32::MAX), wide(28.0, 10.0), wide(77.0, 28.0), wide(f32::MAX, 77.0)];
+    let cascades = [wide(0.0, Some(10.0)), wide(10.0, Some(28.0)), wide(28.0, Some(77.0)), wide(77.0, None)];
     let reason = |depth: f64, maps: &[FittedMap]| {
         let court = Court { eye: DVec3::new(0.0, 0.6, 0.8) * depth, maps: maps.to_vec(), ..Court::default() };
         let descriptor =
             ShadowMapDescriptor { selection: MapSelection::ViewDepth { overlap: 0.0 }, ..court.descriptor };
         Court { descriptor, ..court }.why().map_reason
     };
-    let mut narrow = slices;
-    narrow[2] = FittedMap { far: 77.0, ..map(DVec3::X * 10.0, Vec3::NEG_Y, 4.0, 10.0, 100) };
-    let mut overlapping = slices;
-    overlapping[3].covered_near = 37.0;
+    let mut narrow = cascades;
+    narrow[2] = map(DVec3::X * 10.0, Vec3::NEG_Y, 4.0, 10.0, 100).with_depths(DepthRange::new(28.0, Some(77.0)));
+    let mut overlapping = cascades;
+    overlapping[3].depths.as_mut().expect("a range").covered_from = Some(37.0);
     for (depth, maps, text) in [
-        (4.0, &slices[..], "map 1 of 4: view depth 4 m lies before 10 m, where it ends"),
-        (41.0, &slices, "map 3 of 4: view depth 41 m lies between 28 m and 77 m"),
-        (90.0, &slices, "map 4 of 4: view depth 90 m lies beyond 77 m, where map 3 ends"),
-        (41.0, &slices[3..], "map 1 of 1: it serves every view depth"),
+        (4.0, &cascades[..], "map 1 of 4: view depth 4 m lies before 10 m, where it ends"),
+        (41.0, &cascades, "map 3 of 4: view depth 41 m lies between 28 m and 77 m"),
+        (90.0, &cascades, "map 4 of 4: view depth 90 m lies beyond 77 m, where map 3 ends"),
+        (41.0, &cascades[3..], "map 1 of 1: it serves every view depth"),
         (
             41.0,
             &narrow,

@@ -69,7 +69,7 @@ impl GpuJudgeInput<'_> {
             depth_clamp: maps.depth_clamp.into(),
             triangles,
             by_coverage: read.blend.is_some().into(),
-            reach: maps.reach,
+            reach: maps.filter_radius,
             blend: read.blend.unwrap_or(0.0),
             is_orthographic: camera.is_orthographic.into(),
             padding: 0,

@@ -26,9 +26,9 @@ pub struct MeasuredMap {
     /// View depth from which points of the map in front are blended into this one, in metres, up to that one's
     /// `split_far`; by view depth. Infinite for no blend.
     pub blend_near: f64,
-    /// Reach of the filter in this map where it is not that of [all maps](super::PictureMaps::reach), as of soft
+    /// Radius of the filter in this map where it is not that of [all maps](super::PictureMaps::filter_radius), as of soft
     /// filters: greatest distance per axis, in texels.
-    pub reach: Option<f32>,
+    pub filter_radius: Option<f32>,
     /// Whether depth 1 is nearest to the light in the matrix; in [`MapPosition::depth`] it is always 0.
     pub is_reversed: bool,
 }
@@ -89,7 +89,7 @@ impl MeasuredMap {
     fn prepared(clip_from_world: &DMat4, size: DVec2, split_far: f64, step: impl Fn(DVec3) -> DVec3) -> Self {
         let rows = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
         let is_reversed = is_reversed(clip_from_world, step);
-        Self { rows, size, split_far, blend_near: f64::INFINITY, reach: None, is_reversed }
+        Self { rows, size, split_far, blend_near: f64::INFINITY, filter_radius: None, is_reversed }
     }
 
     /// This map with points of the map in front blended into it from a view depth on, in metres.
@@ -100,8 +100,8 @@ impl MeasuredMap {
 
     /// This map with its own reach of the filter, in texels, which sets the width of its edge zone.
     #[must_use]
-    pub fn with_reach(self, reach: f32) -> Self {
-        Self { reach: Some(reach), ..self }
+    pub fn with_filter_radius(self, filter_radius: f32) -> Self {
+        Self { filter_radius: Some(filter_radius), ..self }
     }
 
     /// Rows of clip from positions relative to a point of the world.
@@ -134,7 +134,7 @@ impl MeasuredMap {
     }
 
     /// Texels between a position and the nearest of the map's sides; negative beside it.
-    pub fn free_texels(&self, position: &MapPosition) -> f64 {
+    pub fn texels_to_edge(&self, position: &MapPosition) -> f64 {
         position.texel.min(self.size - position.texel).min_element()
     }
 

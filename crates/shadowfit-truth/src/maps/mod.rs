@@ -3,12 +3,12 @@
 //!
 //! Pictures and fits are measured by the same rules, so these stand below both.
 
-mod choice;
 mod measured;
 mod picture;
 mod sampling;
+mod selection;
 
-pub use choice::{OccluderPlace, SelectedMap};
 pub use measured::{MapGradients, MapPosition, MeasuredMap};
 pub use picture::{MapReading, PictureMaps};
 pub use sampling::{MIN_FACING, pixels_per_texel};
+pub use selection::{OccluderPlace, SelectedMap};

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 
-use super::choice::SelectedMap;
 use super::measured::MeasuredMap;
+use super::selection::SelectedMap;
 
 /// Which of the maps of a picture a point reads; [`shadowfit::selection`] has the rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,10 +28,10 @@ pub struct PictureMaps<'a> {
     pub maps: &'a [MeasuredMap],
     /// Which of them a point reads.
     pub reading: MapReading,
-    /// Reach of the filter: greatest distance per axis, in texels, from the sample point to the
+    /// Radius of the filter: greatest distance per axis, in texels, from the sample point to the
     /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2). The choice by coverage goes by it; the edge
-    /// zone does where a map has no [reach of its own](MeasuredMap::reach).
-    pub reach: f32,
+    /// zone does where a map has no [reach of its own](MeasuredMap::filter_radius).
+    pub filter_radius: f32,
     /// Whether the maps were drawn with depth clamp, so that they also hold casters before their
     /// near plane.
     pub depth_clamp: bool,
@@ -40,10 +40,10 @@ pub struct PictureMaps<'a> {
 impl<'a> PictureMaps<'a> {
     /// Width of the edge zone where a point reads a map, in pixels where a texel is no wider than a pixel on screen,
     /// otherwise in texels: the filter's reach in that map and one more, at least 1.5. Where no map is read (`None`),
-    /// or one of which there is none, it is that of [`Self::reach`].
+    /// or one of which there is none, it is that of [`Self::filter_radius`].
     pub fn edge_width(&self, map: Option<usize>) -> f32 {
-        let own = map.and_then(|map| self.maps.get(map)?.reach);
-        (own.unwrap_or(self.reach) + 1.0).max(1.5)
+        let own = map.and_then(|map| self.maps.get(map)?.filter_radius);
+        (own.unwrap_or(self.filter_radius) + 1.0).max(1.5)
     }
 
     /// The maps that a point of the world reads, and with which weights; `None` where no map covers it. `view_depth` is
@@ -52,15 +52,18 @@ impl<'a> PictureMaps<'a> {
         let free = |index: usize| {
             let map = self.maps.get(index)?;
             let position = map.project(point);
-            map.is_inside(&position).then(|| map.free_texels(&position))
+            map.is_inside(&position).then(|| map.texels_to_edge(&position))
         };
         match self.reading {
             MapReading::ViewDepth => {
-                let range = |map: &MeasuredMap| DepthRange { blend_near: map.blend_near, far: map.split_far };
+                let range = |map: &MeasuredMap| {
+                    let covered_from = map.blend_near.is_finite().then_some(map.blend_near);
+                    Some(DepthRange { covered_from, ..DepthRange::new(0.0, Some(map.split_far)) })
+                };
                 by_view_depth(self.maps.iter().map(range), view_depth, |index| free(index).is_some())
             }
             MapReading::Coverage { order, blend } => {
-                by_coverage(order.iter(), f64::from(self.reach), f64::from(blend), free)
+                by_coverage(order.iter(), f64::from(self.filter_radius), f64::from(blend), free)
             }
         }
     }

@@ -90,7 +90,7 @@ impl Picture {
 
     /// How the maps are read.
     pub(crate) fn picture_maps<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
-        PictureMaps { maps, reading: self.reading, reach: 1.0, depth_clamp: self.depth_clamp }
+        PictureMaps { maps, reading: self.reading, filter_radius: 1.0, depth_clamp: self.depth_clamp }
     }
 
     /// The factor of each pixel; the sky is lit.
@@ -322,7 +322,7 @@ fn maps_that_overlap_by_view_depth_are_read_alike() {
 fn edge_zones_are_as_wide_as_each_map_s_own_reach() {
     let picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
     let plain = picture.measured();
-    let wide = [plain[0].with_reach(6.0), plain[1].with_reach(0.5)];
+    let wide = [plain[0].with_filter_radius(6.0), plain[1].with_filter_radius(0.5)];
     let zones = |both: &Both, map: u8| {
         let read = both.judged.map_index.iter().zip(&both.judged.edge_zone);
         read.filter(|(read, is_in_zone)| **read == Some(map) && **is_in_zone).count()
@@ -416,7 +416,7 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
         tracer.update(&device, &queue, &picture.tracer).expect("a scene that fits");
         let seen = Truth::seen_by_rays(&picture.tracer, &picture.camera);
         let maps = [picture.maps[1].measured(sun())];
-        let maps = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: true };
+        let maps = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: true };
         let texture = seen_texture(&device, &queue, picture.camera.size, &seen, &vec![1.0; seen.len()]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -461,8 +461,12 @@ fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
         let mut settings = picture.settings;
         change(&mut settings);
         let camera = PixelCamera { size, ..picture.camera };
-        let maps =
-            PictureMaps { maps: &vec![map; maps], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
+        let maps = PictureMaps {
+            maps: &vec![map; maps],
+            reading: MapReading::ViewDepth,
+            filter_radius: 0.5,
+            depth_clamp: false,
+        };
         let gpu_tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
         let texture = seen_texture(&device, &queue, [8, 8], &[None; 64], &[1.0; 64]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());

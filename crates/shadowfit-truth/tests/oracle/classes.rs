@@ -48,7 +48,7 @@ impl Room {
         counts: impl Fn(u32) -> bool + Sync,
     ) -> Judged {
         let factors: Vec<f32> = (0..PIXELS).map(|pixel| factor(pixel % 40)).collect();
-        let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp };
+        let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp };
         judge(&self.tracer, &self.truth, &maps, &factors, counts)
     }
 }
@@ -102,7 +102,7 @@ fn coarse_texels_widen_the_edge_zone_by_their_width_on_screen() {
 #[test]
 fn a_filter_that_reaches_farther_in_a_map_widens_the_edge_zone_there() {
     // 3 and 1 texels of a pixel: columns up to 4 pixels from the border.
-    let judged = Room::new().judge(|_| 0.0, map(1, 9.0).with_reach(3.0), false);
+    let judged = Room::new().judge(|_| 0.0, map(1, 9.0).with_filter_radius(3.0), false);
     assert_eq!(columns(&judged.tally), [16, 0, 0, 4, 20]);
 }
 
@@ -136,7 +136,7 @@ fn points_read_the_first_map_beyond_their_depth_and_classes_name_it() {
     let far = map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80);
     let maps = [PlainMap { split_far: 0.5, ..far }, map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80), far]
         .map(|map| map.measured(DVec3::Y));
-    let seen = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
+    let seen = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false };
     let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
     for (pixel, choice) in judged.map_index.iter().enumerate() {
         assert_eq!(*choice, Some(if pixel % 40 < 20 { 2 } else { 1 }));
@@ -152,7 +152,7 @@ fn of_two_maps_the_one_that_weighs_more_names_the_texels_and_the_occluders() {
     let order = MapOrder::by_area([Some(4.0), Some(1.0)]);
     for (blend, columns) in [(0.0, 22), (8.0, 18)] {
         let reading = MapReading::Coverage { order, blend };
-        let seen = PictureMaps { maps: &maps, reading, reach: 5.0, depth_clamp: false };
+        let seen = PictureMaps { maps: &maps, reading, filter_radius: 5.0, depth_clamp: false };
         let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
         for pixel in 0..PIXELS {
             // From here on less than 5 texels are free in the finer one, or less than 5 and half of the blend.
@@ -216,7 +216,8 @@ fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
     let room = Room::lit_from(DVec3::Y, |settings| settings.light = sun);
     let factors: Vec<f32> = room.truth.points.iter().map(|point| point.expect("the floor").lit).collect();
     assert!(factors.iter().any(|factor| (0.1..0.9).contains(factor)));
-    let maps = PictureMaps { maps: &[map(1, 9.0)], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
+    let maps =
+        PictureMaps { maps: &[map(1, 9.0)], reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false };
     let tally = judge(&room.tracer, &room.truth, &maps, &factors, |_| true).tally;
     assert_eq!((tally.all.wrong, tally.error), (0, 0.0));
     // A hole is one also where only some of the rays are blocked.
@@ -246,7 +247,7 @@ fn merged_tallies_are_those_of_both_pictures() {
 
 /// Maps that are read by view depth with one tap.
 fn by_view_depth(maps: &[MeasuredMap]) -> PictureMaps<'_> {
-    PictureMaps { maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false }
+    PictureMaps { maps, reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false }
 }
 
 #[test]

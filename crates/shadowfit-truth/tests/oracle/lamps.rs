@@ -166,7 +166,7 @@ impl Room {
     /// Judges factors by column.
     fn judge(&self, factor: impl Fn(usize) -> f32, map: MeasuredMap, depth_clamp: bool) -> Judged {
         let factors: Vec<f32> = (0..400).map(|pixel| factor(pixel % 40)).collect();
-        let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp };
+        let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp };
         judge(&self.tracer, &self.truth, &maps, &factors, |_| true)
     }
 }

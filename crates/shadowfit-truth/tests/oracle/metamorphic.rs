@@ -68,7 +68,7 @@ fn tally(light: Light, motion: DAffine3, scale: f64) -> PictureTally {
             f32::from(u8::from(shifted != (pixel % 31 == 0)))
         })
         .collect();
-    let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
+    let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false };
     judge(&tracer, &truth, &maps, &factors, |_| true).tally
 }
 

@@ -38,7 +38,7 @@ impl Picture {
 
     fn maps(&self) -> PictureMaps<'_> {
         let maps = core::slice::from_ref(&self.map);
-        PictureMaps { maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false }
+        PictureMaps { maps, reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false }
     }
 }
 

@@ -89,7 +89,7 @@ mod tests {
         let mut settings = home;
         settings.technique = settings
             .technique
-            .with_maps(shadowfit::Slices::default().with_count(3).with_splits(SplitScheme::Practical(0.25)));
+            .with_maps(shadowfit::Cascades::default().with_count(3).with_splits(SplitScheme::Practical(0.25)));
         settings.technique.bias.constant = 0.7;
         (settings.light.hour, settings.view.inset_depths) = (Some(8.5), Some([0.25, 0.5]));
         let town = SceneSource::from_text("a town.glb").with_index(Some(2)).expect("files have scenes");

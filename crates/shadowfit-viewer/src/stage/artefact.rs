@@ -223,7 +223,7 @@ fn show_acne(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     let distance = camera.eye.as_vec3().distance(place.center);
     let none = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
     settings.technique =
-        alone_or_as_slices(settings.technique, FitKind::XnaSample).with_look_up(FilterKind::Point, none);
+        alone_or_as_cascades(settings.technique, FitKind::XnaSample).with_look_up(FilterKind::Point, none);
     let texel = place.picture_height(distance) * ACNE_TEXEL;
     let middle = camera.eye.as_vec3() + camera.forward * distance;
     coarsen(search, &camera, settings, &Coarse { point: middle, texel, least: distance + place.radius });
@@ -260,7 +260,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
     let middle = search.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize];
     let distance = middle.map_or(height * 2.0, |seen| seen.distance);
     let point = middle.map_or(camera.eye.as_vec3() + camera.forward * distance, |seen| seen.position);
-    settings.technique = alone_or_as_slices(settings.technique, FitKind::FrustumAabb).with_filter(FilterKind::Point);
+    settings.technique = alone_or_as_cascades(settings.technique, FitKind::FrustumAabb).with_filter(FilterKind::Point);
     if settings.technique.maps.count() == 1 {
         settings.technique.fit.resolution = UVec2::splat(SHOWN_RESOLUTION);
     }
@@ -272,7 +272,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
 /// Between the subject and its shadow: the shadow is in view, its caster is not in the map.
 fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let technique = &mut settings.technique;
-    *technique = alone_or_as_slices(*technique, FitKind::XnaSample).with_filter(technique.filter);
+    *technique = alone_or_as_cascades(*technique, FitKind::XnaSample).with_filter(technique.filter);
     technique.fit.margin = 0.0;
     technique.fit.casters = CasterPolicy::None;
     if technique.maps.count() == 1 {
@@ -314,12 +314,16 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
 }
 
 /// A single map fitted by another rule, with no margin; several windows as focused maps; other maps as they are.
-fn alone_or_as_slices(mut technique: Technique, kind: FitKind) -> Technique {
+fn alone_or_as_cascades(mut technique: Technique, kind: FitKind) -> Technique {
     if technique.maps.count() == 1 {
         technique.fit.margin = 0.0;
         return technique.with_maps(technique.maps.with_kind(kind));
     }
-    if matches!(technique.maps, Maps::Windows(_)) { technique.with_maps(technique.maps.as_slices()) } else { technique }
+    if matches!(technique.maps, Maps::Windows(_)) {
+        technique.with_maps(technique.maps.as_cascades())
+    } else {
+        technique
+    }
 }
 
 /// Whether a rule fits the maps.

@@ -4,7 +4,7 @@ use glam::Vec4;
 use shadowfit::{Aabb, FittedMap};
 use shadowfit_egui::MAP_UPDATE_COLORS;
 use shadowfit_params::figures::linear_color;
-use shadowfit_render::{Inset, MapUpdate, Quad, UpdateContent};
+use shadowfit_render::{Inset, Quad, UpdateKind, UpdatedRect};
 
 use super::inset::{depths, tint};
 
@@ -84,7 +84,7 @@ impl Boards {
     }
 
     /// Each map in the colour of kept parts, and over it the rectangles that were drawn.
-    pub(super) fn quads(&self, updates: &[MapUpdate]) -> Vec<Quad> {
+    pub(super) fn quads(&self, updates: &[UpdatedRect]) -> Vec<Quad> {
         let color = |color: [u8; 3]| linear_color(color).extend(FILL);
         let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);
         let mut quads = self.ground();
@@ -95,7 +95,7 @@ impl Boards {
             let scale = [w / size[0], h / size[1]];
             let (min, extent) = (update.rect.min.as_vec2(), update.rect.size.as_vec2());
             let place = [x + min.x * scale[0], y + min.y * scale[1], extent.x * scale[0], extent.y * scale[1]];
-            let color = if update.content == UpdateContent::Moving { moving } else { drawn };
+            let color = if update.content == UpdateKind::Moving { moving } else { drawn };
             quads.push(Quad::rectangle(place, color));
             quads.extend(Quad::outline(place, 1.5, color.truncate().extend(1.0)));
         }

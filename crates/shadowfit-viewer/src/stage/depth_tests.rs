@@ -18,7 +18,7 @@ fn shares(grid: &DemandGrid<'_>) -> Vec<f64> {
 
 /// What the fitter is told: whether a picture said so, and the shares.
 fn told(stage: &Stage) -> (bool, Vec<f64>) {
-    let seen = stage.side.sun().fitter().seen().expect("windows are told");
+    let seen = stage.side.sun().fitter().visible_demand().expect("windows are told");
     // Rays are far fewer than a picture's points.
     (seen.demand().counts.iter().sum::<u32>() > 2500, shares(&seen.demand()))
 }

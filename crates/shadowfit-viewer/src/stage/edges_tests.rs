@@ -5,7 +5,7 @@ use shadowfit_params::tool::{InsetMaps, ViewMode};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_testing::renderer_gpu;
 use shadowfit_wgpu::demand::Unsupported;
-use shadowfit_wgpu::resolve::{EdgeResult, ResolveCounts, WhyFiltered};
+use shadowfit_wgpu::exact_edges::{EdgeCounts, EdgeOutcome, FallbackReason};
 
 use super::side::draw::filtered_edges;
 use super::*;
@@ -24,7 +24,7 @@ fn stage() -> (Stage, RenderTarget) {
 }
 
 /// Draws a picture and waits for what was counted in it.
-fn counts(stage: &mut Stage, target: &RenderTarget) -> Option<ResolveCounts> {
+fn counts(stage: &mut Stage, target: &RenderTarget) -> Option<EdgeCounts> {
     stage.draw(target);
     stage.gpu().device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
     stage.side.evaluator.renderer.take_edge_counts()
@@ -73,10 +73,10 @@ fn gpu_the_view_of_traced_pixels_colours_those_that_were_traced_and_no_others() 
 fn edges_that_are_filtered_though_the_technique_traces_them_are_told_with_the_reason() {
     let exact = Technique::preset("exact-4").expect("a preset");
     let mut settings = Settings::default().with_technique(exact);
-    let lacking = EdgeResult::Filtered(WhyFiltered::Device(Unsupported::Compute));
+    let lacking = EdgeOutcome::Filtered(FallbackReason::Device(Unsupported::Compute));
     let text = filtered_edges(&settings, lacking).expect("they are told");
     assert_eq!(text, "Edges are filtered: this graphics device has no compute shaders");
-    assert_eq!(filtered_edges(&settings, EdgeResult::Traced), None);
+    assert_eq!(filtered_edges(&settings, EdgeOutcome::Traced), None);
     settings.view.shadows = false;
     assert_eq!(filtered_edges(&settings, lacking), None, "there are none");
     assert_eq!(filtered_edges(&Settings::default(), lacking), None, "the technique has them filtered");

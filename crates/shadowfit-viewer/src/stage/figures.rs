@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use shadowfit::{Camera, DepthConvention, LightProjection, diagnostics};
 use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 
-use shadowfit_wgpu::resolve::EdgeResult;
+use shadowfit_wgpu::exact_edges::EdgeOutcome;
 
 use super::Stage;
 use super::fitted::Fitted;
@@ -18,7 +18,7 @@ impl Stage {
             None => side.fit(&mut shot),
         };
         let (statistics, times) = (side.statistics, side.evaluator.renderer.pass_times());
-        let is_traced = side.evaluator.renderer.edge_result() == EdgeResult::Traced;
+        let is_traced = side.evaluator.renderer.edge_result() == EdgeOutcome::Traced;
         let traced = side.traced_share().filter(|_| is_traced);
         let judge_ms = times.probe_ms.map(|probe| probe + side.live.gpu_ms().unwrap_or(0.0));
         let format = self.settings.technique.format;

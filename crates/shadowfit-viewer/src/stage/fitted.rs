@@ -32,8 +32,8 @@ impl Fitted {
     /// The part of the view that a map is made for: by view depth, points there read this map first. `None` for a map
     /// without a range.
     pub(crate) fn slice(&self, map: usize) -> Option<ViewFrustum> {
-        let map = self.maps.get(map)?;
-        self.between(map.near, map.far)
+        let depths = self.maps.get(map)?.depths?;
+        self.between(depths.near as f32, depths.far.map_or(f32::MAX, |far| far as f32))
     }
 
     fn between(&self, near: f32, far: f32) -> Option<ViewFrustum> {
@@ -56,7 +56,7 @@ mod tests {
     use shadowfit::settings::{MapSelection, SplitScheme};
     use shadowfit::{FitInput, FitState, PerspectiveCamera, Scratch};
 
-    use shadowfit::Slices;
+    use shadowfit::Cascades;
 
     use super::*;
 
@@ -72,9 +72,9 @@ mod tests {
             far: 300.0,
         };
         let manual = SplitScheme::Manual([10.0, 30.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let choice = MapSelection::ViewDepth { overlap: 0.0 };
-        let slices = Slices { count: 3, splits: manual, selection: choice, ..Slices::default() };
-        let technique = Technique::default().with_maps(slices).with_max_distance(80.0);
+        let selection = MapSelection::ViewDepth { overlap: 0.0 };
+        let cascades = Cascades { count: 3, splits: manual, selection, ..Cascades::default() };
+        let technique = Technique::default().with_maps(cascades).with_max_distance(80.0);
         let frustum = [camera.frustum().expect("a frustum")];
         let mut storage = vec![DVec2::ZERO; Scratch::required(0, 3)];
         let input = FitInput::new(&frustum, Vec3::new(0.3, -0.8, 0.2).normalize());
@@ -82,8 +82,10 @@ mod tests {
         let fitted = Fitted::new(camera, &technique, &maps);
         let at = |depth: f64| fitted.read_at(camera.eye + DVec3::NEG_Z * depth);
         // By coverage the first map is read wherever it holds the point, which is not only in its slice.
-        let by_coverage =
-            Fitted { technique: technique.with_maps(slices.with_selection(MapSelection::default())), ..fitted.clone() };
+        let by_coverage = Fitted {
+            technique: technique.with_maps(cascades.with_selection(MapSelection::default())),
+            ..fitted.clone()
+        };
         let finest = |depth: f64| by_coverage.read_at(camera.eye + DVec3::NEG_Z * depth);
         assert!((10..30).any(|depth| finest(f64::from(depth)) == Some(0)));
         assert_eq!([at(5.0), at(20.0), at(50.0), at(500.0)], [Some(0), Some(1), Some(2), None]);

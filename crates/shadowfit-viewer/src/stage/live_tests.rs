@@ -2,7 +2,7 @@
 
 use shadowfit::Technique;
 use shadowfit_params::tool::ViewMode;
-use shadowfit_render::{FlyInput, MapUpdate, RenderTarget, UpdateContent};
+use shadowfit_render::{FlyInput, RenderTarget, UpdateKind, UpdatedRect};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_testing::renderer_gpu;
 
@@ -171,7 +171,7 @@ fn gpu_maps_that_are_drawn_for_the_judge_are_not_shown_as_kept() {
     let drawn = stage.side.evaluator.renderer.sun().updates();
     let maps = stage.settings.technique.maps.count() as usize;
     // Once each: what moves over a map is drawn with it.
-    let is_whole = |update: &&MapUpdate| matches!(update.content, UpdateContent::All | UpdateContent::Static);
+    let is_whole = |update: &&UpdatedRect| matches!(update.content, UpdateKind::All | UpdateKind::Static);
     assert_eq!(drawn.iter().filter(is_whole).count(), maps, "{drawn:?}");
     assert_eq!(drawn.len(), maps, "{drawn:?}");
 }

@@ -22,7 +22,7 @@ pub enum DemandPassError {
     Lost,
 }
 
-/// What a device lacks for a [`DemandPass`](super::DemandPass), or for a pass of the module `resolve`.
+/// What a device lacks for a [`DemandPass`](super::DemandPass), or for a pass of the module `exact_edges`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsupported {
     /// Compute shaders with storage buffers.

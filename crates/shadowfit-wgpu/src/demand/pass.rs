@@ -1,7 +1,7 @@
 //! The pass itself: pipeline, dispatch, and the counts that come back.
 
 use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, SIDE};
-use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
+use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, VisibleDemand, VisibleDemandSpace};
 use shadowfit_gpu::bindings::{UNIFORM, group, layout, storage, texture, uniform_buffer};
 use shadowfit_gpu::{ReadBackRing, catch_errors, compute_pipeline, wgsl_module};
 
@@ -34,7 +34,7 @@ pub struct DemandPass {
     counts: wgpu::Buffer,
     /// The uniform of each picture on its way.
     uniforms: Vec<wgpu::Buffer>,
-    read_backs: ReadBackRing<SeenSpace>,
+    read_backs: ReadBackRing<VisibleDemandSpace>,
 }
 
 impl DemandPass {
@@ -126,7 +126,7 @@ impl DemandPass {
     /// # Errors
     ///
     /// [`DemandPassError::Lost`] if the device was lost.
-    pub fn take(&mut self) -> Result<Option<Seen>, DemandPassError> {
+    pub fn take(&mut self) -> Result<Option<VisibleDemand>, DemandPassError> {
         // This only polls. Whether a picture is finished shows below.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.newest()
@@ -138,7 +138,7 @@ impl DemandPass {
     /// # Errors
     ///
     /// [`DemandPassError::Lost`] if the device was lost or does not answer.
-    pub fn wait(&mut self) -> Result<Option<Seen>, DemandPassError> {
+    pub fn wait(&mut self) -> Result<Option<VisibleDemand>, DemandPassError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| DemandPassError::Lost)?;
         self.newest()
     }
@@ -149,9 +149,9 @@ impl DemandPass {
         self.read_backs.forget();
     }
 
-    fn newest(&mut self) -> Result<Option<Seen>, DemandPassError> {
+    fn newest(&mut self) -> Result<Option<VisibleDemand>, DemandPassError> {
         let taken = self.read_backs.take(bytemuck::pod_collect_to_vec).map_err(|_| DemandPassError::Lost)?;
-        taken.map(|(space, counts)| Seen::from_counts(space, counts).ok_or(DemandPassError::Lost)).transpose()
+        taken.map(|(space, counts)| VisibleDemand::from_counts(space, counts).ok_or(DemandPassError::Lost)).transpose()
     }
 }
 

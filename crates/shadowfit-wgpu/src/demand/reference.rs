@@ -2,7 +2,7 @@
 //! surface's plane by differences of depths, cells and bins by the core. Checks of a graphics device compare the pass with
 //! it, and devices without compute shaders can count by it.
 
-use shadowfit::demand::{PIXELS, Seen, needed_texel};
+use shadowfit::demand::{PIXELS, VisibleDemand, needed_texel};
 use shadowfit::glam::{DMat4, DVec3, DVec4};
 
 use super::error::DemandPassError;
@@ -35,11 +35,11 @@ struct Picture<'a> {
 ///
 /// [`DemandPassError::DepthBuffer`] for a rectangle beyond the depths, and [`DemandPassError::Fit`] for a view or light that
 /// makes no sense.
-pub fn count_on_cpu(view: &DemandView, depths: &Depths) -> Result<Seen, DemandPassError> {
+pub fn count_on_cpu(view: &DemandView, depths: &Depths) -> Result<VisibleDemand, DemandPassError> {
     let texture = [depths.width, (depths.values.len() as u32).checked_div(depths.width).unwrap_or(0)];
     check_rectangle(view.rectangle, texture)?;
     let picture = Picture { view, depths, world_from_clip: view.clip_from_world.as_dmat4().inverse() };
-    let mut seen = Seen::new(view.space()?);
+    let mut seen = VisibleDemand::new(view.space()?);
     let [_, _, width, height] = view.rectangle;
     let step = view.step();
     for y in (step / 2..height).step_by(step as usize) {
@@ -51,7 +51,7 @@ pub fn count_on_cpu(view: &DemandView, depths: &Depths) -> Result<Seen, DemandPa
 }
 
 impl Picture<'_> {
-    fn count(&self, x: i32, y: i32, seen: &mut Seen) {
+    fn count(&self, x: i32, y: i32, seen: &mut VisibleDemand) {
         let Some([position, right, down]) = self.point(x, y) else { return };
         let (frustum, far) = (&self.view.frustum, self.view.frustum.far.min(self.view.max_distance));
         let forward = frustum.forward.as_dvec3();

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::demand::PIXELS;
-use shadowfit::demand::{DEPTHS, SeenSpace};
+use shadowfit::demand::{DEPTHS, VisibleDemandSpace};
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
@@ -90,17 +90,17 @@ impl DemandView {
     }
 
     /// The cells and bins that the counts belong to.
-    pub(super) fn space(&self) -> Result<SeenSpace, DemandPassError> {
-        Ok(SeenSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
+    pub(super) fn space(&self) -> Result<VisibleDemandSpace, DemandPassError> {
+        Ok(VisibleDemandSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
     }
 
     /// The uniform of the shader.
-    pub(super) fn uniform(&self, space: &SeenSpace) -> Result<DemandUniform, DemandPassError> {
+    pub(super) fn uniform(&self, space: &VisibleDemandSpace) -> Result<DemandUniform, DemandPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(DepthBufferError::Depth(self.depth).into());
         }
         self.check_depth()?;
-        let SeenSpace { demand: space, near, far } = *space;
+        let VisibleDemandSpace { demand: space, near, far } = *space;
         let [left, top, width, height] = self.rectangle;
         // The histogram has no bins for depths that are not positive, as orthographic views may have them.
         let octaves = (f64::from(far) / f64::from(near)).log2();

@@ -69,11 +69,11 @@ pub enum ShadowMapError {
     /// A prefix that no name in WGSL can begin with.
     Prefix(String),
     /// A map that wraps around beyond its layer, or that does not fill it.
-    Wrap {
+    TexelOffset {
         /// Index of the map.
         index: usize,
         /// Where its first texel is to be stored, in texels.
-        wrap: [u32; 2],
+        texel_offset: [u32; 2],
         /// Its width and height, in texels.
         fit: [u32; 2],
         /// Those of the layer.
@@ -152,7 +152,9 @@ impl fmt::Display for ShadowMapError {
             Self::Texture(error) => write!(f, "the texture for the shadow maps: {error}"),
             Self::Device(error) => write!(f, "the device cannot make the shadow map: {error}"),
             Self::Prefix(prefix) => write_prefix(f, prefix),
-            Self::Wrap { index, wrap, fit, map } => write_wrap(f, *index, *wrap, [*fit, *map]),
+            Self::TexelOffset { index, texel_offset, fit, map } => {
+                write_texel_offset(f, *index, *texel_offset, [*fit, *map])
+            }
             Self::Fit { index, fit, map } => write_fit(f, *index, *fit, *map),
             Self::TooManyFits { fits, layers } => write_too_many(f, *fits, *layers),
             Self::Order { index, far, previous } => write_order(f, *index, *far, *previous),
@@ -218,10 +220,15 @@ fn write_prefix(f: &mut fmt::Formatter<'_>, prefix: &str) -> fmt::Result {
     write!(f, "names in WGSL cannot begin with {prefix:?}: take ASCII letters, digits and underscores, a letter first")
 }
 
-fn write_wrap(f: &mut fmt::Formatter<'_>, index: usize, wrap: [u32; 2], [fit, map]: [[u32; 2]; 2]) -> fmt::Result {
+fn write_texel_offset(
+    f: &mut fmt::Formatter<'_>,
+    index: usize,
+    texel_offset: [u32; 2],
+    [fit, map]: [[u32; 2]; 2],
+) -> fmt::Result {
     write!(
         f,
-        "map {index} of {fit:?} texels is to begin at {wrap:?} in a layer of {map:?}: only a map that fills its layer \
+        "map {index} of {fit:?} texels is to begin at {texel_offset:?} in a layer of {map:?}: only a map that fills its layer \
          wraps around, and it begins inside"
     )
 }

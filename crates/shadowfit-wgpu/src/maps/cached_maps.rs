@@ -9,11 +9,10 @@ use shadowfit::glam::DVec3;
 use shadowfit::{Aabb, FittedMap};
 
 use super::static_layers::Layers;
-use crate::{
-    Casters, Culling, MapTexture, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, UpdateSchedule,
-};
+use crate::{Casters, Culling, MapTexture, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, UpdateSchedule};
+use shadowfit::cache::UpdatedRect;
 
-pub use passes::{ShadowPass, ShadowPiece};
+pub use passes::{DrawRegion, ShadowPass};
 
 /// The shadow maps of one light, and the parts of them that are kept from frame to frame.
 #[derive(Debug)]
@@ -145,7 +144,7 @@ impl CachedMaps {
     /// Finds which parts of a frame's maps must be drawn, and writes the uniforms for shaders that read them from `view`.
     /// [`Self::pass`] then returns the passes of this frame. They count as drawn from the next call on.
     ///
-    /// Maps with an [anchor](FittedMap::anchor) can be kept; others are redrawn in each frame.
+    /// Maps with a [grid position](FittedMap::grid_position) can be kept; others are redrawn in each frame.
     pub(crate) fn update(
         &mut self,
         queue: &wgpu::Queue,
@@ -185,7 +184,7 @@ impl CachedMaps {
     }
 
     /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
-    pub(crate) fn updates(&self) -> Vec<MapUpdate> {
+    pub(crate) fn updates(&self) -> Vec<UpdatedRect> {
         self.cache.updates()
     }
 
@@ -194,9 +193,9 @@ impl CachedMaps {
         self.cache.is_kept(map)
     }
 
-    /// Which maps hold each caster, by its number; see [`MapCache::holders`].
-    pub(crate) fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
-        self.cache.holders(casters)
+    /// Which maps hold each caster, by its number; see [`MapCache::maps_by_caster`].
+    pub(crate) fn maps_by_caster(&self, casters: &Casters<'_>) -> Vec<u8> {
+        self.cache.maps_by_caster(casters)
     }
 
     /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
@@ -206,7 +205,7 @@ impl CachedMaps {
     /// # Errors
     ///
     /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
-    pub(crate) fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+    pub(crate) fn set_view(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
         if self.is_off { Ok(()) } else { self.write_uniforms(queue, view) }
     }
 

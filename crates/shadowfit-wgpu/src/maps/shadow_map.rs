@@ -46,7 +46,7 @@ struct Layer {
     caster_group: wgpu::BindGroup,
     /// Width and height of the corner that the present map uses, and where its first texel is stored, in texels.
     used: UVec2,
-    wrap: UVec2,
+    texel_offset: UVec2,
 }
 
 impl ShadowMap {
@@ -264,8 +264,8 @@ impl ShadowMap {
     ///
     /// [`ShadowMapError::TooManyFits`] for more fits than layers; [`ShadowMapError::Fit`] if a fit has
     /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the
-    /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::Wrap`] if a map wraps around beyond its
-    /// layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
+    /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::TexelOffset`] if a map wraps around
+    /// beyond its layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
     /// are not finite and for a direction that is not of unit length. Nothing is written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[FittedMap]) -> Result<(), ShadowMapError> {
         self.prepare_casters(queue, view, maps)?;
@@ -285,7 +285,7 @@ impl ShadowMap {
             let clamps_in_fragment = self.clamps_in_fragment.into();
             let uniform = CasterUniform { clamps_in_fragment, ..CasterUniform::new(&map.projection, view.origin) };
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
-            (layer.used, layer.wrap) = (map.projection.resolution, map.wrap);
+            (layer.used, layer.texel_offset) = (map.projection.resolution, map.texel_offset);
         }
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
@@ -327,7 +327,7 @@ impl ShadowMap {
     pub(crate) fn receiver_group_with(&self, device: &wgpu::Device, uniform: &wgpu::Buffer) -> wgpu::BindGroup {
         let resources = receiver_resources(uniform, &self.view, &self.sampler);
         let resources = &resources[..receiver_types(&self.descriptor).len()];
-        group_from(device, "shadowfit resolve", self.descriptor.first_binding, &self.receiver_layout, resources)
+        group_from(device, "shadowfit edges", self.descriptor.first_binding, &self.receiver_layout, resources)
     }
 
     /// Mixes another set, and its maps, into the look-up, after [`Self::prepare`]. `share`: the share of this set.
@@ -352,8 +352,8 @@ impl ShadowMap {
 
     /// Records one pass a prepared map: cleared to the far value, the map's [`Self::caster_group`]
     /// bound at `group`, then `draw(pass, map index, volume)`, which draws every caster that the
-    /// volume (relative to the origin) keeps. For a map that [wraps around](FittedMap::wrap) it is called for each of its
-    /// [`Self::parts`].
+    /// volume (relative to the origin) keeps. For a map that [wraps around](FittedMap::texel_offset) it is called for
+    /// each of its [`Self::parts`].
     pub fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -370,20 +370,20 @@ impl ShadowMap {
         }
     }
 
-    /// Parts in which a map is drawn: one, or up to four for a map that [wraps around](FittedMap::wrap).
+    /// Parts in which a map is drawn: one, or up to four for a map that [wraps around](FittedMap::texel_offset).
     ///
     /// # Panics
     ///
     /// If `index` is not below the descriptor's number of maps.
     pub fn parts(&self, index: usize) -> impl Iterator<Item = StoredRect> {
         let layer = &self.layers[index];
-        TexelRect::all(layer.used).stored(layer.wrap, layer.used)
+        TexelRect::all(layer.used).stored(layer.texel_offset, layer.used)
     }
 
     /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with the
-    /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that [wraps around](FittedMap::wrap) has
-    /// to be drawn once for each of its [`Self::parts`]: with a viewport of the map's size that begins at
-    /// [`StoredRect::viewport`], within the scissor rectangle [`StoredRect::stored`].
+    /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that
+    /// [wraps around](FittedMap::texel_offset) has to be drawn once for each of its [`Self::parts`]: with a viewport of
+    /// the map's size that begins at [`StoredRect::viewport`], within the scissor rectangle [`StoredRect::stored`].
     ///
     /// # Panics
     ///
@@ -469,7 +469,14 @@ impl Layer {
         let beside = textures.beside.as_ref().map(|texture| view(texture, index % descriptor.maps));
         let read = view(&textures.read, index);
         let (depth, color) = beside.map_or_else(|| (read.clone(), None), |beside| (beside, Some(read.clone())));
-        Self { depth, color, caster_uniform, caster_group, used: descriptor.resolution.into(), wrap: UVec2::ZERO }
+        Self {
+            depth,
+            color,
+            caster_uniform,
+            caster_group,
+            used: descriptor.resolution.into(),
+            texel_offset: UVec2::ZERO,
+        }
     }
 }
 

@@ -171,7 +171,7 @@ impl StaticLayers {
             opened.set_pipeline(&self.mend_boxes);
             opened.set_vertex_buffer(0, self.boxes.slice(..));
             let size = pass.size.as_vec2();
-            for view in &plan.views[pass.views.clone()] {
+            for view in &plan.viewports[pass.viewports.clone()] {
                 opened.set_viewport(view.x as f32, view.y as f32, size.x, size.y, 0.0, 1.0);
                 opened.draw(0..BOX_VERTICES, pass.mended_boxes.start as u32..pass.mended_boxes.end as u32);
             }
@@ -196,9 +196,8 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// The WGSL that clears parts of depth maps, and that takes parts of them from the static casters' layers: for tests that
-/// validate it.
-pub fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
+/// The WGSL that clears parts of depth maps, and that takes parts of them from the static casters' layers.
+fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let far = if descriptor.depth == DepthConvention::Reversed { "0.0" } else { "1.0" };
     let clear = include_str!("clear.wgsl").replace("FAR", far);
     let caster = caster_wgsl(descriptor, &WgslOptions::group(1));

@@ -7,6 +7,7 @@ use shadowfit::selection::MapOrder;
 use shadowfit::settings::Softness;
 use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
+use super::view::end_for_shaders;
 use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
 /// Pixels by which the pattern that turns discs moves from frame to frame, and frames after which it begins again
@@ -63,7 +64,7 @@ pub struct MapUniform {
     /// Puts the next field at a multiple of 8 bytes.
     pub padding_0: u32,
     /// Where the map's first texel lies in its layer, in texels: the rest follows it, and wraps around.
-    pub wrap: [f32; 2],
+    pub texel_offset: [f32; 2],
     /// Radii along u and v of the disc that look-ups are spread over, in texels: the greatest where it follows the
     /// caster.
     pub disc: [f32; 2],
@@ -147,7 +148,6 @@ impl MapUniform {
     fn on_plane(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let ShadowMapDescriptor { filter, softness, .. } = descriptor;
         let FittedMap { projection: fit, bias, .. } = map.relative_to(origin);
-        let range = map.depth_range();
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
         let [u, v] = depth_per_texel(&fit);
         Self {
@@ -159,9 +159,9 @@ impl MapUniform {
             size: fit.resolution.as_vec2().to_array(),
             normal_offset: bias.normal_offset,
             receiver_plane: toward_light * bias.receiver_plane,
-            far: range.far as f32,
-            blend_near: range.blend_near as f32,
-            wrap: map.wrap.as_vec2().to_array(),
+            far: end_for_shaders(map),
+            blend_near: map.depths.and_then(|range| range.covered_from).map_or(f32::MAX, |near| near as f32),
+            texel_offset: map.texel_offset.as_vec2().to_array(),
             disc: softness.texels(*filter, &fit).to_array(),
             penumbra: (Vec2::splat(-toward_light * softness.tangent() * fit.depth_range) / fit.texel_size).to_array(),
             ..Self::default()

@@ -56,9 +56,9 @@ pub(crate) fn check(
     let mut previous = f32::MIN;
     for (index, map) in maps.iter().enumerate() {
         check_layer(descriptor, index, &map.projection)?;
-        check_wrap(descriptor, index, map)?;
+        check_texel_offset(descriptor, index, map)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
-        let far = map.depth_range().far as f32;
+        let far = end_for_shaders(map);
         // NaN has no order.
         let is_in_order = far >= previous || descriptor.selection.is_by_coverage();
         if !is_in_order {
@@ -67,6 +67,12 @@ pub(crate) fn check(
         previous = far;
     }
     Ok(())
+}
+
+/// The view depth that shaders compare with the end of a map, in metres: no depth is above it where the map has no end,
+/// and none below it where no point reads the map by view depth.
+pub(super) fn end_for_shaders(map: &FittedMap) -> f32 {
+    map.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
 }
 
 /// Refuses a fit that a layer cannot hold.
@@ -78,11 +84,16 @@ fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightProjec
 }
 
 /// Refuses a map that cannot wrap around in its layer.
-fn check_wrap(descriptor: &ShadowMapDescriptor, index: usize, map: &FittedMap) -> Result<(), ShadowMapError> {
-    let (wrap, fit) = (map.wrap, map.projection.resolution);
-    let is_whole = fit.to_array() == descriptor.resolution && wrap.cmplt(fit).all();
-    if wrap == UVec2::ZERO || is_whole {
+fn check_texel_offset(descriptor: &ShadowMapDescriptor, index: usize, map: &FittedMap) -> Result<(), ShadowMapError> {
+    let (texel_offset, fit) = (map.texel_offset, map.projection.resolution);
+    let is_whole = fit.to_array() == descriptor.resolution && texel_offset.cmplt(fit).all();
+    if texel_offset == UVec2::ZERO || is_whole {
         return Ok(());
     }
-    Err(ShadowMapError::Wrap { index, wrap: wrap.to_array(), fit: fit.to_array(), map: descriptor.resolution })
+    Err(ShadowMapError::TexelOffset {
+        index,
+        texel_offset: texel_offset.to_array(),
+        fit: fit.to_array(),
+        map: descriptor.resolution,
+    })
 }

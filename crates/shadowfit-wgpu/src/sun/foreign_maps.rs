@@ -26,8 +26,9 @@ impl SunShadows {
 
     /// Finds which parts of maps must be drawn, and writes the uniforms: the second half of [`Self::update`]. The maps
     /// are those of [`Self::fit`], or any others with as many texels: of a frozen frame, or fitted by other code. Maps
-    /// that are read by view depth are in the order of their ends. Maps with an [anchor](FittedMap::anchor) can be
-    /// kept; others are redrawn in each frame. Their [`wrap`](FittedMap::wrap) and the frame's receivers are ignored.
+    /// that are read by view depth are in the order of their ends. Maps with a
+    /// [grid position](FittedMap::grid_position) can be kept; others are redrawn in each frame. Their
+    /// [`texel_offset`](FittedMap::texel_offset) and the frame's receivers are ignored.
     ///
     /// # Errors
     ///
@@ -51,8 +52,8 @@ impl SunShadows {
     /// # Errors
     ///
     /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
-    pub fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
-        self.maps.look_from(queue, view)?;
+    pub fn set_view(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+        self.maps.set_view(queue, view)?;
         if let Some((other, share)) = self.faded() {
             self.maps.fade_from(queue, &other.maps, view, share);
         }
@@ -64,7 +65,7 @@ impl SunShadows {
         &self.fitter
     }
 
-    /// The fitter of the maps, for visible points that were [found](ShadowFitter::see) by other means than
+    /// The fitter of the maps, for visible points that were [found](ShadowFitter::set_visible_demand) by other means than
     /// [`Self::record_demand`], or for another technique with the same layers, such as one with fewer maps.
     pub fn fitter_mut(&mut self) -> &mut ShadowFitter {
         &mut self.fitter

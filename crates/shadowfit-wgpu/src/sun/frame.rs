@@ -3,7 +3,7 @@
 use shadowfit::NormalCone;
 use shadowfit::cache::{CacheFrame, InView};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{BoxTree, Boxes, FitError, FitInput, FittedMap, ViewFrustum};
+use shadowfit::{Boxes, FitError, FitInput, FittedMap, StaticBoxes, ViewFrustum};
 
 use crate::{Casters, MapView};
 
@@ -27,33 +27,33 @@ pub struct SunFrame<'a> {
     pub receivers: Option<Boxes<'a>>,
     /// Cones around the normals of each receiver's surfaces, or empty, as [`FitInput::receiver_cones`].
     pub receiver_cones: &'a [NormalCone],
-    /// Everything that casts shadows, but for what is in [`Self::standing`].
+    /// Everything that casts shadows, but for what is in [`Self::static_boxes`].
     pub casters: Casters<'a>,
     /// What stands, receives and casts shadows beside the two lists, handed over once and told its changes: a frame then
     /// costs what changed and what is drawn, and not what there is. Static casters belong here from some thousand on;
     /// what moves in each frame belongs in the list. For another shape in the same box call
-    /// [`invalidate`](crate::SunShadows::invalidate). Keep one tree: another one, or none, redraws all maps.
+    /// [`invalidate`](crate::SunShadows::invalidate). Keep one `StaticBoxes`: another one, or none, redraws all maps.
     ///
     /// ```
     /// # use shadowfit::glam::{DVec3, Vec3};
-    /// # use shadowfit::{Aabb, Boxes, BoxTree, PerspectiveCamera};
+    /// # use shadowfit::{Aabb, Boxes, StaticBoxes, PerspectiveCamera};
     /// # use shadowfit_wgpu::{Casters, SunFrame};
     /// # let camera = PerspectiveCamera {
     /// #     eye: DVec3::Y, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.8, aspect: 1.6, near: 0.1, far: 200.0
     /// # };
     /// # let (views, aabb) = ([camera.frustum()?], Aabb::new(Vec3::ZERO, Vec3::ONE));
-    /// let mut world = BoxTree::new(DVec3::ZERO);
+    /// let mut world = StaticBoxes::new(DVec3::ZERO);
     /// let number = world.insert(aabb)?; // once: later `set` and `remove`
     ///
     /// let moving = [aabb];
     /// let boxes = Boxes::world(&moving);
     /// let casters = Casters { moves: &[true], ..Casters::fixed(boxes) };
     /// let frame = SunFrame::new(&views, Vec3::new(0.3, -0.8, 0.2), boxes, casters);
-    /// let frame = SunFrame { standing: Some(&world), ..frame };
-    /// # assert_eq!(frame.standing.and_then(|world| world.get(number)), Some(aabb));
+    /// let frame = SunFrame { static_boxes: Some(&world), ..frame };
+    /// # assert_eq!(frame.static_boxes.and_then(|world| world.get(number)), Some(aabb));
     /// # Ok::<(), shadowfit::FitError>(())
     /// ```
-    pub standing: Option<&'a BoxTree>,
+    pub static_boxes: Option<&'a StaticBoxes>,
     /// Number of the frame. Soft filters turn their pattern by it, for temporal anti-aliasing; 0 in every frame keeps
     /// the same pattern.
     pub number: u32,
@@ -72,7 +72,7 @@ impl<'a> SunFrame<'a> {
             receivers: Some(receivers),
             receiver_cones: &[],
             casters,
-            standing: None,
+            static_boxes: None,
             number: 0,
         }
     }
@@ -100,7 +100,7 @@ impl<'a> SunFrame<'a> {
             receivers: self.receivers,
             receiver_cones: self.receiver_cones,
             casters: Some(self.casters.boxes),
-            standing: self.standing,
+            static_boxes: self.static_boxes,
             ..FitInput::new(self.views, self.direction)
         }
     }
@@ -110,7 +110,7 @@ impl<'a> SunFrame<'a> {
         CacheFrame {
             maps,
             casters: self.casters,
-            standing: self.standing,
+            static_boxes: self.static_boxes,
             direction: self.direction,
             reader: self.map_view().reader(),
             in_view: InView::Views(self.views),

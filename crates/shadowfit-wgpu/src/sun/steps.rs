@@ -9,28 +9,28 @@
 
 use shadowfit::FitError;
 use shadowfit::glam::Vec3;
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{self, LightStepState};
 
 /// How the maps of a moving sun are held still: its **light steps**. See
 /// [`SunShadows::set_light_steps`](crate::SunShadows::set_light_steps).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SunSteps {
+pub struct LightSteps {
     /// Greatest movement of a map's edge for which the direction is held, in texels, as
-    /// [`LightStepSettings::texels`]: the sun steps when it has turned by 2 · texels / side of the map. 0 follows every
-    /// change. Default: 1, which is 0.056° with maps of 2048² texels.
+    /// [`light_steps::LightSteps::texels`]: the sun steps when it has turned by 2 · texels / side of the map. 0 follows
+    /// every change. Default: 1, which is 0.056° with maps of 2048² texels.
     pub texels: f32,
     /// Frames of the cross-fade from the old maps to the new ones. 0 steps at once, and needs no second set of maps; 1
     /// changes from one frame to the next, to maps that were drawn one by one in the frames before. Default: 0.
     pub fade: u32,
 }
 
-impl Default for SunSteps {
+impl Default for LightSteps {
     fn default() -> Self {
-        Self { texels: LightStepSettings::default().texels, fade: 0 }
+        Self { texels: light_steps::LightSteps::default().texels, fade: 0 }
     }
 }
 
-impl SunSteps {
+impl LightSteps {
     /// These steps with another [`texels`](Self::texels).
     #[must_use]
     pub const fn with_texels(mut self, texels: f32) -> Self {
@@ -46,8 +46,8 @@ impl SunSteps {
     }
 
     /// The settings of the core, for maps of a width in texels. Fades are counted here.
-    fn core(self, side: u32) -> LightStepSettings {
-        LightStepSettings::default().with_texels(self.texels).with_extent(side as f32)
+    fn core(self, side: u32) -> light_steps::LightSteps {
+        light_steps::LightSteps::default().with_texels(self.texels).with_extent(side as f32)
     }
 
     /// Refuses numbers that make no sense.
@@ -63,9 +63,9 @@ const JUMP: f32 = 0.035;
 /// The state of a sun that steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepState {
-    pub(super) settings: SunSteps,
+    pub(super) settings: LightSteps,
     /// The newest direction that is held.
-    light: LightSteps,
+    light: LightStepState,
     stage: Stage,
     /// Whether the next frame takes what is new at once.
     is_cut: bool,
@@ -97,12 +97,12 @@ pub(super) struct Step {
 }
 
 impl StepState {
-    pub(super) fn new(settings: SunSteps) -> Self {
-        Self { settings, light: LightSteps::default(), stage: Stage::Held, is_cut: false }
+    pub(super) fn new(settings: LightSteps) -> Self {
+        Self { settings, light: LightStepState::default(), stage: Stage::Held, is_cut: false }
     }
 
     /// The state with other settings.
-    pub(super) fn with_settings(self, settings: SunSteps) -> Self {
+    pub(super) fn with_settings(self, settings: LightSteps) -> Self {
         Self { settings, ..self }
     }
 
@@ -139,7 +139,7 @@ impl StepState {
     /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the direction; the state stays as it was.
     pub(super) fn next(&mut self, direction: Vec3, side: u32, kept: usize) -> Result<Step, FitError> {
         let core = self.settings.core(side);
-        let new = LightSteps::default().update(direction, &core, 0.0)?.direction;
+        let new = LightStepState::default().update(direction, &core, 0.0)?.direction;
         let is_jump = self.light.held.is_some_and(|held| (held - new).length() > JUMP);
         let fades = self.settings.fade > 0 && !is_jump && !self.is_cut;
         if is_jump {
@@ -161,7 +161,7 @@ impl StepState {
     }
 
     /// The next frame of a sun that is held. `fading`: if the next step fades, the number of maps that are drawn one by one.
-    fn hold(&mut self, new: Vec3, core: &LightStepSettings, fading: Option<usize>) -> Result<Step, FitError> {
+    fn hold(&mut self, new: Vec3, core: &light_steps::LightSteps, fading: Option<usize>) -> Result<Step, FitError> {
         let held = self.light.held;
         let next = self.light.update(new, core, 0.0)?.direction;
         Ok(match held.filter(|held| *held != next).zip(fading) {

@@ -6,7 +6,8 @@ use shadowfit::{FittedMap, FittedMaps, Scratch, ShadowFitter, Technique};
 
 use super::{SunFrame, SunShadows, SunShadowsError};
 use crate::demand::DemandPass;
-use crate::{Casters, MapUpdate, MapView};
+use crate::{Casters, MapView};
+use shadowfit::cache::UpdatedRect;
 
 /// # For tools and debug assertions
 impl SunShadows {
@@ -33,7 +34,7 @@ impl SunShadows {
 
     /// The rectangles that are drawn in this frame, in the order of the passes, for tools that show them. Some may
     /// overlap. While the sun [steps](Self::set_light_steps), those of both sets of maps.
-    pub fn updates(&self) -> Vec<MapUpdate> {
+    pub fn updates(&self) -> Vec<UpdatedRect> {
         let mut updates = self.maps.updates();
         updates.extend(self.other.iter().flat_map(|other| other.maps.updates()));
         updates
@@ -41,8 +42,8 @@ impl SunShadows {
 
     /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
     /// static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
-    pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
-        self.maps.holders(casters)
+    pub fn maps_by_caster(&self, casters: &Casters<'_>) -> Vec<u8> {
+        self.maps.maps_by_caster(casters)
     }
 
     /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. Returns
@@ -105,7 +106,7 @@ fn prove_set(
         // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
         let FittedMap { projection, bias, .. } = read.relative_to(frame.origin);
         let map = FittedMap { projection, bias, ..*fitted };
-        let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.projection))
+        let query = CoverageQuery::of_map(&map, technique, technique.filter_radius_in(&map.projection))
             .with_normal_offset(map.bias.normal_offset);
         let found = prove(&frame.input(), &map.projection, &query, &mut Scratch::new(&mut storage))?;
         if !found.is_proven() {

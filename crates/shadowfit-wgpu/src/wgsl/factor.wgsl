@@ -20,13 +20,13 @@ fn shadowfit_turned(position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
     // A product and not a branch: software rasterisers build a shader for each draw where uniforms alone decide one.
     let lit = f32(1u - shadowfit_receiver.is_off);
     let faded = shadowfit_faded(position);
-    let choice = shadowfit_choose(position);
-    if choice.first < 0 {
+    let selection = shadowfit_select(position);
+    if selection.first < 0 {
         return lit;
     }
-    var factor = shadowfit_read(choice.first, position, normal, turn);
-    if choice.second >= 0 {
-        factor = mix(shadowfit_read(choice.second, position, normal, turn), factor, choice.weight);
+    var factor = shadowfit_read(selection.first, position, normal, turn);
+    if selection.second >= 0 {
+        factor = mix(shadowfit_read(selection.second, position, normal, turn), factor, selection.weight);
     }
     return lit * mix(factor, 1.0, faded);
 }
@@ -43,10 +43,10 @@ fn shadowfit_factor_at(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>)
 
 // Index of the map that weighs more in shadowfit_factor at a point: -1 outside every map.
 fn shadowfit_map_index(position: vec3<f32>) -> i32 {
-    let choice = shadowfit_choose(position);
-    if choice.first < 0 {
+    let selection = shadowfit_select(position);
+    if selection.first < 0 {
         return -1;
     }
-    let is_second = choice.second >= 0 && choice.weight < 0.5;
-    return i32(shadowfit_entry(select(choice.first, choice.second, is_second)).layer);
+    let is_second = selection.second >= 0 && selection.weight < 0.5;
+    return i32(shadowfit_entry(select(selection.first, selection.second, is_second)).layer);
 }

@@ -1,7 +1,7 @@
 //! The look-up that goes over from one set of maps to another: the same text, of which a part stands twice.
 
 /// Functions that read what a set of maps has for itself.
-const OF_SET: [&str; 6] = ["project", "free", "choose", "entry", "read", "turned"];
+const OF_SET: [&str; 6] = ["project", "free", "select", "entry", "read", "turned"];
 
 /// The look-up into two sets of maps, from that into one.
 pub(super) fn two_sets(look_up: &str) -> String {

@@ -23,7 +23,7 @@ fn shadowfit_casters(projected: shadowfit_Projected, turn: f32) -> vec2<f32> {
     for (var tap = 0u; tap < SHADOWFIT_SEARCH; tap += 1u) {
         let texel = clamp(floor(projected.texel + projected.disc * radius * direction), vec2<f32>(0.0), last);
         let offset = texel + vec2<f32>(0.5) - projected.texel;
-        let stored = shadowfit_stored_texel(texel + projected.wrap, projected);
+        let stored = shadowfit_stored_texel(texel + projected.texel_offset, projected);
         let distance = projected.surface - stored;
         // The penumbra of a caster at this distance, or the least disc.
         let cone = max(distance * projected.penumbra, vec2<f32>(shadowfit_receiver.least_disc));

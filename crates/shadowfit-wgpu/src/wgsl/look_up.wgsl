@@ -1,18 +1,18 @@
 
 // A coordinate of a look-up as it is stored, and by how much the plane's depth differs there from the point's. at: in the
 // map, in texels, not nearer to the border of what is in use than half a texel: the sampler would read beyond it.
-fn shadowfit_along(at: f32, point: f32, gradient: f32, size: f32, wrap: f32, unit: f32) -> vec2<f32> {
+fn shadowfit_along(at: f32, point: f32, gradient: f32, size: f32, texel_offset: f32, unit: f32) -> vec2<f32> {
     let inside = clamp(at, 0.5, size - 0.5);
-    let shifted = inside + wrap;
+    let shifted = inside + texel_offset;
     return vec2<f32>(select(shifted, shifted - size, shifted >= size) * unit, gradient * (inside - point));
 }
 
 fn shadowfit_along_u(at: f32, p: shadowfit_Projected) -> vec2<f32> {
-    return shadowfit_along(at, p.texel.x, p.gradient.x, p.size.x, p.wrap.x, p.unit.x);
+    return shadowfit_along(at, p.texel.x, p.gradient.x, p.size.x, p.texel_offset.x, p.unit.x);
 }
 
 fn shadowfit_along_v(at: f32, p: shadowfit_Projected) -> vec2<f32> {
-    return shadowfit_along(at, p.texel.y, p.gradient.y, p.size.y, p.wrap.y, p.unit.y);
+    return shadowfit_along(at, p.texel.y, p.gradient.y, p.size.y, p.texel_offset.y, p.unit.y);
 }
 
 // One look-up where a column and a row meet.

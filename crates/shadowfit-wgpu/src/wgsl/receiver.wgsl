@@ -19,7 +19,7 @@ struct shadowfit_Map {
     layer: u32,
     padding_0: u32,
     // Where the map's first texel lies in its layer, in texels: the rest follows it, and wraps around.
-    wrap: vec2<f32>,
+    texel_offset: vec2<f32>,
     // Radii along u and v of the disc that look-ups are spread over, in texels: the greatest where it follows the caster.
     disc: vec2<f32>,
     // Radii of the penumbra in texels, for each unit of stored depth from the caster to its shadow.
@@ -67,7 +67,7 @@ struct shadowfit_Projected {
     // As in the map.
     layer: u32,
     size: vec2<f32>,
-    wrap: vec2<f32>,
+    texel_offset: vec2<f32>,
     disc: vec2<f32>,
     penumbra: vec2<f32>,
     // What a texel is in the coordinates of look-ups.
@@ -90,7 +90,7 @@ fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>)
     let rise = map.receiver_plane * (abs(gradient.x) + abs(gradient.y));
     let depth = uv.z + map.constant_depth + map.slope_depth * sine / cosine + rise;
     return shadowfit_Projected(
-        uv.xy * map.size, uv.z, depth, gradient, map.layer, map.size, map.wrap, map.disc, map.penumbra, shadowfit_unit());
+        uv.xy * map.size, uv.z, depth, gradient, map.layer, map.size, map.texel_offset, map.disc, map.penumbra, shadowfit_unit());
 }
 
 // View depth of a point: its distance from the eye along the view's forward direction, in metres. Negative behind it.
@@ -109,7 +109,7 @@ fn shadowfit_free(entry: u32, map: shadowfit_Map, position: vec3<f32>) -> f32 {
 }
 
 // Which maps a point reads, by their places in the order; -1 for none.
-struct shadowfit_Choice {
+struct shadowfit_Selection {
     first: i32,
     // What the first one is blended into.
     second: i32,

@@ -6,7 +6,7 @@ mod readers;
 #[path = "cached_maps/town.rs"]
 mod town;
 
-use shadowfit::OneMap;
+use shadowfit::SingleMap;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FitKind, MapFormat, Shape, Stabilise};
 use shadowfit::{DepthConvention, Technique};
@@ -312,7 +312,7 @@ fn gpu_maps_that_wait_are_read_as_they_were_drawn_and_have_their_turn() {
 
 #[test]
 fn gpu_a_single_map_is_kept_by_the_same_rules() {
-    let one = OneMap { shape: Shape::new(FitKind::Sphere), stabilise: Stabilise::Snap { max_waste: 1.8 } };
+    let one = SingleMap { shape: Shape::new(FitKind::Sphere), stabilise: Stabilise::Snap { max_oversize: 1.8 } };
     let technique = technique("windows-4").with_maps(one);
     run(&technique, 40, |frame, town, walk, _| {
         walk.go_on(frame);

@@ -3,8 +3,9 @@
 
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
+use shadowfit::selection::DepthRange;
 use shadowfit::{Aabb, CasterVolume, FitInput, FitState, PerspectiveCamera, Scratch, Technique};
-use shadowfit_wgpu::{CullingPiece, WgslOptions, culling_wgsl};
+use shadowfit_wgpu::{CullingRegion, WgslOptions, culling_wgsl};
 
 use super::engine::{Engine, dispatch};
 
@@ -40,12 +41,12 @@ struct Shape {
     var spheres = 0u;
     var boxes = 0u;
     var upright = 0u;
-    for (var piece = 0u; piece < arrayLength(&shadowfit_pieces); piece += 1u) {
-        let bit = 1u << piece;
+    for (var region = 0u; region < arrayLength(&shadowfit_regions); region += 1u) {
+        let bit = 1u << region;
         let moves = (id.x & 1u) == 1u;
-        upright |= select(0u, bit, shadowfit_draws_box(piece, moves, shape.low.xyz, shape.high.xyz));
-        spheres |= select(0u, bit, shadowfit_draws_sphere(piece, moves, shape.centre.xyz, shape.half_axes[0].w));
-        boxes |= select(0u, bit, shadowfit_draws_oriented_box(piece, moves, shape.centre.xyz, axes));
+        upright |= select(0u, bit, shadowfit_draws_box(region, moves, shape.low.xyz, shape.high.xyz));
+        spheres |= select(0u, bit, shadowfit_draws_sphere(region, moves, shape.centre.xyz, shape.half_axes[0].w));
+        boxes |= select(0u, bit, shadowfit_draws_oriented_box(region, moves, shape.centre.xyz, axes));
     }
     masks[id.x] = vec4<u32>(upright, spheres, boxes, 0u);
 }
@@ -70,8 +71,12 @@ fn volumes() -> Vec<CasterVolume> {
     let settings = Technique::preset("calm-4").expect("a preset").with_count(2);
     let input = FitInput::new(&views, Vec3::new(0.4, -0.8, 0.3));
     let maps = FitState::new().fit(&input, &settings, &mut Scratch::new(&mut storage)).expect("a good view");
-    let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
-    let swept = maps.iter().map(|map| CasterVolume::swept(&map.projection, &sweep(map.covered_near, map.far)));
+    let swept = maps.iter().map(|map| {
+        let DepthRange { far, covered_from, .. } = map.depths.expect("a range");
+        let [near, far] =
+            [covered_from.expect("a cascade"), far.unwrap_or(f64::from(f32::MAX))].map(|depth| depth as f32);
+        CasterVolume::swept(&map.projection, &Sweep { near, far, ..Sweep::new(&views) })
+    });
     let swept = swept.map(|volume| volume.expect("a good sweep"));
     swept.chain(maps.iter().map(|map| map.projection.caster_volume())).collect()
 }
@@ -101,16 +106,16 @@ fn shapes() -> Vec<Shape> {
 }
 
 /// The three masks of each shape, as the shader finds them.
-fn ask(gpu: &Engine, pieces: &[CullingPiece], shapes: &[Shape]) -> Vec<[u32; 4]> {
+fn ask(gpu: &Engine, regions: &[CullingRegion], shapes: &[Shape]) -> Vec<[u32; 4]> {
     let pipeline = gpu.compute_pipeline(None, &(culling_wgsl(&WgslOptions::group(0)) + SHADER), "main");
-    let pieces = gpu.buffer(pieces, wgpu::BufferUsages::STORAGE);
+    let regions = gpu.buffer(regions, wgpu::BufferUsages::STORAGE);
     let masks = gpu.buffer(&vec![[0_u32; 4]; shapes.len()], wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let shapes_buffer = gpu.buffer(shapes, wgpu::BufferUsages::STORAGE);
     let group = |index: u32, buffers: &[&wgpu::Buffer]| {
         let resources = buffers.iter().map(|buffer| buffer.as_entire_binding());
         gpu.group(&pipeline.get_bind_group_layout(index), resources)
     };
-    let groups = [group(0, &[&pieces]), group(1, &[&shapes_buffer, &masks])];
+    let groups = [group(0, &[&regions]), group(1, &[&shapes_buffer, &masks])];
     let mut encoder = gpu.encoder();
     dispatch(&mut encoder, &pipeline, &groups.each_ref(), [(shapes.len() / 64) as u32, 1]);
     gpu.values(encoder, &masks)
@@ -135,8 +140,8 @@ fn resized(shape: &Shape, by: f32) -> (Aabb, Sphere, OrientedBox) {
 fn wgsl_culls_what_rust_culls() {
     let (gpu, volumes, shapes) = (Engine::shared(), volumes(), shapes());
     let origin = EYE + DVec3::new(4.0, -2.0, -2.0);
-    let pieces: Vec<_> = volumes.iter().map(|volume| CullingPiece::new([*volume], origin)).collect();
-    let answers = ask(&gpu, &pieces, &shapes);
+    let regions: Vec<_> = volumes.iter().map(|volume| CullingRegion::new([*volume], origin)).collect();
+    let answers = ask(&gpu, &regions, &shapes);
     let masks_of = |by: f32| {
         let mut masks = [vec![0_u8; SHAPES], vec![0_u8; SHAPES], vec![0_u8; SHAPES]];
         let resized: Vec<_> = shapes.iter().map(|shape| resized(shape, by)).collect();
@@ -164,28 +169,28 @@ fn wgsl_culls_what_rust_culls() {
 #[test]
 fn a_piece_takes_what_stands_still_or_moves_and_all_of_its_volumes() {
     let (gpu, volumes, shapes) = (Engine::shared(), volumes(), shapes());
-    let both = CullingPiece::new([volumes[1], volumes[2]], EYE);
+    let both = CullingRegion::new([volumes[1], volumes[2]], EYE);
     let planes = [volumes[1].count, volumes[1].count + volumes[2].count];
     assert_eq!([both.fixed_planes, both.moving_planes], [planes[1]; 2]);
-    let single = |volume: usize| CullingPiece::new([volumes[volume]], EYE);
-    let pieces = [
+    let single = |volume: usize| CullingRegion::new([volumes[volume]], EYE);
+    let regions = [
         single(1),
         single(2),
         both,
-        CullingPiece { moving: 0, ..both },
-        CullingPiece { fixed: 0, ..both },
-        CullingPiece { fixed_planes: planes[0], ..both },
+        CullingRegion { moving: 0, ..both },
+        CullingRegion { fixed: 0, ..both },
+        CullingRegion { fixed_planes: planes[0], ..both },
     ];
     let mut found = [0; 6];
-    for (number, masks) in ask(&gpu, &pieces, &shapes).iter().enumerate() {
+    for (number, masks) in ask(&gpu, &regions, &shapes).iter().enumerate() {
         for mask in &masks[..3] {
-            let is_in = |piece: u32| mask >> piece & 1 == 1;
+            let is_in = |region: u32| mask >> region & 1 == 1;
             let moves = number % 2 == 1;
             assert_eq!(is_in(2), is_in(0) && is_in(1));
             assert_eq!([is_in(3), is_in(4)], [is_in(2) && !moves, is_in(2) && moves]);
             assert_eq!(is_in(5), if moves { is_in(2) } else { is_in(0) });
-            for (piece, count) in (0..).zip(&mut found) {
-                *count += u32::from(is_in(piece));
+            for (region, count) in (0..).zip(&mut found) {
+                *count += u32::from(is_in(region));
             }
         }
     }

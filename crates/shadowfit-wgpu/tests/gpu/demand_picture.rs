@@ -1,6 +1,6 @@
 //! Depth buffers of a few planes and boxes, and the compute pass over them.
 
-use shadowfit::Seen;
+use shadowfit::VisibleDemand;
 use shadowfit::glam::{Mat4, Vec3, Vec4};
 use shadowfit_wgpu::demand::{DemandPass, DemandView, Depths};
 
@@ -68,7 +68,7 @@ pub(super) fn demand_pass(gpu: &Engine, samples: u32) -> DemandPass {
 }
 
 /// Runs the pass over a texture, and waits for it.
-pub(super) fn seen(gpu: &Engine, view: &DemandView, depth: &wgpu::TextureView) -> Seen {
+pub(super) fn seen(gpu: &Engine, view: &DemandView, depth: &wgpu::TextureView) -> VisibleDemand {
     let mut pass = demand_pass(gpu, depth.texture().sample_count());
     record(gpu, &mut pass, view, depth);
     pass.wait().expect("the device answers").expect("a picture was recorded")
@@ -81,8 +81,8 @@ pub(super) fn record(gpu: &Engine, pass: &mut DemandPass, view: &DemandView, dep
     gpu.submit(encoder);
 }
 
-impl From<&Seen> for Counts {
-    fn from(seen: &Seen) -> Self {
+impl From<&VisibleDemand> for Counts {
+    fn from(seen: &VisibleDemand) -> Self {
         Self { cells: seen.demand().counts.to_vec(), bins: seen.histogram().bins.to_vec() }
     }
 }

@@ -29,8 +29,8 @@ fn read(fade: [f32; 2]) -> Vec<(f32, f32, i32)> {
     let depths: Vec<f32> = (0..99_u16).map(|step| (f32::from(step) + 1.0) * 0.1).collect();
     let point = |depth: &f32| Point { position: [0.0, 0.0, -depth], normal: [0.0, 1.0, 0.0] };
     let points: Vec<Point> = depths.iter().map(point).collect();
-    let (answers, choices) = (harness.ask(0, &points), harness.choices(&points));
-    let read = answers.iter().zip(&choices).map(|(answer, choice)| (answer.factor, choice.map));
+    let (answers, selections) = (harness.ask(0, &points), harness.selections(&points));
+    let read = answers.iter().zip(&selections).map(|(answer, selection)| (answer.factor, selection.map));
     depths.into_iter().zip(read).map(|(depth, (factor, map))| (depth, factor, map)).collect()
 }
 

@@ -7,9 +7,10 @@ mod engine;
 #[path = "../../../../examples/gpu_casters/town.rs"]
 mod town;
 
+use shadowfit::cache::PassKind;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Boxes, PerspectiveCamera, Technique};
-use shadowfit_wgpu::{Casters, Culling, PassContent, SunFrame, SunShadows};
+use shadowfit_wgpu::{Casters, Culling, SunFrame, SunShadows};
 
 use crate::differences::Compared;
 use crate::engine::Engine;
@@ -93,23 +94,23 @@ impl Pair {
         }
         for pass in self.by_shader.passes() {
             let of_content = match pass.content() {
-                PassContent::All => &mut found.all,
-                PassContent::Static => &mut found.fixed,
-                PassContent::Moving => &mut found.moving,
+                PassKind::All => &mut found.all,
+                PassKind::Static => &mut found.fixed,
+                PassKind::Moving => &mut found.moving,
             };
             *of_content += 1;
             found.cleared += usize::from(pass.is_cleared() && frame > 0);
         }
-        found.wrapped += usize::from(self.by_shader.maps().iter().any(|map| map.wrap.max_element() > 0));
+        found.wrapped += usize::from(self.by_shader.maps().iter().any(|map| map.texel_offset.max_element() > 0));
     }
 
     /// Returns the number of casters that were drawn.
     fn draw_by_shader(&self) -> usize {
         let mut encoder = self.gpu.encoder();
         let draws = self.casters.cull(&mut encoder, &self.by_shader);
-        self.by_shader.render(&mut encoder, 0, |pass, piece| {
-            let draws = draws.as_ref().expect("a frame with pieces");
-            self.casters.draw(pass, piece, draws);
+        self.by_shader.render(&mut encoder, 0, |pass, region| {
+            let draws = draws.as_ref().expect("a frame with regions");
+            self.casters.draw(pass, region, draws);
         });
         let Some(draws) = draws else {
             self.gpu.submit(encoder);
@@ -123,11 +124,11 @@ impl Pair {
     fn draw_by_lists(&self) -> usize {
         let mut drawn = 0;
         let mut encoder = self.gpu.encoder();
-        self.by_lists.render(&mut encoder, 0, |pass, piece| {
-            let numbers = self.gpu.buffer(piece.casters, wgpu::BufferUsages::VERTEX);
+        self.by_lists.render(&mut encoder, 0, |pass, region| {
+            let numbers = self.gpu.buffer(region.casters, wgpu::BufferUsages::VERTEX);
             self.casters.bind(pass, numbers.slice(..));
-            pass.draw_indexed(0..36, 0, 0..piece.casters.len() as u32);
-            drawn += piece.casters.len();
+            pass.draw_indexed(0..36, 0, 0..region.casters.len() as u32);
+            drawn += region.casters.len();
         });
         self.gpu.submit(encoder);
         drawn

@@ -2,6 +2,7 @@
 //! given points.
 
 use shadowfit::glam::{DVec3, Vec2, Vec3};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::BiasSettings;
 use shadowfit::{Bias, FittedMap, LightProjection};
 use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, stored_wgsl};
@@ -25,7 +26,7 @@ pub(super) struct Answer {
 
 /// Which map the WGSL reads at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Choice {
+pub(super) struct Selection {
     /// `shadowfit_map_index`.
     pub(super) map: i32,
     /// `shadowfit_view_depth`, in metres.
@@ -52,8 +53,8 @@ fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
 }
 ";
 
-/// The WGSL of [`Harness::choices`].
-const CHOICE: &str = "
+/// The WGSL of [`Harness::selections`].
+const SELECTION: &str = "
 fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
     let map = f32(shadowfit_map_index(position));
     return Answer(vec4<f32>(map, shadowfit_view_depth(position), 0.0, 0.0), vec4<f32>(0.0));
@@ -85,7 +86,8 @@ impl<'a> Harness<'a> {
         casters: &[Vec<Vec3>],
     ) -> Self {
         let map = |fit: &LightProjection| {
-            FittedMap::new(*fit, Bias::from_texels(bias, descriptor.format, fit)).ending_at(f32::MAX)
+            FittedMap::new(*fit, Bias::from_texels(bias, descriptor.format, fit))
+                .with_depths(DepthRange::new(0.0, None))
         };
         let maps: Vec<FittedMap> = fits.iter().map(map).collect();
         Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, casters)
@@ -145,9 +147,9 @@ impl<'a> Harness<'a> {
     }
 
     /// Asks the WGSL which map it reads at points, at most [`ROW`]² of them.
-    pub(super) fn choices(&self, points: &[Point]) -> Vec<Choice> {
-        let choice = |values: &Values| Choice { map: values.one[0] as i32, view_depth: values.one[1] };
-        self.draw(CHOICE, points).iter().map(choice).collect()
+    pub(super) fn selections(&self, points: &[Point]) -> Vec<Selection> {
+        let selection = |values: &Values| Selection { map: values.one[0] as i32, view_depth: values.one[1] };
+        self.draw(SELECTION, points).iter().map(selection).collect()
     }
 
     fn draw(&self, answer: &str, points: &[Point]) -> Vec<Values> {

@@ -8,15 +8,15 @@ use shadowfit_testing::layout;
 use shadowfit_testing::layout::{assert_same, reflected};
 use shadowfit_testing::wgsl::parse;
 use shadowfit_wgpu::demand::{DemandUniform, demand_wgsl};
-use shadowfit_wgpu::resolve::{ResolveUniform, UnknownUniform, resolve_wgsl};
+use shadowfit_wgpu::exact_edges::{EdgeUniform, UnknownUniform, edges_wgsl};
+use shadowfit_wgpu::uniforms::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};
 use shadowfit_wgpu::{
-    CasterUniform, CullingPiece, FadingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor,
-    WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl,
+    CullingRegion, MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl,
 };
 
 /// Boxes around unknown casters that a picture may have.
 pub(super) const MAX_UNKNOWN: usize =
-    (size_of::<ResolveUniform>() - offset_of!(ResolveUniform, unknown)) / size_of::<UnknownUniform>();
+    (size_of::<EdgeUniform>() - offset_of!(EdgeUniform, unknown)) / size_of::<UnknownUniform>();
 
 /// Parses the look-up of a map.
 fn receiver(map: &ShadowMapDescriptor) -> Module {
@@ -53,7 +53,7 @@ fn what_the_look_up_reads_has_the_size_and_offsets_of_its_wgsl_structs() {
                 blend_near,
                 layer,
                 padding_0,
-                wrap,
+                texel_offset,
                 disc,
                 penumbra,
                 padding_1,
@@ -98,7 +98,7 @@ fn the_pieces_that_casters_are_culled_by_lie_as_in_wgsl() {
     assert_same(
         &culling,
         &layout!(
-            "shadowfit_CullingPiece" = CullingPiece {
+            "shadowfit_CullingRegion" = CullingRegion {
                 planes,
                 viewport,
                 scissor,
@@ -113,9 +113,9 @@ fn the_pieces_that_casters_are_culled_by_lie_as_in_wgsl() {
             }
         ),
     );
-    let (_, global) = culling.global_variables.iter().next().expect("the pieces");
-    let TypeInner::Array { stride, .. } = culling.types[global.ty].inner else { panic!("pieces are an array") };
-    assert_eq!(stride as usize, size_of::<CullingPiece>());
+    let (_, global) = culling.global_variables.iter().next().expect("the regions");
+    let TypeInner::Array { stride, .. } = culling.types[global.ty].inner else { panic!("regions are an array") };
+    assert_eq!(stride as usize, size_of::<CullingRegion>());
 }
 
 #[test]
@@ -145,9 +145,9 @@ fn the_uniform_of_the_demand_pass_lies_as_in_wgsl() {
 }
 
 #[test]
-fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
-    let resolve = layout!(
-        "Resolve" = ResolveUniform {
+fn the_uniforms_of_the_edge_passes_lie_as_in_wgsl() {
+    let edges = layout!(
+        "Edges" = EdgeUniform {
             world_from_pixel,
             eye,
             far_depth,
@@ -168,11 +168,11 @@ fn the_uniforms_of_the_resolve_passes_lie_as_in_wgsl() {
     );
     let unknown = layout!("Unknown" = UnknownUniform { least, maps, most, is_filtered });
     let [classify, _, select, surfaces, trace, blocks, _] =
-        resolve_wgsl(&ShadowMapDescriptor::default(), 4, None).map(|source| parse("resolve", &source));
+        edges_wgsl(&ShadowMapDescriptor::default(), 4, None).map(|source| parse("edges", &source));
     for module in [classify, surfaces, trace] {
-        assert_same(&module, &resolve);
+        assert_same(&module, &edges);
         assert_same(&module, &unknown);
-        let (members, _) = reflected(&module, "Resolve");
+        let (members, _) = reflected(&module, "Edges");
         let [.., points, unknown] = members else { panic!("two arrays at the end") };
         let counts = [points, unknown].map(|member| match module.types[member.ty].inner {
             TypeInner::Array { size: naga::ArraySize::Constant(count), .. } => count.get() as usize,

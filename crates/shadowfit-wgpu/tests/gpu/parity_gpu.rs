@@ -1,4 +1,4 @@
-//! The look-up's formulas in WGSL against their twins in Rust: projection, biases, choice of the map, comparison.
+//! The look-up's formulas in WGSL against their twins in Rust: projection, biases, selection of the map, comparison.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat, MapSelection, Softness};

@@ -3,7 +3,7 @@
 use naga::valid::Capabilities;
 use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit_testing::wgsl::assert_valid;
-use shadowfit_wgpu::resolve::resolved_wgsl;
+use shadowfit_wgpu::exact_edges::exact_factor_wgsl;
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};
 
 fn named(group: u32, prefix: &str) -> WgslOptions<'_> {
@@ -42,16 +42,16 @@ fn two_suns_of_different_kinds_fit_into_one_shader_and_into_one_bind_group() {
 }
 
 #[test]
-fn what_was_resolved_is_read_by_a_prefix_and_at_a_binding_of_the_engine_s() {
+fn exact_factors_is_read_by_a_prefix_and_at_a_binding_of_the_engine_s() {
     let map = ShadowMapDescriptor { first_binding: 4, ..ShadowMapDescriptor::default() };
-    let text = receiver_wgsl(&map, &named(1, "sun")) + &resolved_wgsl(&named(2, "sun"), 7);
+    let text = receiver_wgsl(&map, &named(1, "sun")) + &exact_factor_wgsl(&named(2, "sun"), 7);
     assert!(!text.to_lowercase().contains("shadowfit_"), "a name has kept its prefix");
     let shaded = "
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
-    return vec4<f32>(sun_resolved(pixel.xyz, pixel.xyz, pixel.xy));
+    return vec4<f32>(sun_exact_factor(pixel.xyz, pixel.xyz, pixel.xy));
 }";
     assert_valid("shaded", &(text.clone() + shaded), Capabilities::empty());
-    let module = assert_valid("resolved", &text, Capabilities::empty());
+    let module = assert_valid("exact factors", &text, Capabilities::empty());
     let bindings = module.global_variables.iter().filter_map(|(_, global)| global.binding);
     let mut bindings: Vec<(u32, u32)> = bindings.map(|binding| (binding.group, binding.binding)).collect();
     bindings.sort_unstable();

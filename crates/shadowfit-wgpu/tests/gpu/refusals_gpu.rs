@@ -2,6 +2,7 @@
 //! the index and the value. And that a refusal changes nothing.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::{Edges, MapSelection, SplitScheme};
 use shadowfit::{
     Bias, FitError, FitInput, FitState, FittedMap, LightProjection, PerspectiveCamera, Scratch, Technique,
@@ -20,11 +21,12 @@ fn fit() -> LightProjection {
 
 /// Maps that end at the given view depths.
 fn maps(far: &[f32]) -> Vec<FittedMap> {
-    far.iter().map(|far| FittedMap::new(fit(), Bias::default()).ending_at(*far)).collect()
+    let depths = |far: &f32| DepthRange::new(0.0, Some((*far).into()));
+    far.iter().map(|far| FittedMap::new(fit(), Bias::default()).with_depths(depths(far))).collect()
 }
 
-fn descriptor(choice: MapSelection) -> ShadowMapDescriptor {
-    ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], selection: choice, ..ShadowMapDescriptor::default() }
+fn descriptor(selection: MapSelection) -> ShadowMapDescriptor {
+    ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], selection, ..ShadowMapDescriptor::default() }
 }
 
 /// Prepares a shadow map with maps for a view along `forward`.
@@ -154,9 +156,9 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
     for ends in [[10.0, 50.0], [-5.0, 10.0], [40.0, 50.0], [-5.0, -1.0]] {
         let mut manual = [100.0; 7];
         manual[..2].copy_from_slice(&ends);
-        let slices = Technique::preset("calm-4").expect("a preset");
+        let cascades = Technique::preset("calm-4").expect("a preset");
         let mut settings =
-            slices.with_maps(slices.maps.as_slices().with_count(LAYERS).with_splits(SplitScheme::Manual(manual)));
+            cascades.with_maps(cascades.maps.as_cascades().with_count(LAYERS).with_splits(SplitScheme::Manual(manual)));
         settings.fit.resolution = UVec2::splat(256);
         let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));

@@ -9,7 +9,7 @@ use shadowfit_wgpu::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
 use super::engine::Engine;
 use super::engine::points::Point;
-use super::harness::{Choice, Harness};
+use super::harness::{Harness, Selection};
 
 const NO_BIAS: BiasSettings =
     BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
@@ -45,7 +45,12 @@ fn lid(fit: &LightProjection) -> Vec<Vec3> {
 
 /// A map without biases that ends at a view depth.
 fn map_fit(fit: &LightProjection, far: f32) -> FittedMap {
-    FittedMap::new(*fit, Bias::default()).ending_at(far)
+    FittedMap::new(*fit, Bias::default()).with_depths(DepthRange::new(0.0, Some(far.into())))
+}
+
+/// The view depth at which a map ends, in metres.
+fn end(map: &FittedMap) -> f64 {
+    map.depths.and_then(|range| range.far).expect("it ends")
 }
 
 fn descriptor(maps: &[FittedMap]) -> ShadowMapDescriptor {
@@ -162,7 +167,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
         })
         .collect();
     let mut met = [0; 4];
-    for (position, Choice { map, view_depth }) in positions.iter().zip(harness.choices(&ground(&positions))) {
+    for (position, Selection { map, view_depth }) in positions.iter().zip(harness.selections(&ground(&positions))) {
         let world = position.as_dvec3() + origin;
         let expected_depth = (world - eye).dot(forward.as_dvec3());
         // A dozen roundings of 2⁻²⁴ of coordinates below 100 m.
@@ -172,13 +177,13 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
         );
         let is_at_a_border = maps.iter().any(|map| {
             let near = |point: DVec3| map.projection.covers(point);
-            (expected_depth - f64::from(map.far)).abs() < 1e-3
+            (expected_depth - end(map)).abs() < 1e-3
                 || [DVec3::X, DVec3::Y, DVec3::Z]
                     .iter()
                     .any(|axis| near(world + axis * 1e-3) != near(world - axis * 1e-3))
         });
         if !is_at_a_border {
-            let reads = |map: &FittedMap| expected_depth < f64::from(map.far) && map.projection.covers(world);
+            let reads = |map: &FittedMap| expected_depth < end(map) && map.projection.covers(world);
             let expected = maps.iter().position(reads).map_or(-1, |index| i32::try_from(index).expect("one of eight"));
             assert_eq!(map, expected, "{position} at view depth {expected_depth}");
             met[(expected + 1) as usize] += 1;
@@ -221,7 +226,7 @@ fn assert_read(
             harness.ask(0, &ground(points)).iter().map(|answer| answer.factor).collect()
         })
         .collect();
-    let choices = Harness::with_maps(&gpu, descriptor, &view, maps, &lids(maps, 0)).choices(&ground(points));
+    let selections = Harness::with_maps(&gpu, descriptor, &view, maps, &lids(maps, 0)).selections(&ground(points));
     let (mut alone, mut blended) = (vec![0; maps.len()], 0);
     for (index, point) in points.iter().enumerate() {
         let point = point.as_dvec3();
@@ -234,7 +239,7 @@ fn assert_read(
             continue;
         }
         let main = expected.map_or(-1, |read| i32::try_from(read.main()).expect("one of eight"));
-        assert_eq!(choices[index].map, main, "{point}: {expected:?}");
+        assert_eq!(selections[index].map, main, "{point}: {expected:?}");
         let weight = |map: usize| match expected {
             Some(MapRead { blend: Some(blend), .. }) if blend.map == map => blend.weight,
             Some(read) if read.map == map => 1.0 - read.blend.map_or(0.0, |blend| blend.weight),
@@ -258,12 +263,12 @@ fn assert_read(
 fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_toward_its_border() {
     let maps = crossing_maps();
     for (filter, blend) in [(FilterKind::Pcf5x5, 8.0), (FilterKind::Point, 0.0), (FilterKind::Pcf3x3, 64.0)] {
-        let choice = MapSelection::Coverage { blend };
-        let descriptor = ShadowMapDescriptor { filter, selection: choice, ..descriptor(&maps) };
-        let order = MapOrder::new(choice, maps.iter().map(|map| &map.projection));
+        let selection = MapSelection::Coverage { blend };
+        let descriptor = ShadowMapDescriptor { filter, selection, ..descriptor(&maps) };
+        let order = MapOrder::new(selection, maps.iter().map(|map| &map.projection));
         let read = |point: DVec3| {
-            let free = |map: usize| maps[map].projection.free_texels(point);
-            by_coverage(order.iter(), filter.reach().into(), blend.into(), free)
+            let free = |map: usize| maps[map].projection.texels_to_edge(point);
+            by_coverage(order.iter(), filter.filter_radius().into(), blend.into(), free)
         };
         let (alone, blended) = assert_read(&descriptor, &maps, &scattered(), read);
         println!("{filter:?}, blend {blend}: {alone:?} alone, {blended} blended");
@@ -278,16 +283,11 @@ fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_towar
 #[test]
 fn by_view_depth_points_are_blended_where_maps_overlap() {
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
-    let ranges = [(f32::MAX, 4.0), (2.5, 15.0), (9.0, f32::MAX)];
-    let maps: Vec<FittedMap> = fits
-        .iter()
-        .zip(ranges)
-        .map(|(fit, (covered_near, far))| FittedMap { covered_near, ..map_fit(fit, far) })
-        .collect();
-    let read = |point: DVec3| {
-        let ranges = ranges.map(|(blend_near, far)| DepthRange { blend_near: blend_near.into(), far: far.into() });
-        by_view_depth(ranges, -point.z, |map| maps[map].projection.covers(point))
-    };
+    let ranges = [(None, Some(4.0)), (Some(2.5), Some(15.0)), (Some(9.0), None)];
+    let ranges = ranges.map(|(covered_from, far)| Some(DepthRange { covered_from, ..DepthRange::new(0.0, far) }));
+    let map = |(fit, depths)| FittedMap { depths, ..FittedMap::new(fit, Bias::default()) };
+    let maps: Vec<FittedMap> = fits.into_iter().zip(ranges).map(map).collect();
+    let read = |point: DVec3| by_view_depth(ranges, -point.z, |map| maps[map].projection.covers(point));
     let (alone, blended) = assert_read(&descriptor(&maps), &maps, &scattered(), read);
     assert!(alone.iter().all(|count| *count > 30) && blended > 100, "{alone:?}, {blended} blended");
 }

@@ -13,15 +13,14 @@ use shadowfit_testing::package_folder;
 use shadowfit_testing::pairs::{all_pairs, full_product};
 use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 use shadowfit_wgpu::demand::demand_wgsl;
-use shadowfit_wgpu::resolve::{NormalEncoding, resolve_wgsl, resolved_wgsl};
+use shadowfit_wgpu::exact_edges::{NormalEncoding, edges_wgsl, exact_factor_wgsl};
 use shadowfit_wgpu::{
-    CullingPiece, MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl,
-    stored_wgsl,
+    CullingRegion, MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl,
 };
 
 use super::layout::MAX_UNKNOWN;
 
-/// Values of all options by which the WGSL differs. Samples per pixel and normals change the resolve passes alone.
+/// Values of all options by which the WGSL differs. Samples per pixel and normals change the edge passes alone.
 const DEPTHS: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
 const SELECTIONS: [MapSelection; 2] = [MapSelection::Coverage { blend: 8.0 }, MapSelection::ViewDepth { overlap: 0.0 }];
 const CROSS_FADES: [bool; 2] = [false, true];
@@ -31,7 +30,7 @@ const NORMALS: [Option<NormalEncoding>; 3] = [None, Some(NormalEncoding::Signed)
 /// The number of values of each option, in the order that [`Kind::new`] reads.
 const COUNTS: [usize; 7] = [MapFormat::ALL.len(), FilterKind::ALL.len(), 2, 2, 2, SAMPLES.len(), NORMALS.len()];
 
-/// Maps, and a picture that is resolved with them.
+/// Maps, and a picture whose edges are traced with them.
 #[derive(Clone, Copy, Debug)]
 struct Kind {
     map: ShadowMapDescriptor,
@@ -80,36 +79,39 @@ static RECEIVERS: LazyLock<Vec<Shader>> = LazyLock::new(|| {
 
 /// Every module that the crate gives to a device, and the pieces for engines.
 static MODULES: LazyLock<Vec<Shader>> = LazyLock::new(|| {
-    let [_, count, select, ..] = resolve_wgsl(&ShadowMapDescriptor::default(), 1, None);
+    let [_, count, select, ..] = edges_wgsl(&ShadowMapDescriptor::default(), 1, None);
     let mut all = vec![
         Shader::new("culling piece", culling_wgsl(&WgslOptions::group(0))),
         Shader::new("need, compute", demand_wgsl(1)),
         Shader::new("need of four samples, compute", demand_wgsl(4)),
         Shader::new("refit, compute", refit_wgsl()),
         Shader::new("rays piece", rays_wgsl(&RayWgslOptions::group(0))),
-        Shader::new("resolve count, compute", count),
-        Shader::new("resolve select, compute", select),
+        Shader::new("edges count, compute", count),
+        Shader::new("edges select, compute", select),
     ];
     for format in MapFormat::ALL {
         let map = ShadowMapDescriptor { format, ..Default::default() };
         all.push(Shader::new(format!("caster piece, {format:?}"), caster_wgsl(&map, &WgslOptions::group(0))));
     }
     for depth in DEPTHS {
-        let [clear, mend] = layers_wgsl(&ShadowMapDescriptor { depth, ..Default::default() });
+        let far = if depth == DepthConvention::Reversed { "0.0" } else { "1.0" };
+        let clear = include_str!("../../src/maps/clear.wgsl").replace("FAR", far);
+        let caster = caster_wgsl(&ShadowMapDescriptor { depth, ..Default::default() }, &WgslOptions::group(1));
+        let mend = [&caster, &clear, include_str!("../../src/maps/mend.wgsl")].concat();
         let named = [(format!("clear, {depth:?}"), clear), (format!("mend, {depth:?}"), mend)];
         all.extend(named.map(|(name, text)| Shader::new(name, text)));
     }
     for (number, kind) in (0..).zip(KINDS.iter()) {
-        all.extend(resolve_modules(number, kind));
+        all.extend(edge_modules(number, kind));
         all.extend(receiver_pieces(kind));
     }
     all
 });
 
-/// Returns the modules of the resolve passes, with another first binding for every kind.
-fn resolve_modules(number: u32, kind: &Kind) -> Vec<Shader> {
+/// Returns the modules of the edge passes, with another first binding for every kind.
+fn edge_modules(number: u32, kind: &Kind) -> Vec<Shader> {
     let map = ShadowMapDescriptor { first_binding: number % 3, ..kind.map };
-    let [classify, _, _, surfaces, trace, blocks, levels] = resolve_wgsl(&map, kind.samples, kind.normals);
+    let [classify, _, _, surfaces, trace, blocks, levels] = edges_wgsl(&map, kind.samples, kind.normals);
     let mut passes = vec![("classify", classify), ("trace", trace)];
     // These do not depend on the filter.
     if map.filter == FilterKind::default() {
@@ -117,7 +119,7 @@ fn resolve_modules(number: u32, kind: &Kind) -> Vec<Shader> {
     }
     passes
         .into_iter()
-        .map(|(pass, text)| Shader::new(format!("resolve {pass}, {}, compute", kind.name()), text))
+        .map(|(pass, text)| Shader::new(format!("edges {pass}, {}, compute", kind.name()), text))
         .collect()
 }
 
@@ -131,9 +133,9 @@ fn receiver_pieces(kind: &Kind) -> Vec<Shader> {
     let mut pieces: Vec<Shader> = [wgpu::Backend::Vulkan, wgpu::Backend::Gl]
         .map(|backend| piece(&format!("{backend:?} views"), &stored_wgsl(&kind.map, &options, backend)))
         .into();
-    // The function that reads resolved factors does not depend on the filter.
+    // The function that reads exact factors does not depend on the filter.
     if kind.map.filter == FilterKind::default() {
-        pieces.push(piece("resolved factors", &resolved_wgsl(&WgslOptions::group(2), 0)));
+        pieces.push(piece("exact factors", &exact_factor_wgsl(&WgslOptions::group(2), 0)));
     }
     pieces.push(piece("nothing else", ""));
     pieces
@@ -148,7 +150,7 @@ fn filled(text: &str) -> Vec<String> {
                 all.insert(
                     text.replace("group(GROUP)", &format!("group({group})"))
                         .replace("MAX_MAPS", &MAX_MAPS.to_string())
-                        .replace("MAX_PIECE_PLANES", &CullingPiece::MAX_PLANES.to_string())
+                        .replace("MAX_REGION_PLANES", &CullingRegion::MAX_PLANES.to_string())
                         .replace("NODES_ON_STACK", &shadowfit_rays::STACK.to_string())
                         .replace("MAX_POINTS", &Edges::MAX_SAMPLES.to_string())
                         .replace("MAX_UNKNOWN", &MAX_UNKNOWN.to_string())
@@ -200,7 +202,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "shadowfit_Receiver",
         "shadowfit_Fading",
         "Demand",
-        "Resolve",
+        "Edges",
         "Budget",
         "Layer",
         // Those of this crate are compared in `layout.rs`, and shadowfit-rays compares this one.
@@ -328,10 +330,10 @@ fn the_look_up_reads_the_bind_group_that_it_is_told_to() {
 #[ignore = "the full product of descriptors: cargo xtask test --all"]
 fn every_product_of_options_is_valid_and_can_be_translated_for_webgl2() {
     for (number, kind) in (0..).zip(full_product(&COUNTS).iter().map(|row| Kind::new(row))) {
-        for shader in resolve_modules(number, &kind) {
+        for shader in edge_modules(number, &kind) {
             shader.assert_valid(Capabilities::empty());
         }
-        // Samples and normals are options of the resolve passes alone.
+        // Samples and normals are options of the edge passes alone.
         if kind.samples == 1 && kind.normals.is_none() {
             for shader in receiver_pieces(&kind) {
                 shader.assert_valid(Capabilities::empty());

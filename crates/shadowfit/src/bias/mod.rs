@@ -8,7 +8,7 @@
 //!
 //! Let n be the plane's unit normal on the light's side, x and y the map's axes in the world (the
 //! first two rows of `light_from_world`), tx and ty the texel's sides and E the filter's
-//! [`Reach`]. A point lifted by h along n has no texel centre in reach whose stored plane depth is
+//! [`FilterRadius`]. A point lifted by h along n has no texel centre in reach whose stored plane depth is
 //! nearer to the light exactly when
 //!
 //! ```text
@@ -26,15 +26,15 @@
 
 mod classic;
 pub(crate) mod depth_storage;
-mod reach;
+mod filter_radius;
 
 use core::f32::consts::SQRT_2;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
-pub use self::reach::Reach;
-pub(crate) use self::reach::{HARDWARE_SNAP, rounding};
+pub use self::filter_radius::FilterRadius;
+pub(crate) use self::filter_radius::{HARDWARE_SNAP, rounding};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::projection::LightProjection;
@@ -137,7 +137,7 @@ impl Bias {
     }
 
     /// The least bias that clears self-shadowing on a plane whose slope has any azimuth: a normal
-    /// offset for the filter's reach [on hardware](Reach::on_hardware), at the worst azimuth `E ·
+    /// offset for the filter's reach [on hardware](FilterRadius::on_hardware), at the worst azimuth `E ·
     /// √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader takes
     /// from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to √2 less.
     /// Geometric normals are assumed.
@@ -147,7 +147,7 @@ impl Bias {
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, or for a fit that was
     /// filled by hand with what is not finite.
     pub fn automatic(
-        reach: impl Into<Reach>,
+        reach: impl Into<FilterRadius>,
         storage: impl Into<DepthStorage>,
         fit: &LightProjection,
     ) -> Result<Self, FitError> {
@@ -173,7 +173,7 @@ impl Bias {
     ///
     /// As [`Self::automatic`].
     pub fn automatic_receiver_plane(
-        reach: impl Into<Reach>,
+        reach: impl Into<FilterRadius>,
         storage: impl Into<DepthStorage>,
         fit: &LightProjection,
     ) -> Result<Self, FitError> {
@@ -234,7 +234,7 @@ impl BiasSettings {
     /// (coarse ones) of the wrong pixels that the [normal offset](Self::automatic_normal_offset)
     /// leaves.
     pub fn automatic(filter: FilterKind) -> Self {
-        let one_comparison = if filter == FilterKind::Point { Reach::POINT } else { Reach::HARDWARE_2X2 };
+        let one_comparison = if filter == FilterKind::Point { FilterRadius::POINT } else { FilterRadius::HARDWARE_2X2 };
         Self {
             constant: SPARE_TEXELS,
             slope: 0.0,
@@ -251,7 +251,7 @@ impl BiasSettings {
         Self {
             constant: SPARE_TEXELS,
             slope: 0.0,
-            normal_offset: automatic_normal_offset(softness.reach(filter)),
+            normal_offset: automatic_normal_offset(softness.filter_radius(filter)),
             receiver_plane: 0.0,
             depth_steps: 1.0,
         }
@@ -263,13 +263,13 @@ impl BiasSettings {
 /// `√((rx tx n·x)² + (ry ty n·y)²)`, as the [module](self) derives it.
 ///
 /// `normal` is the geometric one, in world axes, of any length and on either side. It is the least
-/// offset in exact arithmetic; [`Reach::on_hardware`] and [`depth_precision`] add what a GPU needs.
+/// offset in exact arithmetic; [`FilterRadius::on_hardware`] and [`depth_precision`] add what a GPU needs.
 ///
 /// # Errors
 ///
 /// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the reach and [`FitError::BadDirection`]
 /// for the normal.
-pub fn normal_offset(fit: &LightProjection, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
+pub fn normal_offset(fit: &LightProjection, reach: impl Into<FilterRadius>, normal: Vec3) -> Result<f32, FitError> {
     let reach = reach.into().checked()?;
     let plane = Slope::of(fit, normal)?;
     checks::rounded("the plane's normal offset", reach.rise(plane.u, plane.v))
@@ -282,7 +282,11 @@ pub fn normal_offset(fit: &LightProjection, reach: impl Into<Reach>, normal: Vec
 /// # Errors
 ///
 /// As [`normal_offset`].
-pub fn receiver_plane_depth(fit: &LightProjection, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
+pub fn receiver_plane_depth(
+    fit: &LightProjection,
+    reach: impl Into<FilterRadius>,
+    normal: Vec3,
+) -> Result<f32, FitError> {
     let reach = reach.into().checked()?;
     let [u, v] = Slope::of(fit, normal)?.gradient(fit);
     checks::rounded("the plane's depth bias", reach.rise(u, v))
@@ -291,7 +295,7 @@ pub fn receiver_plane_depth(fit: &LightProjection, reach: impl Into<Reach>, norm
 /// Change of the stored depth of a plane over one texel along u and along v (∂z/∂u, ∂z/∂v), with
 /// cos θ held at [`MIN_COSINE`]. A filter that adds `gradient · (tap - centre)`, in texels, to the
 /// depth that each tap is compared with compares with the plane's own depth there, so the bias only
-/// has to cover the reach of one look-up, [`Reach::POINT`] or [`Reach::HARDWARE_2X2`].
+/// has to cover the reach of one look-up, [`FilterRadius::POINT`] or [`FilterRadius::HARDWARE_2X2`].
 ///
 /// # Errors
 ///

@@ -4,7 +4,8 @@ use alloc::vec::Vec;
 
 use super::identity::{Caster, pair, shift};
 use super::world_box::{WorldBox, rounding};
-use crate::{BoxRevision, BoxTree, Boxes};
+use crate::static_boxes::BoxRevision;
+use crate::{Boxes, StaticBoxes};
 
 /// Everything that casts shadows, by number: the index of its box.
 ///
@@ -65,8 +66,8 @@ pub(super) struct KnownCasters {
     keys: Vec<u64>,
     /// Those that move, by number.
     pub(super) moving: Vec<u32>,
-    /// The state of the standing ones.
-    standing: Option<BoxRevision>,
+    /// The state of the static ones.
+    static_boxes: Option<BoxRevision>,
 }
 
 impl KnownCasters {
@@ -76,11 +77,11 @@ impl KnownCasters {
     }
 
     /// Takes the casters of a frame, and finds where static ones changed.
-    pub(super) fn update(&mut self, casters: &Casters<'_>, standing: Option<&BoxTree>) -> Changes {
+    pub(super) fn update(&mut self, casters: &Casters<'_>, static_boxes: Option<&StaticBoxes>) -> Changes {
         let mut changes = self.update_listed(casters);
-        let before = core::mem::replace(&mut self.standing, standing.map(BoxTree::revision));
-        let Some((before, tree)) = before.zip(standing) else {
-            changes.is_all = before.is_some() || standing.is_some();
+        let before = core::mem::replace(&mut self.static_boxes, static_boxes.map(StaticBoxes::revision));
+        let Some((before, tree)) = before.zip(static_boxes) else {
+            changes.is_all = before.is_some() || static_boxes.is_some();
             return changes;
         };
         let Some(changed) = tree.changes_since(before) else { return Changes { is_all: true, ..changes } };

@@ -8,13 +8,13 @@ use glam::{DVec3, Vec3};
 
 use super::casters::{Casters, KnownCasters};
 use super::order::sort;
-use super::plan::{FramePlan, Layer, PassContent, PassPlan, PiecePlan};
+use super::plan::{FramePlan, Layer, PassKind, PassPlan, RegionPlan};
 use super::settings::{CacheSettings, Culling};
 use super::state::{Layers, MapState, Transition};
 use super::world_box::WorldBox;
 use crate::culling::cull;
 use crate::scroll::{StoredRect, TexelRect};
-use crate::{Aabb, BoxTree, Boxes, CasterVolume, FittedMap};
+use crate::{Aabb, Boxes, CasterVolume, FittedMap, StaticBoxes};
 
 /// Volumes that casters are tested against at once: the bits of a mask.
 const VOLUMES: usize = 8;
@@ -35,8 +35,8 @@ pub(super) struct Buffers {
     redrawn: Vec<StoredRect>,
     /// A bit for each volume that a listed caster lies in.
     masks: Vec<u8>,
-    /// Standing casters in some volumes, with the same bits.
-    standing_masks: Vec<(u32, u8)>,
+    /// Static casters in some volumes, with the same bits.
+    static_masks: Vec<(u32, u8)>,
     /// Sort keys of casters.
     order: Vec<u64>,
     /// The boxes of moving casters, and their bits: first the view, then each part of the map.
@@ -54,7 +54,7 @@ pub(super) struct Drawing<'a> {
     pub(super) fitted: &'a FittedMap,
     pub(super) known: &'a KnownCasters,
     pub(super) casters: &'a Casters<'a>,
-    pub(super) standing: Option<&'a BoxTree>,
+    pub(super) static_boxes: Option<&'a StaticBoxes>,
     /// Unit direction toward the light.
     pub(super) to_light: Vec3,
     /// Origin of positions in the shaders, in world space, in metres.
@@ -97,7 +97,7 @@ impl Drawing<'_> {
         self.cull(&[volume]);
         let (known, casters) = (self.known, self.casters);
         let casts = |number: u32| known.is_fixed(number) || casters.moves(number as usize);
-        self.whole_map(PassContent::All, &volume, |number, mask| mask != 0 && casts(number));
+        self.whole_map(PassKind::All, &volume, |number, mask| mask != 0 && casts(number));
     }
 
     /// Adds one pass with all static casters over the map, and the moving casters in view. Returns the number of static
@@ -114,45 +114,50 @@ impl Drawing<'_> {
         let moves = |number: u32| casters.moves(number as usize);
         let is_over =
             |number: u32, mask: u8| (mask & 1 == 1 && known.is_fixed(number)) || (mask == 0b11 && moves(number));
-        let content = if moving.is_empty() { PassContent::Static } else { PassContent::All };
+        let content = if moving.is_empty() { PassKind::Static } else { PassKind::All };
         self.whole_map(content, &over, is_over) - moving.len()
     }
 
     /// Adds a pass that clears the shown layer. It draws the casters of the list that `is_over` chooses by number and
-    /// mask, and the casters of the tree in a volume. Returns their number.
-    fn whole_map(&mut self, content: PassContent, standing: &CasterVolume, is_over: impl Fn(u32, u8) -> bool) -> usize {
-        let (piece, first) = (self.plan.pieces.len(), self.plan.casters.len());
+    /// mask, and the static boxes in a volume. Returns their number.
+    fn whole_map(
+        &mut self,
+        content: PassKind,
+        static_boxes: &CasterVolume,
+        is_over: impl Fn(u32, u8) -> bool,
+    ) -> usize {
+        let (region, first) = (self.plan.regions.len(), self.plan.casters.len());
         let over = (0..).zip(&self.buffers.masks).filter(|(number, mask)| is_over(*number, **mask));
         self.plan.casters.extend(over.map(|(number, _)| number));
-        self.find_standing(core::slice::from_ref(standing));
-        self.piece(StoredRect { window: self.whole(), stored: self.whole() }, first, 0);
-        self.pass(content, Layer::Shown, true, piece);
-        let piece = &self.plan.pieces[piece];
-        piece.casters.len() + piece.standing.len()
+        self.find_static_boxes(core::slice::from_ref(static_boxes));
+        self.region(StoredRect { window: self.whole(), stored: self.whole() }, first, 0);
+        self.pass(content, Layer::Shown, true, region);
+        let region = &self.plan.regions[region];
+        region.casters.len() + region.static_boxes.len()
     }
 
-    /// Adds a piece with the planned casters from this one on, and the casters of the tree that have a bit in their
+    /// Adds a region with the planned casters from this one on, and the static boxes that have a bit in their
     /// masks.
-    fn piece(&mut self, part: StoredRect, first: usize, bit: usize) {
+    fn region(&mut self, part: StoredRect, first: usize, bit: usize) {
         let (plan, order) = (&mut *self.plan, &mut self.buffers.order);
-        let standing = plan.standing.len();
+        let static_boxes = plan.static_boxes.len();
         let is_over = |(_, mask): &&(u32, u8)| mask >> bit & 1 == 1;
-        plan.standing.extend(self.buffers.standing_masks.iter().filter(is_over).map(|(number, _)| *number));
+        plan.static_boxes.extend(self.buffers.static_masks.iter().filter(is_over).map(|(number, _)| *number));
         let boxes = self.casters.boxes.boxes;
         sort(&mut plan.casters[first..], self.to_light, order, |number| boxes[number as usize]);
-        if let Some(tree) = self.standing {
+        if let Some(tree) = self.static_boxes {
             let aabb = |number| tree.get(number).unwrap_or(Aabb::EMPTY);
-            sort(&mut plan.standing[standing..], self.to_light, order, aabb);
+            sort(&mut plan.static_boxes[static_boxes..], self.to_light, order, aabb);
         }
-        let (casters, standing) = (first..plan.casters.len(), standing..plan.standing.len());
-        plan.pieces.push(PiecePlan { part, casters, standing });
+        let (casters, static_boxes) = (first..plan.casters.len(), static_boxes..plan.static_boxes.len());
+        plan.regions.push(RegionPlan { part, casters, static_boxes });
     }
 
-    /// Finds the standing casters in some volumes.
-    fn find_standing(&mut self, volumes: &[CasterVolume]) {
-        let masks = &mut self.buffers.standing_masks;
+    /// Finds the static casters in some volumes.
+    fn find_static_boxes(&mut self, volumes: &[CasterVolume]) {
+        let masks = &mut self.buffers.static_masks;
         masks.clear();
-        if let Some(tree) = self.standing {
+        if let Some(tree) = self.static_boxes {
             tree.cull(volumes, |number, mask| masks.push((number, mask)));
         }
     }
@@ -161,12 +166,12 @@ impl Drawing<'_> {
     /// casters that the shown layer holds. Returns whether static casters have a separate layer from now on, which the
     /// first caster that moves over the map causes.
     fn update(&mut self, moving: &mut Vec<WorldBox>, was_split: bool, rects: &[TexelRect]) -> bool {
-        let FittedMap { projection, wrap, .. } = self.fitted;
+        let FittedMap { projection, texel_offset, .. } = self.fitted;
         let (mut whole, mut redrawn) = (take(&mut self.buffers.whole), take(&mut self.buffers.redrawn));
         whole.clear();
-        whole.extend(self.whole().stored(*wrap, projection.resolution));
+        whole.extend(self.whole().stored(*texel_offset, projection.resolution));
         redrawn.clear();
-        redrawn.extend(rects.iter().flat_map(|rect| rect.stored(*wrap, projection.resolution)));
+        redrawn.extend(rects.iter().flat_map(|rect| rect.stored(*texel_offset, projection.resolution)));
         let first_box = self.plan.boxes.len();
         let (origin, texel) = (self.origin, projection.texel_size.max_element());
         let moved = moving.iter().filter(|moved| !moved.is_empty());
@@ -192,16 +197,16 @@ impl Drawing<'_> {
         if parts.is_empty() {
             return;
         }
-        let (piece, first_rect) = (self.plan.pieces.len(), self.plan.rects.len());
+        let (region, first_rect) = (self.plan.regions.len(), self.plan.rects.len());
         self.cull_static(parts);
         if !clears {
             self.plan.rects.extend(parts.iter().map(|part| part.stored));
         }
         let last_rect = self.plan.rects.len();
-        self.pass(PassContent::Static, layer, clears, piece).cleared = first_rect..last_rect;
+        self.pass(PassKind::Static, layer, clears, region).cleared = first_rect..last_rect;
     }
 
-    /// Adds a piece for each part, with the static casters over it.
+    /// Adds a region for each part, with the static casters over it.
     fn cull_static(&mut self, parts: &[StoredRect]) {
         // First the casters over any of the parts.
         let around = parts.iter().map(|part| part.window).reduce(TexelRect::union).unwrap_or_default();
@@ -218,13 +223,13 @@ impl Drawing<'_> {
             let (volumes, count) = self.volumes(parts.iter().map(|part| self.volume(part.window)));
             let Buffers { masks, near_boxes, .. } = &mut *self.buffers;
             cull(&volumes[..count], origin, near_boxes, masks);
-            self.find_standing(&volumes[..count]);
+            self.find_static_boxes(&volumes[..count]);
             for (bit, part) in parts.iter().enumerate() {
                 let first = self.plan.casters.len();
                 let Buffers { masks, near, .. } = &*self.buffers;
                 let is_over = |(_, mask): &(&u32, &u8)| **mask >> bit & 1 == 1;
                 self.plan.casters.extend(near.iter().zip(masks).filter(is_over).map(|(number, _)| *number));
-                self.piece(*part, first, bit);
+                self.region(*part, first, bit);
             }
         }
     }
@@ -254,12 +259,13 @@ impl Drawing<'_> {
     /// do. `redrawn` are the parts in which this frame draws static casters, `boxes` the places where an earlier frame
     /// drew moving ones.
     fn moving_casters(&mut self, parts: &[StoredRect], redrawn: &[StoredRect], boxes: Range<usize>) {
-        let (piece, first_rect, first_view) = (self.plan.pieces.len(), self.plan.rects.len(), self.plan.views.len());
+        let (region, first_rect, first_viewport) =
+            (self.plan.regions.len(), self.plan.rects.len(), self.plan.viewports.len());
         self.plan.rects.extend(redrawn.iter().map(|part| part.stored));
         if !boxes.is_empty() {
-            self.plan.views.extend(parts.iter().map(StoredRect::viewport));
+            self.plan.viewports.extend(parts.iter().map(StoredRect::viewport));
         }
-        self.buffers.standing_masks.clear();
+        self.buffers.static_masks.clear();
         for (index, part) in parts.iter().enumerate() {
             let first = self.plan.casters.len();
             let bits = 1 | 2 << index;
@@ -267,17 +273,17 @@ impl Drawing<'_> {
             let numbers = masked.filter(|(_, mask)| **mask & bits == bits);
             self.plan.casters.extend(numbers.map(|(number, _)| *number));
             if self.plan.casters.len() > first {
-                self.piece(*part, first, 0);
+                self.region(*part, first, 0);
             }
         }
-        if redrawn.is_empty() && boxes.is_empty() && self.plan.pieces.len() == piece {
+        if redrawn.is_empty() && boxes.is_empty() && self.plan.regions.len() == region {
             return;
         }
-        let (last_rect, last_view) = (self.plan.rects.len(), self.plan.views.len());
-        let pass = self.pass(PassContent::Moving, Layer::Shown, false, piece);
+        let (last_rect, last_viewport) = (self.plan.rects.len(), self.plan.viewports.len());
+        let pass = self.pass(PassKind::Moving, Layer::Shown, false, region);
         pass.mended = first_rect..last_rect;
         pass.mended_boxes = boxes;
-        pass.views = first_view..last_view;
+        pass.viewports = first_viewport..last_viewport;
     }
 
     /// Tests all casters of the list against some volumes.
@@ -311,8 +317,8 @@ impl Drawing<'_> {
         CasterVolume::of_part(&self.fitted.projection, self.settings.caster_policy(), part)
     }
 
-    /// Adds a pass with the pieces from this one on.
-    fn pass(&mut self, content: PassContent, layer: Layer, clears: bool, first_piece: usize) -> &mut PassPlan {
+    /// Adds a pass with the regions from this one on.
+    fn pass(&mut self, content: PassKind, layer: Layer, clears: bool, first_region: usize) -> &mut PassPlan {
         let pass = PassPlan {
             map: self.index,
             content,
@@ -321,8 +327,8 @@ impl Drawing<'_> {
             cleared: 0..0,
             mended: 0..0,
             mended_boxes: 0..0,
-            views: 0..0,
-            pieces: first_piece..self.plan.pieces.len(),
+            viewports: 0..0,
+            regions: first_region..self.plan.regions.len(),
             size: self.fitted.projection.resolution,
         };
         self.plan.passes.push(pass);

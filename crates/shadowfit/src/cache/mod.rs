@@ -8,7 +8,7 @@
 //!   a frame's casters ──▶ 1. take: which of them changed, and where in each map?
 //!   and its maps      ──▶ 2. choose: kept, moved, or new? Which of them now?
 //!                     ──▶ 3. find the casters of each map that can shadow something in view
-//!                     ──▶ 4. plan: passes, pieces, casters
+//!                     ──▶ 4. plan: passes, regions, casters
 //! ```
 //!
 //! Static casters are drawn into rectangles that came into a map, or in which one of them changed. Where casters move,
@@ -41,12 +41,12 @@
 //!         let plan = cache.update(&CacheFrame::new(maps, Casters::fixed(boxes), &views, sun))?;
 //!         for pass in &plan.passes {
 //!             println!("map {}: {:?} into {:?}, cleared: {}", pass.map, pass.content, pass.layer, pass.clears);
-//!             for piece in plan.pieces_of(pass) {
-//!                 let (viewport, scissor) = (piece.part.viewport(), piece.part.stored);
-//!                 println!("  draw {:?} at {viewport} within {scissor:?}", plan.casters_of(piece));
+//!             for region in plan.regions_of(pass) {
+//!                 let (viewport, scissor) = (region.part.viewport(), region.part.stored);
+//!                 println!("  draw {:?} at {viewport} within {scissor:?}", plan.casters_of(region));
 //!             }
 //!         }
-//!         // Shaders read `plan.maps`: matrices, biases, and `wrap`, the texel offset.
+//!         // Shaders read `plan.maps`: matrices, biases and `texel_offset`.
 //!         # assert!(frame == 0 || plan.passes.iter().all(|pass| !pass.clears));
 //!     }
 //!     Ok(())
@@ -58,8 +58,8 @@
 //! 1. Bind the pass's [layer](PassPlan::layer) of its map as depth attachment; clear it if [`PassPlan::clears`].
 //! 2. Write the far depth into the [cleared](PassPlan::cleared) rectangles.
 //! 3. Copy the [mended](PassPlan::mended) rectangles from the static casters' layer, and all texels that the
-//!    [mended boxes](PassPlan::mended_boxes) cover, in each of their [views](PassPlan::views).
-//! 4. For each [piece](FramePlan::pieces_of) set viewport and scissor rectangle, and draw its casters with the map's
+//!    [mended boxes](PassPlan::mended_boxes) cover, in each of their [viewports](PassPlan::viewports).
+//! 4. For each [region](FramePlan::regions_of) set viewport and scissor rectangle, and draw its casters with the map's
 //!    [`clip_from_world`](crate::LightProjection::clip_from_world).
 //!
 //! # Memory
@@ -100,12 +100,12 @@ use state::{MapState, Transition};
 
 pub use casters::Casters;
 pub use frame::{CacheFrame, InView};
-pub use plan::{FramePlan, Layer, MapReuse, PassContent, PassPlan, PiecePlan};
+pub use plan::{FramePlan, Layer, MapReuse, PassKind, PassPlan, RegionPlan};
 pub use schedule::UpdateSchedule;
 pub use settings::{CacheSettings, Culling};
 pub use stale::StaleMap;
-pub use updates::{MapUpdate, UpdateContent};
-pub use volumes::PieceVolumes;
+pub use updates::{UpdateKind, UpdatedRect};
+pub use volumes::RegionVolumes;
 pub use world_box::WorldBox;
 
 /// Remembers the content of the layers of one light's maps, and plans the passes of each frame.
@@ -216,7 +216,7 @@ impl MapCache {
 
     /// Finds where static casters changed.
     fn take(&mut self, frame: &CacheFrame<'_>) {
-        let changes = self.known.update(&frame.casters, frame.standing);
+        let changes = self.known.update(&frame.casters, frame.static_boxes);
         self.change(&changes);
         self.has_static_layers |= self.settings.caching && !self.known.moving.is_empty();
         self.frame += 1;
@@ -284,7 +284,7 @@ impl MapCache {
                 fitted: &fitted,
                 known: &self.known,
                 casters: &frame.casters,
-                standing: frame.standing,
+                static_boxes: frame.static_boxes,
                 to_light: -frame.direction.normalize_or_zero(),
                 origin: frame.reader.origin,
                 in_view: if depends_on_view { in_view } else { CasterVolume::everywhere(fitted.projection.origin) },

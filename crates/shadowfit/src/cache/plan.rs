@@ -20,7 +20,7 @@ pub enum Layer {
 
 /// Content of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PassContent {
+pub enum PassKind {
     /// All casters, static and moving: no part of the map is kept.
     All,
     /// All static casters, where the map is new or one of them changed.
@@ -46,13 +46,13 @@ pub enum MapReuse {
     OneFrame,
 }
 
-/// A pass into one layer of a map. It begins by clearing and restoring parts of the layer, and then draws its pieces.
+/// A pass into one layer of a map. It begins by clearing and restoring parts of the layer, and then draws its regions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassPlan {
     /// Index of the map.
     pub map: usize,
     /// Casters that the pass draws.
-    pub content: PassContent,
+    pub content: PassKind,
     /// Layer that it draws into.
     pub layer: Layer,
     /// Whether the whole layer is cleared first. Otherwise it is loaded.
@@ -65,31 +65,31 @@ pub struct PassPlan {
     /// [`FramePlan::boxes`].
     pub mended_boxes: Range<usize>,
     /// Left top corners of the viewports with which the boxes are drawn, each of [`Self::size`]: a range of
-    /// [`FramePlan::views`].
-    pub views: Range<usize>,
-    /// Parts to draw: a range of [`FramePlan::pieces`].
-    pub pieces: Range<usize>,
+    /// [`FramePlan::viewports`].
+    pub viewports: Range<usize>,
+    /// Parts to draw: a range of [`FramePlan::regions`].
+    pub regions: Range<usize>,
     /// Width and height of the map, in texels.
     pub size: UVec2,
 }
 
 /// A part of a pass that is drawn with one viewport and one scissor rectangle.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PiecePlan {
+pub struct RegionPlan {
     /// The part as shaders look it up, and as it is stored: [`StoredRect::stored`] is the scissor rectangle, and
     /// [`StoredRect::viewport`] the left top corner of the viewport, whose size is [`PassPlan::size`].
     pub part: StoredRect,
     /// Casters of the list to draw, nearest to the light first: a range of [`FramePlan::casters`].
     pub casters: Range<usize>,
-    /// Casters of the tree to draw, nearest to the light first: a range of [`FramePlan::standing`].
-    pub standing: Range<usize>,
+    /// Static boxes to draw, nearest to the light first: a range of [`FramePlan::static_boxes`].
+    pub static_boxes: Range<usize>,
 }
 
 /// The passes of a frame, and the maps to read after them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramePlan {
-    /// The maps to read, with the texel offset [`FittedMap::wrap`]. A map that waits is the one that was drawn last,
-    /// relative to the origin of the fitted one.
+    /// The maps to read, with their [texel offsets](FittedMap::texel_offset). A map that waits is the one that was drawn
+    /// last, relative to the origin of the fitted one.
     pub maps: Vec<FittedMap>,
     /// The reuse of each map.
     pub reuse: Vec<MapReuse>,
@@ -98,18 +98,18 @@ pub struct FramePlan {
     pub in_view: Vec<CasterVolume>,
     /// The passes, in the order in which they must be drawn. A map that is kept unchanged has none.
     pub passes: Vec<PassPlan>,
-    /// Parts of the passes.
-    pub pieces: Vec<PiecePlan>,
-    /// Casters of the parts, by their indices in the list.
+    /// Regions of the passes.
+    pub regions: Vec<RegionPlan>,
+    /// Casters of the regions, by their indices in the list.
     pub casters: Vec<u32>,
-    /// Casters of the parts, by their numbers in the tree.
-    pub standing: Vec<u32>,
+    /// Static boxes of the regions, by their numbers.
+    pub static_boxes: Vec<u32>,
     /// Rectangles of layers, as they are stored.
     pub rects: Vec<TexelRect>,
     /// Boxes around casters that moved, in metres relative to [`Self::origin`].
     pub boxes: Vec<Aabb>,
     /// Left top corners of viewports, in texels; they may lie outside the layer.
-    pub views: Vec<IVec2>,
+    pub viewports: Vec<IVec2>,
     /// World position that [`Self::boxes`] are relative to, in metres: the origin of the frame's
     /// [reader](super::CacheFrame::reader).
     pub origin: DVec3,
@@ -117,28 +117,28 @@ pub struct FramePlan {
 
 impl FramePlan {
     /// Returns the parts of a pass of this plan.
-    pub fn pieces_of(&self, pass: &PassPlan) -> &[PiecePlan] {
-        self.pieces.get(pass.pieces.clone()).unwrap_or_default()
+    pub fn regions_of(&self, pass: &PassPlan) -> &[RegionPlan] {
+        self.regions.get(pass.regions.clone()).unwrap_or_default()
     }
 
     /// Returns the casters of the list that a part of this plan draws.
-    pub fn casters_of(&self, piece: &PiecePlan) -> &[u32] {
-        self.casters.get(piece.casters.clone()).unwrap_or_default()
+    pub fn casters_of(&self, region: &RegionPlan) -> &[u32] {
+        self.casters.get(region.casters.clone()).unwrap_or_default()
     }
 
-    /// Returns the casters of the tree that a part of this plan draws.
-    pub fn standing_of(&self, piece: &PiecePlan) -> &[u32] {
-        self.standing.get(piece.standing.clone()).unwrap_or_default()
+    /// Returns the numbers of the static boxes that a region of this plan draws.
+    pub fn static_boxes_of(&self, region: &RegionPlan) -> &[u32] {
+        self.static_boxes.get(region.static_boxes.clone()).unwrap_or_default()
     }
 
     /// Removes all passes.
     pub(super) fn clear_passes(&mut self) {
         self.passes.clear();
-        self.pieces.clear();
+        self.regions.clear();
         self.casters.clear();
-        self.standing.clear();
+        self.static_boxes.clear();
         self.rects.clear();
         self.boxes.clear();
-        self.views.clear();
+        self.viewports.clear();
     }
 }

@@ -78,7 +78,7 @@ pub(super) enum Transition {
     Wait,
     /// Draws static casters into some rectangles, a range of the rectangles of all maps, and then moving casters:
     /// to [`Layers::Kept`] or [`Layers::Split`].
-    Update { wrap: UVec2, shift: IVec2, rects: Range<usize> },
+    Update { texel_offset: UVec2, shift: IVec2, rects: Range<usize> },
     /// Draws all static casters together with the moving ones: to [`Layers::Kept`].
     Renew,
     /// Draws the casters of this frame: to [`Layers::OneFrame`].
@@ -185,7 +185,7 @@ impl MapState {
         let is_same_grid = self.fitted.is_some_and(|before| !Scroll::between(&before, now).is_new);
         let update = self.update(now, settings, casters, rects);
         self.renewals = if is_same_grid && update.is_some() { 0 } else { self.renewals.saturating_add(1) };
-        if !settings.caching || now.anchor.is_none() || now.projection.is_empty || self.renewals > NEVER_KEPT {
+        if !settings.caching || now.grid_position.is_none() || now.projection.is_empty || self.renewals > NEVER_KEPT {
             return Transition::DrawOnce;
         }
         update.filter(|_| self.layers.is_kept()).unwrap_or(Transition::Renew)
@@ -213,19 +213,19 @@ impl MapState {
         let changed = changed.rects(&price).into_iter().map(|rect| moved(rect, scroll.shift, size));
         rects.extend(scroll.exposed().chain(changed).filter(|rect| !rect.is_empty()));
         let is_worth = price.is_worth(&rects[first..], whole(now));
-        let (wrap, rects) = (scroll.wrap(map.wrap, size), first..rects.len());
-        is_worth.then_some(Transition::Update { wrap, shift: scroll.shift, rects })
+        let (texel_offset, rects) = (scroll.texel_offset(map.texel_offset, size), first..rects.len());
+        is_worth.then_some(Transition::Update { texel_offset, shift: scroll.shift, rects })
     }
 
     /// Returns whether points may read the map as it was drawn, without losing a shadow. `serves_others`: whether another
     /// map holds the points outside it.
     pub(super) fn may_wait(&self, now: &FittedMap, serves_others: bool) -> bool {
         let (Layers::Kept(Drawn { map, .. }) | Layers::Split(Drawn { map, .. })) = &self.layers else { return false };
-        let Some((old, anchor)) = map.anchor.zip(now.anchor) else { return false };
-        let holds_depth = old.depth[0] <= anchor.depth[0] && old.depth[1] >= anchor.depth[1];
+        let Some((old, grid_position)) = map.grid_position.zip(now.grid_position) else { return false };
+        let holds_depth = old.depth[0] <= grid_position.depth[0] && old.depth[1] >= grid_position.depth[1];
         let is_same_light =
             map.projection.direction == now.projection.direction && map.projection.depth == now.projection.depth;
-        let is_in_place = old == anchor && Scroll::between(map, now).shift == IVec2::ZERO;
+        let is_in_place = old == grid_position && Scroll::between(map, now).shift == IVec2::ZERO;
         let is_empty = map.projection.is_empty && !now.projection.is_empty;
         is_same_light && holds_depth && !is_empty && (serves_others || is_in_place)
     }
@@ -245,8 +245,8 @@ impl MapState {
     pub(super) fn shown(&self, fitted: &FittedMap, transition: &Transition) -> FittedMap {
         match (self.layers.drawn(), transition) {
             (Some(drawn), Transition::Wait) => drawn.map.relative_to(fitted.projection.origin),
-            (_, Transition::Update { wrap, .. }) => FittedMap { wrap: *wrap, ..*fitted },
-            _ => FittedMap { wrap: UVec2::ZERO, ..*fitted },
+            (_, Transition::Update { texel_offset, .. }) => FittedMap { texel_offset: *texel_offset, ..*fitted },
+            _ => FittedMap { texel_offset: UVec2::ZERO, ..*fitted },
         }
     }
 }

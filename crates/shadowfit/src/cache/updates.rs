@@ -7,7 +7,7 @@ use glam::UVec2;
 
 use super::MapCache;
 use super::casters::Casters;
-use super::plan::{PassContent, PassPlan};
+use super::plan::{PassKind, PassPlan};
 use super::settings::Culling;
 use crate::culling::cull;
 use crate::scroll::TexelRect;
@@ -15,18 +15,18 @@ use crate::{CasterVolume, FittedMap};
 
 /// A rectangle of a map that is drawn in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MapUpdate {
+pub struct UpdatedRect {
     /// Number of the map.
     pub map: usize,
     /// The rectangle as it is looked up, wherever it is stored: the map's first texel is its left top one.
     pub rect: TexelRect,
     /// What is drawn there.
-    pub content: UpdateContent,
+    pub content: UpdateKind,
 }
 
 /// What is drawn into a rectangle of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UpdateContent {
+pub enum UpdateKind {
     /// All casters, static and moving, after a clear: no part of the map is kept.
     All,
     /// Static casters, after a clear: a strip that came into the map, or a place where one of them changed.
@@ -39,18 +39,18 @@ pub enum UpdateContent {
 
 impl MapCache {
     /// Returns the rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
-    pub fn updates(&self) -> Vec<MapUpdate> {
+    pub fn updates(&self) -> Vec<UpdatedRect> {
         let mut updates = Vec::new();
         for pass in &self.plan.passes {
             let Some(read) = self.plan.maps.get(pass.map) else { continue };
-            let update = |content| move |rect| MapUpdate { map: pass.map, rect, content };
-            let pieces = self.plan.pieces_of(pass).iter().map(|piece| piece.part.window);
+            let update = |content| move |rect| UpdatedRect { map: pass.map, rect, content };
+            let regions = self.plan.regions_of(pass).iter().map(|region| region.part.window);
             match pass.content {
-                PassContent::All => updates.extend(pieces.map(update(UpdateContent::All))),
-                PassContent::Static => updates.extend(pieces.map(update(UpdateContent::Static))),
-                PassContent::Moving => {
-                    updates.extend(self.mended(pass, read).map(update(UpdateContent::Mended)));
-                    updates.extend(self.moving(pass.map, read).map(update(UpdateContent::Moving)));
+                PassKind::All => updates.extend(regions.map(update(UpdateKind::All))),
+                PassKind::Static => updates.extend(regions.map(update(UpdateKind::Static))),
+                PassKind::Moving => {
+                    updates.extend(self.mended(pass, read).map(update(UpdateKind::Mended)));
+                    updates.extend(self.moving(pass.map, read).map(update(UpdateKind::Moving)));
                 }
             }
         }
@@ -61,7 +61,7 @@ impl MapCache {
     /// Rectangles that are restored from the static casters' layer.
     fn mended(&self, pass: &PassPlan, read: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let stored = self.plan.rects[pass.mended.clone()].iter();
-        let rects = stored.map(|stored| looked_up(*stored, read.wrap, pass.size));
+        let rects = stored.map(|stored| looked_up(*stored, read.texel_offset, pass.size));
         let boxes = self.plan.boxes[pass.mended_boxes.clone()].iter();
         rects.chain(boxes.map(|aabb| TexelRect::of_box(&read.projection, aabb, self.plan.origin)))
     }
@@ -78,7 +78,7 @@ impl MapCache {
 
     /// Returns the maps that hold each caster of the list: bit i of the mask stands for map i. A map that is kept holds
     /// all static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
-    pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
+    pub fn maps_by_caster(&self, casters: &Casters<'_>) -> Vec<u8> {
         let in_view = &self.plan.in_view;
         let over = |((index, map), in_view): ((usize, &FittedMap), &CasterVolume)| match self.settings.culling {
             Culling::Off => CasterVolume::everywhere(map.projection.origin),
@@ -96,9 +96,13 @@ impl MapCache {
 }
 
 /// Where a rectangle of a layer, which does not reach across the map's seam, is looked up.
-fn looked_up(stored: TexelRect, wrap: UVec2, size: UVec2) -> TexelRect {
+fn looked_up(stored: TexelRect, texel_offset: UVec2, size: UVec2) -> TexelRect {
     let is_whole = stored == TexelRect::all(size);
-    if is_whole { stored } else { TexelRect { min: (stored.min + size - wrap) % size.max(UVec2::ONE), ..stored } }
+    if is_whole {
+        stored
+    } else {
+        TexelRect { min: (stored.min + size - texel_offset) % size.max(UVec2::ONE), ..stored }
+    }
 }
 
 #[cfg(test)]
@@ -109,13 +113,13 @@ mod tests {
 
     #[test]
     fn each_piece_of_a_rectangle_is_looked_up_where_the_rectangle_lies() {
-        let (size, wrap) = (UVec2::new(16, 8), UVec2::new(13, 3));
+        let (size, texel_offset) = (UVec2::new(16, 8), UVec2::new(13, 3));
         let rect = TexelRect { min: UVec2::new(1, 2), size: UVec2::new(9, 5) };
-        let pieces: Vec<_> = rect.stored(wrap, size).collect();
-        assert_eq!(pieces.len(), 4);
-        for piece in pieces {
-            assert_eq!(looked_up(piece.stored, wrap, size), piece.window);
+        let regions: Vec<_> = rect.stored(texel_offset, size).collect();
+        assert_eq!(regions.len(), 4);
+        for region in regions {
+            assert_eq!(looked_up(region.stored, texel_offset, size), region.window);
         }
-        assert_eq!(looked_up(TexelRect::all(size), wrap, size), TexelRect::all(size));
+        assert_eq!(looked_up(TexelRect::all(size), texel_offset, size), TexelRect::all(size));
     }
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::MapCache;
 use super::frame::{CacheFrame, InView};
-use super::plan::PassContent;
+use super::plan::PassKind;
 use super::schedule::UpdateSchedule;
 use super::settings::{CacheSettings, Culling};
 use crate::culling::caster_volumes;
@@ -15,7 +15,7 @@ use crate::{CasterVolume, FitError, FittedMap};
 /// The casters of a part of a map, for engines that find them themselves, such as on the GPU. The origins of the volumes
 /// may differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PieceVolumes {
+pub struct RegionVolumes {
     /// Casters outside of it are not drawn.
     pub casters: CasterVolume,
     /// Moving casters outside of it are not drawn either.
@@ -26,19 +26,19 @@ impl MapCache {
     /// Returns the casters to draw into a part of a map, by the [window](crate::scroll::StoredRect::window) of a piece of
     /// the last plan. Maps that are kept hold all static casters over them; moving casters, and all casters of other
     /// maps, are drawn if they can shadow something in view.
-    pub fn piece_volumes(&self, map: usize, content: PassContent, part: TexelRect) -> PieceVolumes {
+    pub fn region_volumes(&self, map: usize, content: PassKind, part: TexelRect) -> RegionVolumes {
         let plan = &self.plan;
         let (Some(in_view), Some(read)) = (plan.in_view.get(map), plan.maps.get(map)) else {
-            return PieceVolumes { casters: CasterVolume::everywhere(plan.origin), moving: None };
+            return RegionVolumes { casters: CasterVolume::everywhere(plan.origin), moving: None };
         };
         if self.settings.culling == Culling::Off {
-            return PieceVolumes { casters: CasterVolume::everywhere(plan.origin), moving: None };
+            return RegionVolumes { casters: CasterVolume::everywhere(plan.origin), moving: None };
         }
         if !self.is_kept(map) {
-            return PieceVolumes { casters: *in_view, moving: None };
+            return RegionVolumes { casters: *in_view, moving: None };
         }
         let casters = CasterVolume::of_part(&read.projection, self.settings.caster_policy(), part);
-        PieceVolumes { casters, moving: (content != PassContent::Static).then_some(*in_view) }
+        RegionVolumes { casters, moving: (content != PassKind::Static).then_some(*in_view) }
     }
 
     /// Finds the maps that must not wait, whatever the schedule: those that show a static caster that is gone, in view.

@@ -10,7 +10,7 @@ pub(crate) mod clusters;
 mod extents;
 mod groups;
 pub(crate) mod normal_cone;
-mod standing;
+mod static_boxes;
 #[cfg(feature = "alloc")]
 pub(crate) mod tree;
 mod views;
@@ -27,7 +27,7 @@ pub(crate) use boxes::Bounds;
 use boxes::{check, compute_depths, is_same};
 use groups::Groups;
 use normal_cone::NormalCone;
-pub(crate) use standing::BoxTree;
+pub(crate) use static_boxes::StaticBoxes;
 pub(crate) use views::{MAX_SPHERE_VIEWS, ViewPart};
 pub(crate) use visit::{Found, Query, Visit, VisitCorners};
 
@@ -41,7 +41,7 @@ pub(crate) struct Scene<'a> {
     pub(crate) receiver_cones: &'a [NormalCone],
     pub(crate) casters: Option<Boxes<'a>>,
     /// Boxes that receive and cast beside those of the lists.
-    pub(crate) standing: Option<&'a BoxTree>,
+    pub(crate) static_boxes: Option<&'a StaticBoxes>,
 }
 
 /// The views and boxes of one frame, with the view depths of each box computed once.
@@ -52,7 +52,7 @@ pub(crate) struct Content<'a> {
     receivers: Option<Boxes<'a>>,
     /// The list of casters.
     casters: Option<Boxes<'a>>,
-    standing: Option<&'a BoxTree>,
+    static_boxes: Option<&'a StaticBoxes>,
     /// Least and greatest view depth of each receiver of the list, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
@@ -97,7 +97,7 @@ impl<'a> Content<'a> {
         let content = Content {
             receivers: input.receivers,
             casters: input.casters,
-            standing: input.standing,
+            static_boxes: input.static_boxes,
             depths,
             receiver_groups,
             caster_groups,
@@ -114,7 +114,7 @@ impl<'a> Content<'a> {
             origin: input.views[0].origin,
             receivers: None,
             casters: None,
-            standing: None,
+            static_boxes: None,
             depths: &[],
             receiver_groups: Groups::default(),
             caster_groups: Groups::default(),
@@ -125,12 +125,12 @@ impl<'a> Content<'a> {
 
     /// Whether it is known what receives shadows.
     pub(crate) fn knows_receivers(&self) -> bool {
-        self.receivers.is_some() || self.standing.is_some()
+        self.receivers.is_some() || self.static_boxes.is_some()
     }
 
     /// Whether anything is known to cast shadows.
     pub(crate) fn has_casters(&self) -> bool {
-        self.standing.is_some() || self.casters.is_some_and(|casters| !casters.boxes.is_empty())
+        self.static_boxes.is_some() || self.casters.is_some_and(|casters| !casters.boxes.is_empty())
     }
 
     /// The list of receivers, and that of casters; `None` of the second one where it is the same in memory.
@@ -157,7 +157,7 @@ impl<'a> Content<'a> {
         if index < listed {
             return Some(self.receiver_groups.corners(index));
         }
-        let tree = self.standing?;
+        let tree = self.static_boxes?;
         tree.get((index - listed) as u32).map(|aabb| moved(&aabb, tree.origin() - self.origin))
     }
 }

@@ -21,7 +21,7 @@ pub(crate) enum Query<'q> {
     /// All receivers, in view or not.
     Receivers,
     /// The boxes of the tree alone, in view or not.
-    Standing,
+    StaticBoxes,
     /// Receivers in a part of a view. Boxes whose surfaces face away from the light are included.
     Visible(&'q ViewPart),
     /// Receivers in a part of a view, except boxes whose surfaces face away from the light.
@@ -99,7 +99,7 @@ impl Content<'_> {
                 visit_list(receivers, |i| receivers.has_box(i), anywhere, visitor);
                 self.visit_tree(visitor);
             }
-            Query::Standing => self.visit_tree(visitor),
+            Query::StaticBoxes => self.visit_tree(visitor),
             Query::Visible(part) => {
                 visit_list(receivers, |i| receivers.has_box(i), |_, min, max| part.bounds(min, max), visitor);
                 self.visit_tree_in(part, visitor);
@@ -135,7 +135,7 @@ impl Content<'_> {
     /// Passes all boxes of the tree to a visitor.
     #[inline]
     fn visit_tree<V: Visit>(&self, visitor: &mut V) {
-        let Some(tree) = self.standing else { return };
+        let Some(tree) = self.static_boxes else { return };
         let (offset, listed) = (tree.origin() - self.origin, self.listed());
         let bounds = |aabb: &Aabb| {
             let (min, max) = moved(aabb, offset);
@@ -150,7 +150,7 @@ impl Content<'_> {
     /// Passes the boxes of the tree in a part of a view to a visitor.
     #[inline]
     fn visit_tree_in<V: Visit>(&self, part: &ViewPart, visitor: &mut V) {
-        let Some(tree) = self.standing else { return };
+        let Some(tree) = self.static_boxes else { return };
         let (offset, listed) = (tree.origin() - self.origin, self.listed());
         let distances = |aabb: &Aabb| {
             let (min, max) = moved(aabb, offset);

@@ -10,7 +10,7 @@ use super::sweep::Sweep;
 use super::volume::CasterVolume;
 use crate::base::checks::{UNIT, VIEW_DEPTH_ROUNDING};
 use crate::base::{FitError, checks};
-use crate::bias::{MIN_COSINE, Reach};
+use crate::bias::{FilterRadius, MIN_COSINE};
 use crate::map::{FittedMap, FittedMaps};
 use crate::projection::LightProjection;
 use crate::selection::{MapOrder, MapReading};
@@ -145,10 +145,11 @@ fn swept(
     views: &[ViewFrustum],
     reading: &MapReading,
 ) -> Result<CasterVolume, FitError> {
-    let reach = reading.softness.reach_in(reading.filter, &map.projection);
+    let reach = reading.softness.filter_radius_in(reading.filter, &map.projection);
     let normal_offset = map.bias.normal_offset.abs();
     let DepthSpan { near, far } = read.unwrap_or(DepthSpan::ALL);
-    let volume = CasterVolume::swept(&map.projection, &Sweep { views, near, far, reach, normal_offset })?;
+    let volume =
+        CasterVolume::swept(&map.projection, &Sweep { views, near, far, filter_radius: reach, normal_offset })?;
     Ok(if read.is_some() {
         lowered(volume, &map.projection, depth_below(map, reach))
     } else {
@@ -185,7 +186,8 @@ impl Readers<'_> {
         };
         let first = (0..=index).find(is_read_from)?;
         // Nearer points may be blended into it.
-        let near = self.slice(first).near.min(self.maps[index].covered_near);
+        let blended = self.maps[index].depths.and_then(|range| range.covered_from);
+        let near = self.slice(first).near.min(blended.map_or(f32::MAX, |near| near as f32));
         Some(DepthSpan { near, far: self.end(index) })
     }
 
@@ -197,7 +199,7 @@ impl Readers<'_> {
 
     /// View depth at which a map ends.
     fn end(&self, index: usize) -> f32 {
-        self.maps[index].depth_range().far as f32
+        self.maps[index].depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
     }
 
     /// A slice, widened by the depths that rounding or another eye may move into it.
@@ -257,7 +259,7 @@ fn depth_mismatch(reader: &Reader, frustum: &ViewFrustum) -> f64 {
 /// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
 /// its own depth wherever the filter looks, and falls by the tangent of its slope; biases that are negative move the
 /// point itself.
-fn depth_below(map: &FittedMap, reach: Reach) -> f64 {
+fn depth_below(map: &FittedMap, reach: FilterRadius) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
     let (bias, range) = (map.bias, f64::from(map.projection.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
@@ -298,7 +300,7 @@ fn read_by_coverage(
     views: &[ViewFrustum],
     reading: &MapReading,
 ) -> [Option<f32>; MAX_MAPS] {
-    let free = f64::from(reading.softness.reach(reading.filter) + reading.selection.blend());
+    let free = f64::from(reading.softness.filter_radius(reading.filter) + reading.selection.blend());
     let mut from = [None; MAX_MAPS];
     let mut held = Held::To(f32::MIN);
     for index in MapOrder::new(reading.selection, maps.iter().map(|map| &map.projection)).iter() {
@@ -339,6 +341,7 @@ fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, f
 #[cfg(all(test, feature = "alloc"))]
 mod tests {
     use super::*;
+    use crate::selection::DepthRange;
     use crate::settings::FitSettings;
     use crate::{Bias, PerspectiveCamera, fit};
     use alloc::vec::Vec;
@@ -360,7 +363,7 @@ mod tests {
             let slice = view.slice(near - 0.01, far + 0.01).expect("a slice");
             near = far;
             let light = fit(&slice, DIRECTION, &FitSettings::default().with_max_distance(f32::MAX)).expect("a fit");
-            FittedMap::new(light, Bias::default()).ending_at(far)
+            FittedMap::new(light, Bias::default()).with_depths(DepthRange::new(0.0, Some(far.into())))
         };
         ENDS.into_iter().map(map).collect()
     }
@@ -392,10 +395,10 @@ mod tests {
     fn maps_without_a_range_are_read_where_those_in_front_leave_points_out() {
         let view = frustum(0.9);
         let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
-        let empty = |far: f32| FittedMap { far, ..c };
-        let front = [empty(f32::MIN), a, b, c];
+        let empty = |depths| FittedMap { depths, ..c };
+        let front = [empty(None), a, b, c];
         assert_eq!(read_from(&front, &[view]), [None, Some(f32::MIN), Some(5.0), Some(20.0)]);
-        let behind = [a, b, c, empty(f32::MAX)];
+        let behind = [a, b, c, empty(Some(DepthRange::new(50.0, None)))];
         assert_eq!(read_from(&behind, &[view])[3], None);
         assert_eq!(read_from(&behind, &[frustum(1.1)])[3], Some(f32::MIN));
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
@@ -441,7 +444,7 @@ mod tests {
     fn by_view_depth_a_map_is_read_from_where_the_one_in_front_is_blended_into_it() {
         let view = frustum(0.9);
         let mut maps = maps(&view);
-        maps[1].covered_near = 4.0;
+        maps[1].depths.as_mut().expect("a range").covered_from = Some(4.0);
         assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(4.0), Some(20.0)]);
     }
 

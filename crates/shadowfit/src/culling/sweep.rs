@@ -24,7 +24,7 @@ use super::volume::{CasterVolume, map_planes};
 use crate::base::checks::{MAX_LENGTH, ROUNDING};
 use crate::base::enclosing::HullBuilder;
 use crate::base::{FitError, checks};
-use crate::bias::Reach;
+use crate::bias::FilterRadius;
 use crate::projection::LightProjection;
 use crate::view::{Slice, View, ViewFrustum};
 
@@ -37,9 +37,9 @@ pub struct Sweep<'a> {
     pub near: f32,
     /// View depth up to which they read it, in metres. Default: `f32::MAX`, to the farthest.
     pub far: f32,
-    /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_disc`]; the
-    /// texel that a caster's edge is rasterised to is added to it. Default: [`Reach::HARDWARE_2X2`].
-    pub reach: Reach,
+    /// Radius of the filter. A penumbra search counts as a disc, see [`FilterRadius::over_disc`]; the
+    /// texel that a caster's edge is rasterised to is added to it. Default: [`FilterRadius::HARDWARE_2X2`].
+    pub filter_radius: FilterRadius,
     /// How far from the receiver, in any direction, the looked-up point may lie, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset), and any other offset of the shader.
     /// Default: 0.
@@ -50,7 +50,7 @@ impl<'a> Sweep<'a> {
     /// Views that read the map at every depth with the hardware's 2×2 filter and without a normal
     /// offset.
     pub const fn new(views: &'a [ViewFrustum]) -> Self {
-        Self { views, near: f32::MIN, far: f32::MAX, reach: Reach::HARDWARE_2X2, normal_offset: 0.0 }
+        Self { views, near: f32::MIN, far: f32::MAX, filter_radius: FilterRadius::HARDWARE_2X2, normal_offset: 0.0 }
     }
 
     /// Refuses values that are not finite or out of range.
@@ -61,7 +61,7 @@ impl<'a> Sweep<'a> {
         if near >= far {
             return Err(FitError::NearNotBelowFar { near, far });
         }
-        self.reach.checked()?;
+        self.filter_radius.checked()?;
         checks::within("the sweep's normal offset", f64::from(self.normal_offset), 0.0, MAX_LENGTH)?;
         if self.views.is_empty() {
             return Err(FitError::NoView);
@@ -167,7 +167,7 @@ impl Planes<'_> {
 
     /// How far the filter reads along a direction, in metres.
     fn reach_along(&self, normal: Vec3) -> f64 {
-        let reach = Reach { taps: self.sweep.reach.taps + RASTER_TEXELS, ..self.sweep.reach };
+        let reach = FilterRadius { taps: self.sweep.filter_radius.taps + RASTER_TEXELS, ..self.sweep.filter_radius };
         let texel = self.fit.texel_size.as_dvec2();
         let [x, y] = self.map_axes();
         let normal = normal.as_dvec3();

@@ -4,7 +4,7 @@ use super::batch::MAX_VOLUMES;
 use super::shapes::Shape;
 use super::volume::CasterVolume;
 use crate::base::Aabb;
-use crate::content::tree::BoxTree;
+use crate::content::tree::StaticBoxes;
 
 /// What is known of a box of the hierarchy: bits of the volumes that it may touch, and of those that hold all of it.
 #[derive(Clone, Copy)]
@@ -13,7 +13,7 @@ struct Touched {
     held: u8,
 }
 
-impl BoxTree {
+impl StaticBoxes {
     /// Tests the boxes against up to eight volumes and passes on those that may cast a shadow into one of the maps, by
     /// number, in no particular order: bit i of the mask stands for map i. Masks are exactly those of
     /// [`cull`](super::cull); volumes past the eighth are ignored.

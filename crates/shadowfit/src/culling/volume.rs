@@ -16,7 +16,7 @@ use crate::technique::settings::CasterPolicy;
 /// |---|---|
 /// | [`LightProjection::caster_volume`] | every caster that the map can store |
 /// | [`CasterVolume::of_map`] | the same, without a near plane where the pipeline clamps depth |
-/// | [`SpotFit::caster_volume`](crate::SpotFit::caster_volume) | every caster that the map of a spot light can store |
+/// | [`SpotFit::caster_volume`](crate::spot::SpotFit::caster_volume) | every caster that the map of a spot light can store |
 /// | [`CasterVolume::swept`] | every caster that can cast a shadow into a slice of the view |
 ///
 /// A shape is culled when it lies wholly behind one of the planes. That is conservative and not

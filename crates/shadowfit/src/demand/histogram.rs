@@ -37,13 +37,14 @@ pub struct DepthHistogram<'a> {
 /// #     near: 0.1,
 /// #     far: 200.0,
 /// # };
-/// let slices = Slices::default().with_splits(SplitScheme::Logarithmic);
-/// let technique = Technique::default().with_maps(slices);
+/// let cascades = Cascades::default().with_splits(SplitScheme::Logarithmic);
+/// let technique = Technique::default().with_maps(cascades);
 /// let views = [camera.frustum()?];
 /// let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
 /// let mut split = |depth_bounds| {
 ///     let input = FitInput { depth_bounds, ..FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)) };
-///     FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).map(|maps| maps[0].far)
+///     let maps = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage))?;
+///     Ok::<_, FitError>(maps[0].depths.and_then(|range| range.far).expect("only the last map has no end"))
 /// };
 /// assert!(split(None)? < 1.0); // the whole view, from its near plane on
 /// assert!(split(Some(DepthBounds { near: 4.0, far: 50.0 }))? > 4.0); // what the last frame showed

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use super::grid::PIXELS;
 use super::histogram::needed_texel;
-use super::seen::Seen;
+use super::visible_demand::VisibleDemand;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::view::ViewFrustum;
 
@@ -24,7 +24,7 @@ pub struct DepthRows<'a> {
     pub view: &'a ViewFrustum,
 }
 
-impl Seen {
+impl VisibleDemand {
     /// Counts the points of a depth buffer that face the light: one of each `stride` pixels across and down. Few are
     /// enough: some 300 points, a stride of 56 in a picture of 1280 × 720 pixels, gave 0.301% wrong pixels where 129,600
     /// gave 0.311%.
@@ -177,7 +177,7 @@ mod tests {
     use alloc::vec::Vec;
 
     use super::*;
-    use crate::demand::SeenSpace;
+    use crate::demand::VisibleDemandSpace;
     use crate::view::PerspectiveCamera;
 
     const WIDTH: u32 = 160;
@@ -216,10 +216,10 @@ mod tests {
         (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))).map(|(x, y)| stored(x, y)).collect()
     }
 
-    fn counted(depth: DepthConvention, stride: u32, depths: &[f32]) -> Result<Seen, FitError> {
+    fn counted(depth: DepthConvention, stride: u32, depths: &[f32]) -> Result<VisibleDemand, FitError> {
         let view = camera().frustum()?;
         let direction = Vec3::new(0.3, -0.8, 0.2);
-        let mut seen = Seen::new(SeenSpace::new(&view, direction, Vec3::Y, 300.0)?);
+        let mut seen = VisibleDemand::new(VisibleDemandSpace::new(&view, direction, Vec3::Y, 300.0)?);
         let clip_from_world = camera().clip_from_world(depth);
         seen.count_rows(&DepthRows { depths, width: WIDTH, clip_from_world, depth, view: &view }, stride)?;
         Ok(seen)
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn every_convention_counts_the_same_points_and_a_stride_its_share_of_them() {
         let of = |depth, stride| counted(depth, stride, &ground(depth)).expect("a picture");
-        let sum = |seen: &Seen| seen.demand().counts.iter().sum::<u32>();
+        let sum = |seen: &VisibleDemand| seen.demand().counts.iter().sum::<u32>();
         let all = of(DepthConvention::Reversed, 1);
         // The sky is above the horizon, which lies in the upper third.
         assert!((7_000..12_000).contains(&sum(&all)), "{}", sum(&all));
@@ -247,8 +247,9 @@ mod tests {
         let depths = ground(DepthConvention::Reversed);
         let view = camera().frustum().expect("a camera");
         let counted_to = |distance: f32| {
-            let space = SeenSpace::new(&view, Vec3::new(0.3, -0.8, 0.2), Vec3::Y, distance).expect("a distance");
-            let (mut seen, depth) = (Seen::new(space), DepthConvention::Reversed);
+            let space =
+                VisibleDemandSpace::new(&view, Vec3::new(0.3, -0.8, 0.2), Vec3::Y, distance).expect("a distance");
+            let (mut seen, depth) = (VisibleDemand::new(space), DepthConvention::Reversed);
             let clip_from_world = camera().clip_from_world(depth);
             let rows = DepthRows { depths: &depths, width: WIDTH, clip_from_world, depth, view: &view };
             seen.count_rows(&rows, 1).expect("a picture");
@@ -269,7 +270,7 @@ mod tests {
         let stored = |x: u16| (60.0 - (f32::from(x) - 31.5) / 32.0 * 50.0 * 0.75) / 100.0;
         let depths: Vec<f32> = (0..64 * 64_u16).map(|i| stored(i % 64)).collect();
         let direction = Vec3::new(0.6, 0.0, -0.8);
-        let mut seen = Seen::new(SeenSpace::new(&view, direction, Vec3::Y, 100.0).expect("a view"));
+        let mut seen = VisibleDemand::new(VisibleDemandSpace::new(&view, direction, Vec3::Y, 100.0).expect("a view"));
         let clip_from_world = camera.clip_from_world(depth);
         seen.count_rows(&DepthRows { depths: &depths, width: 64, clip_from_world, depth, view: &view }, 1)
             .expect("rows");

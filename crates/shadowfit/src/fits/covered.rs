@@ -9,7 +9,7 @@ use crate::base::{FitError, box_corners, checks};
 use crate::content::{Bounds, Content, VisitCorners};
 use crate::fits::rectangle::Rectangle;
 use crate::fits::{Covers, FitRule, rectangle};
-use crate::light::{Constraint, LightAxes, Volume};
+use crate::light::{BoundSource, LightAxes, Volume};
 use crate::technique::settings::RectangleKind;
 use crate::view::Range;
 
@@ -68,7 +68,7 @@ impl<'a> Covered<'a> {
             return Err(FitError::EmptyFrustum { size: size.as_vec3() });
         }
         let margin = DVec3::splat(rule.margin);
-        let volume = Volume::covering(axes, min - margin, max + margin, [Constraint::View; 6], false);
+        let volume = Volume::covering(axes, min - margin, max + margin, [BoundSource::View; 6], false);
         Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
     }
 
@@ -87,7 +87,7 @@ impl<'a> Covered<'a> {
         }
         let (low, high) = widened(min.truncate(), max.truncate(), rule.least_size);
         let (min, max) = (low.extend(min.z), high.extend(max.z));
-        let volume = Volume::covering(axes, min, max, [Constraint::Sphere; 6], false);
+        let volume = Volume::covering(axes, min, max, [BoundSource::Sphere; 6], false);
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
 
@@ -115,9 +115,9 @@ impl<'a> Covered<'a> {
         let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
         let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
         let (min, max) = (min.extend(z_min.x), max.extend(z_max.x));
-        let set_by = constraints(&rectangle, hull, content, range);
+        let bounds_from = constraints(&rectangle, hull, content, range);
         Self {
-            volume: Volume::covering(hull.axes.turned(rectangle.axis), min, max, set_by, hull.is_empty),
+            volume: Volume::covering(hull.axes.turned(rectangle.axis), min, max, bounds_from, hull.is_empty),
             rounding: rounding.max_element(),
             shadowed: Shadowed::Outline(hull.axes, hull.outline),
         }
@@ -151,9 +151,9 @@ fn widened(min: DVec2, max: DVec2, least: DVec2) -> (DVec2, DVec2) {
 const SAME_PLANE: f64 = 1e-5;
 
 /// What set each plane: the view where the plane lies at the view's own extent, else the receivers.
-fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [Constraint; 6] {
+fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [BoundSource; 6] {
     if !content.knows_receivers() || hull.is_empty {
-        return [Constraint::View; 6];
+        return [BoundSource::View; 6];
     }
     let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
     for corner in content.corners(range) {
@@ -164,7 +164,7 @@ fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range
     let same = (max - min).max_element() * SAME_PLANE;
     let low = rectangle.min.extend(hull.z.0) - min;
     let high = max - rectangle.max.extend(hull.z.1);
-    let by = |gap: f64| if gap <= same { Constraint::View } else { Constraint::Receivers };
+    let by = |gap: f64| if gap <= same { BoundSource::View } else { BoundSource::Receivers };
     [by(low.x), by(high.x), by(low.y), by(high.y), by(low.z), by(high.z)]
 }
 

@@ -4,6 +4,7 @@ use crate::content::Content;
 use crate::fits::FitRule;
 use crate::input::FitInput;
 use crate::light::{Light, Volume};
+use crate::selection::DepthRange;
 use crate::technique::Technique;
 use crate::technique::settings::MAX_MAPS;
 use crate::view::{Range, ViewFrustum};
@@ -27,10 +28,8 @@ pub(crate) struct Frame<'a, 'b> {
 pub(crate) struct PlacedMap {
     /// The box that it stores, from the near plane to the far plane.
     pub(crate) volume: Volume,
-    /// [`FittedMap::near`](crate::FittedMap::near), `far` and `covered_near`.
-    pub(crate) near: f32,
-    pub(crate) far: f32,
-    pub(crate) covered_near: f32,
+    /// [`FittedMap::depths`](crate::FittedMap::depths).
+    pub(crate) depths: Option<DepthRange>,
 }
 
 /// The maps of a frame.

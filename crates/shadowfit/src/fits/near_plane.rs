@@ -17,13 +17,13 @@ use crate::base::checks::ROUNDING;
 use crate::content::{Bounds, Content, Found, Query, Visit};
 use crate::fits::covered::Shadowed;
 use crate::fits::{Alignment, Depth, FitRule};
-use crate::light::{Constraint, LightAxes, Outline, OutlineScratch, Volume};
+use crate::light::{BoundSource, LightAxes, Outline, OutlineScratch, Volume};
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
 pub(crate) struct NearPlane {
     pub(crate) z: f64,
-    pub(crate) set_by: Option<Constraint>,
+    pub(crate) from: Option<BoundSource>,
 }
 
 /// Moves the near plane of a volume, which so far ends at the covered region, to the place that the
@@ -47,10 +47,10 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     };
     if rule.serves_all {
         let far = find_far(volume.min.z, &volume.axes, min, max, content);
-        volume.set_by[4] = if far < volume.min.z { Constraint::Receivers } else { volume.set_by[4] };
+        volume.bounds_from[4] = if far < volume.min.z { BoundSource::Receivers } else { volume.bounds_from[4] };
         volume.min.z = far;
     }
-    (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
+    (volume.max.z, volume.bounds_from[5]) = (near.z, near.from.unwrap_or(volume.bounds_from[5]));
     if rule.form.alignment != Alignment::OnGrid {
         // The rounding of the depth range, which casters may make far longer than the covered
         // region. On the grid it is in the steps.
@@ -73,23 +73,23 @@ pub(crate) fn find(
     depth: Depth,
     reach: f64,
 ) -> NearPlane {
-    let (z, set_by) = match depth {
-        Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, set_by: None },
-        Depth::Extended(metres) => (covered + metres, Constraint::CasterExtension),
+    let (z, from) = match depth {
+        Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, from: None },
+        Depth::Extended(metres) => (covered + metres, BoundSource::CasterExtension),
         Depth::AtCasterBounds => {
             let mut highest = Highest::new(axes, outline, reach, covered);
             if let Some((min, max)) = content.caster_bounds() {
                 highest.add(min, max);
             }
-            (highest.z, Constraint::Casters)
+            (highest.z, BoundSource::Casters)
         }
         Depth::AtCasters => {
             let mut highest = Highest::new(axes, outline, reach, covered);
             content.visit(Query::Casters, &mut highest);
-            (highest.z, Constraint::Casters)
+            (highest.z, BoundSource::Casters)
         }
     };
-    NearPlane { z, set_by: (z > covered).then_some(set_by) }
+    NearPlane { z, from: (z > covered).then_some(from) }
 }
 
 /// Finds the near plane as [`find`] does, for all of a map, given by its corners across the light.

@@ -65,7 +65,7 @@ impl MapUse {
     pub(crate) const fn alone(settings: &FitSettings) -> Self {
         let border = match settings.map.border {
             Some(texels) => texels,
-            None => FilterKind::Pcf5x5.reach(),
+            None => FilterKind::Pcf5x5.filter_radius(),
         };
         Self { border, is_shared: false }
     }

@@ -18,8 +18,8 @@
 //!   the horizon (δ · tan(β/2), β the angle from straight down), so that is **δ · R / 2** at most.
 //! - Tilt moves what is half the depth range D away along the light by `δ · D / (2 · texel)`.
 //!
-//! [`LightStepSettings::extent`] is R, or with the tilt R + D / texel
-//! ([`LightStepSettings::extent_of`]): the direction is held until δ · extent / 2 exceeds the set
+//! [`LightSteps::extent`] is R, or with the tilt R + D / texel
+//! ([`LightSteps::extent_of`]): the direction is held until δ · extent / 2 exceeds the set
 //! number of texels. Look-at axes (XNA's) roll faster near the vertical, and fits that turn about
 //! the light (oriented ones) move by more than this says.
 
@@ -32,7 +32,7 @@ use crate::projection::LightProjection;
 /// When a held light steps, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct LightStepSettings {
+pub struct LightSteps {
     /// Greatest movement at the map's edge for which the light is still held, in texels. 0 follows
     /// every change that is more than rounding. Default: 1.
     pub texels: f32,
@@ -45,13 +45,13 @@ pub struct LightStepSettings {
     pub fade: f32,
 }
 
-impl Default for LightStepSettings {
+impl Default for LightSteps {
     fn default() -> Self {
         Self { texels: 1.0, extent: 2048.0, fade: 0.0 }
     }
 }
 
-impl LightStepSettings {
+impl LightSteps {
     /// These settings with another [`texels`](Self::texels).
     #[must_use]
     pub const fn with_texels(mut self, texels: f32) -> Self {
@@ -99,10 +99,10 @@ impl LightStepSettings {
 ///
 /// ```
 /// use shadowfit::glam::Vec3;
-/// use shadowfit::light_steps::{LightStepSettings, LightSteps};
+/// use shadowfit::light_steps::{LightSteps, LightStepState};
 ///
-/// let settings = LightStepSettings::default().with_texels(2.0).with_fade(0.5);
-/// let mut sun = LightSteps::default();
+/// let settings = LightSteps::default().with_texels(2.0).with_fade(0.5);
+/// let mut sun = LightStepState::default();
 /// let mut directions = 0;
 /// let mut last = None;
 /// for frame in 0..600 {
@@ -117,7 +117,7 @@ impl LightStepSettings {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct LightSteps {
+pub struct LightStepState {
     /// The light's direction of travel that is held, a unit vector in world axes.
     pub held: Option<Vec3>,
     /// The direction that is faded out.
@@ -141,7 +141,7 @@ pub struct LightStep {
     pub blend: f32,
 }
 
-impl LightSteps {
+impl LightStepState {
     /// The directions for the next frame, `seconds` after the last one, of a light that now
     /// travels in `direction` (world axes, any length). The first direction is taken as it is.
     ///
@@ -150,12 +150,7 @@ impl LightSteps {
     /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the direction (or one put into
     /// the state by hand), [`FitError::OutOfRange`] for the settings and the time; the state is
     /// left as it was.
-    pub fn update(
-        &mut self,
-        direction: Vec3,
-        settings: &LightStepSettings,
-        seconds: f32,
-    ) -> Result<LightStep, FitError> {
+    pub fn update(&mut self, direction: Vec3, settings: &LightSteps, seconds: f32) -> Result<LightStep, FitError> {
         let angle = settings.angle()?;
         let seconds = checks::within("the time of the light's step", f64::from(seconds), 0.0, checks::MAX_LENGTH)?;
         // Rounded before it is compared, so that the same input is the same direction.

@@ -31,13 +31,13 @@ use glam::{DVec3, IVec2, UVec2};
 
 use crate::base::{FitError, checks};
 use crate::light::grid::MAX_LINE;
-use crate::light::{Constraint, LightAxes, Volume};
+use crate::light::{BoundSource, LightAxes, Volume};
 use crate::map::FittedMap;
 use crate::projection::LightProjection;
 
 pub use crate::keep::texels::StoredRect;
 pub use crate::keep::texels::TexelRect;
-pub use crate::light::grid::GridAnchor;
+pub use crate::light::grid::GridPosition;
 
 /// How a map follows from the one before it.
 ///
@@ -49,22 +49,22 @@ pub use crate::light::grid::GridAnchor;
 /// # use shadowfit::scroll::{Scroll, StoredRect};
 /// # use shadowfit::FittedMap;
 /// # fn clear_and_draw_all() {} fn clear_and_draw(_: StoredRect) {}
-/// /// Draws the static casters, and returns the wrap that the look-up adds to its texels.
-/// fn draw_static_casters(before: &FittedMap, now: &FittedMap, wrap_before: UVec2) -> UVec2 {
+/// /// Draws the static casters, and returns the texel offset that the look-up adds to its texels.
+/// fn draw_static_casters(before: &FittedMap, now: &FittedMap, offset_before: UVec2) -> UVec2 {
 ///     let scroll = Scroll::between(before, now);
 ///     let size = now.projection.resolution;
-///     let wrap = scroll.wrap(wrap_before, size);
+///     let texel_offset = scroll.texel_offset(offset_before, size);
 ///     if scroll.is_redraw() {
 ///         clear_and_draw_all();
 ///     } else {
-///         for piece in scroll.exposed().flat_map(|strip| strip.stored(wrap, size)) {
+///         for piece in scroll.exposed().flat_map(|strip| strip.stored(texel_offset, size)) {
 ///             clear_and_draw(piece); // its `stored` is a scissor rectangle, its `viewport()` begins the viewport
 ///         }
 ///     }
-///     wrap
+///     texel_offset
 /// }
-/// # let wrap = draw_static_casters(&FittedMap::default(), &FittedMap::default(), UVec2::ZERO);
-/// # assert_eq!(wrap, UVec2::ZERO);
+/// # let texel_offset = draw_static_casters(&FittedMap::default(), &FittedMap::default(), UVec2::ZERO);
+/// # assert_eq!(texel_offset, UVec2::ZERO);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scroll {
@@ -107,10 +107,10 @@ impl Scroll {
         self.exposed.into_iter().filter(|rect| rect.size.min_element() > 0)
     }
 
-    /// The wrap of the map now, from that of the map before: window texel t is stored at
-    /// (t + wrap) modulo `size`, the map's width and height, in texels. Zero for a map that must be drawn
+    /// The texel offset of the map now, from that of the map before: window texel t is stored at
+    /// `t + texel_offset` modulo `size`, the map's width and height, in texels. Zero for a map that must be drawn
     /// as a whole.
-    pub fn wrap(&self, before: UVec2, size: UVec2) -> UVec2 {
+    pub fn texel_offset(&self, before: UVec2, size: UVec2) -> UVec2 {
         if self.is_redraw() || size.min_element() == 0 {
             return UVec2::ZERO;
         }
@@ -129,7 +129,7 @@ impl Scroll {
 /// Shift in texels from a map to an earlier one and whether the depth range changed, if they share
 /// any texel.
 fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
-    let (old, new) = (before.anchor?, now.anchor?);
+    let (old, new) = (before.grid_position?, now.grid_position?);
     let axes = |fit: &LightProjection| [0, 1, 2].map(|i| fit.light_from_world.col(i));
     let is_same = axes(&before.projection) == axes(&now.projection)
         && old.texel == new.texel
@@ -180,7 +180,7 @@ pub struct Tile {
 /// The tiles that cover a map, row by row from below; see [`tiles`].
 #[derive(Clone, Debug)]
 pub struct Tiles {
-    anchor: GridAnchor,
+    grid_position: GridPosition,
     resolution: UVec2,
     size: u32,
     axes: LightAxes,
@@ -226,35 +226,42 @@ pub struct Tiles {
 /// # Errors
 ///
 /// [`FitError::NotOnGrid`] for a map that is neither snapped nor held nor a sphere's;
-/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an invalid anchor or
+/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an invalid grid position or
 /// fit.
 pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
-    let anchor = map.anchor.ok_or(FitError::NotOnGrid)?;
+    let grid_position = map.grid_position.ok_or(FitError::NotOnGrid)?;
     let axes = LightAxes::of_matrix(&map.projection.light_from_world)?;
-    for line in anchor.first {
+    for line in grid_position.first {
         checks::within("a grid line of the map", line as f64, -MAX_LINE, MAX_LINE)?;
     }
     let side = i64::from(size);
     let cover = |first: i64, texels: u32| {
         first.div_euclid(side)..(first + i64::from(texels) - 1).div_euclid(side).saturating_add(1)
     };
-    let (columns, rows) =
-        (cover(anchor.first[0], map.projection.resolution.x), cover(anchor.first[1], map.projection.resolution.y));
+    let (columns, rows) = (
+        cover(grid_position.first[0], map.projection.resolution.x),
+        cover(grid_position.first[1], map.projection.resolution.y),
+    );
     let next = [columns.start, rows.start];
-    let fit = tile_fit(&axes, &anchor, size, map)?;
-    Ok(Tiles { anchor, resolution: map.projection.resolution, size, axes, fit, columns, rows, next })
+    let fit = tile_fit(&axes, &grid_position, size, map)?;
+    Ok(Tiles { grid_position, resolution: map.projection.resolution, size, axes, fit, columns, rows, next })
 }
 
 /// Largest tile, in texels: no texture is larger.
 const MAX_TILE: u32 = 65_536;
 
 /// The projection of a tile whose origin is in the middle of its near plane.
-fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightProjection, FitError> {
-    let half = anchor.texel * (f64::from(size) * 0.5);
-    let depth_range = anchor.depth[1] - anchor.depth[0];
+fn tile_fit(
+    axes: &LightAxes,
+    grid_position: &GridPosition,
+    size: u32,
+    map: &FittedMap,
+) -> Result<LightProjection, FitError> {
+    let half = grid_position.texel * (f64::from(size) * 0.5);
+    let depth_range = grid_position.depth[1] - grid_position.depth[0];
     let (min, max) = ((-half).extend(-depth_range), half.extend(0.0));
-    let mut volume = Volume::covering(*axes, min, max, [Constraint::Held; 6], false);
+    let mut volume = Volume::covering(*axes, min, max, [BoundSource::Held; 6], false);
     volume.light_at_near_plane();
     LightProjection::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.projection.depth)
 }
@@ -262,11 +269,11 @@ fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -
 impl Tiles {
     fn tile(&self, index: [i64; 2]) -> Tile {
         let side = i64::from(self.size);
-        let middle = [0, 1].map(|i| (index[i] as f64 + 0.5) * f64::from(self.size) * self.anchor.texel[i]);
-        let origin = self.axes.unproject(DVec3::new(middle[0], middle[1], self.anchor.depth[1]));
+        let middle = [0, 1].map(|i| (index[i] as f64 + 0.5) * f64::from(self.size) * self.grid_position.texel[i]);
+        let origin = self.axes.unproject(DVec3::new(middle[0], middle[1], self.grid_position.depth[1]));
         // Left top of the tile in the map; rows count downward there.
-        let left = index[0] * side - self.anchor.first[0];
-        let top = self.anchor.first[1] + i64::from(self.resolution.y) - (index[1] + 1) * side;
+        let left = index[0] * side - self.grid_position.first[0];
+        let top = self.grid_position.first[1] + i64::from(self.resolution.y) - (index[1] + 1) * side;
         let ([x, width, from_x], [y, height, from_y]) =
             (overlap(left, side, self.resolution.x), overlap(top, side, self.resolution.y));
         Tile {

@@ -3,15 +3,15 @@
 //! Storage wraps around: a map moves, while its texels stay where they are stored.
 //!
 //! Graphics APIs cannot copy a part of a depth texture within itself, so texels that are kept must
-//! not move. The window texel t is stored at (t + wrap) modulo the map's size: when the map moves by
-//! a shift, so does the wrap, and what it leaves on one side is overwritten by what comes in on the
+//! not move. The window texel t is stored at `t + texel_offset` modulo the map's size: when the map moves by
+//! a shift, so does the texel offset, and what it leaves on one side is overwritten by what comes in on the
 //! other.
 //!
 //! ```text
 //!   the map as it is looked up        as it is stored
 //!   ┌───────┬───┐                     ┌───┬───────┐
 //!   │   A   │ B │                     │ D │   C   │
-//!   ├───────┼───┤   wrap = (3, 1)     ├───┼───────┤
+//!   ├───────┼───┤   texel_offset = (3, 1)     ├───┼───────┤
 //!   │   C   │ D │                     │ B │   A   │
 //!   └───────┴───┘                     └───┴───────┘
 //! ```
@@ -110,11 +110,12 @@ impl StoredRect {
 }
 
 impl TexelRect {
-    /// Where a part of a map of the given width and height is stored: up to four pieces, for a wrap below that size.
-    pub fn stored(self, wrap: UVec2, size: UVec2) -> impl Iterator<Item = StoredRect> {
+    /// Where a part of a map of the given width and height is stored: up to four pieces, for a texel offset below that
+    /// size.
+    pub fn stored(self, texel_offset: UVec2, size: UVec2) -> impl Iterator<Item = StoredRect> {
         let part = self.intersection(Self::all(size));
-        let columns = runs(part.min.x, part.size.x, wrap.x, size.x);
-        let rows = runs(part.min.y, part.size.y, wrap.y, size.y);
+        let columns = runs(part.min.x, part.size.x, texel_offset.x, size.x);
+        let rows = runs(part.min.y, part.size.y, texel_offset.y, size.y);
         let piece = move |(x, y): ([u32; 3], [u32; 3])| {
             let size = UVec2::new(x[2], y[2]);
             StoredRect {
@@ -129,11 +130,11 @@ impl TexelRect {
 
 /// A run of texels, cut where it meets the end of what is stored: for each piece its first texel, where that is stored,
 /// and its length.
-fn runs(first: u32, length: u32, wrap: u32, size: u32) -> [[u32; 3]; 2] {
+fn runs(first: u32, length: u32, texel_offset: u32, size: u32) -> [[u32; 3]; 2] {
     if size == 0 {
         return [[0; 3]; 2];
     }
-    let stored = (u64::from(first) + u64::from(wrap % size)) % u64::from(size);
+    let stored = (u64::from(first) + u64::from(texel_offset % size)) % u64::from(size);
     let until_end = length.min(size - stored as u32);
     [[first, stored as u32, until_end], [first + until_end, 0, length - until_end]]
 }

@@ -68,7 +68,7 @@ const DEPTH_STEPS: f64 = 16.0;
 /// A depth range that holds another, both along the light's z from the world's origin, in metres:
 /// the held one, or a new one in steps of its length. A new range that replaces a held one has spare
 /// room at both ends.
-pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, low: f64, high: f64, waste: f64) -> (f64, f64) {
+pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, low: f64, high: f64, max_oversize: f64) -> (f64, f64) {
     let length = high - low;
     // A larger range rounds more.
     let rounding = 2.0 * ROUNDING * length;
@@ -83,11 +83,11 @@ pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, low: f64, high: f64, wa
     let held_rounding = ROUNDING * held_length;
     let is_enough = held.0 <= low - held_rounding && held.1 >= high + held_rounding;
     // A new range would be longer than its content, so it need not be computed here.
-    if is_enough && held_length <= length * waste {
+    if is_enough && held_length <= length * max_oversize {
         return held;
     }
     let renewed = around(rounding + length * ROOM);
-    let is_wasteful = held_length > (renewed.1 - renewed.0) * waste * (1.0 + NOISE);
+    let is_wasteful = held_length > (renewed.1 - renewed.0) * max_oversize * (1.0 + NOISE);
     if is_enough && !is_wasteful { held } else { renewed }
 }
 
@@ -123,7 +123,7 @@ impl Grid {
 /// [`light_from_world`](crate::LightProjection::light_from_world)) and are counted from the world's origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct GridAnchor {
+pub struct GridPosition {
     /// Grid lines of the map's left and bottom side: they lie this many texels to the right of and
     /// above the world's origin.
     pub first: [i64; 2],
@@ -138,7 +138,7 @@ pub struct GridAnchor {
 /// Grid lines beyond this are not whole numbers in f64 any more.
 pub(crate) const MAX_LINE: f64 = 4_503_599_627_370_496.0;
 
-impl GridAnchor {
+impl GridPosition {
     /// The anchor of a map on the grid, if its grid lines are exact in f64.
     pub(crate) fn of(grid: &Grid) -> Option<Self> {
         let DVec2 { x, y } = grid.first;

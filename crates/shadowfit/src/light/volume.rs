@@ -11,7 +11,7 @@ use crate::base::checks;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum Constraint {
+pub enum BoundSource {
     /// The view frustum, cut at the shadow distance or by the splits.
     #[default]
     View,
@@ -45,7 +45,7 @@ pub(crate) struct Volume {
     /// [`LightProjection::vertex_distance`](crate::LightProjection::vertex_distance).
     pub(crate) vertex_distance: f64,
     /// What set the planes -x, +x, -y, +y, far, near.
-    pub(crate) set_by: [Constraint; 6],
+    pub(crate) bounds_from: [BoundSource; 6],
     pub(crate) is_empty: bool,
     /// Where it lies on the world's grid, if it does.
     pub(crate) grid: Option<Grid>,
@@ -54,13 +54,19 @@ pub(crate) struct Volume {
 impl Volume {
     /// A box whose near plane has yet to be found, and with it the light.
     #[inline(always)]
-    pub(crate) fn covering(axes: LightAxes, min: DVec3, max: DVec3, set_by: [Constraint; 6], is_empty: bool) -> Self {
-        Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, set_by, is_empty, grid: None }
+    pub(crate) fn covering(
+        axes: LightAxes,
+        min: DVec3,
+        max: DVec3,
+        bounds_from: [BoundSource; 6],
+        is_empty: bool,
+    ) -> Self {
+        Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, bounds_from, is_empty, grid: None }
     }
 
     /// A box around the origin, for a map that nothing reads.
     pub(crate) fn nowhere(axes: LightAxes) -> Self {
-        let mut volume = Self::covering(axes, DVec3::NEG_ONE, DVec3::ONE, [Constraint::View; 6], true);
+        let mut volume = Self::covering(axes, DVec3::NEG_ONE, DVec3::ONE, [BoundSource::View; 6], true);
         volume.light_at_near_plane();
         volume
     }
@@ -71,25 +77,25 @@ impl Volume {
         grid: Grid,
         resolution: DVec2,
         origin: DVec3,
-        set_by: [Constraint; 6],
+        bounds_from: [BoundSource; 6],
         is_empty: bool,
     ) -> Self {
         let anchor = anchor(&axes, origin);
         let (min, max) = grid.across(anchor, resolution);
         let (min, max) = (min.extend(grid.z.0 - anchor.z), max.extend(grid.z.1 - anchor.z));
-        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, min, max, set_by, is_empty) };
+        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, min, max, bounds_from, is_empty) };
         volume.light_at_near_plane();
         volume
     }
 
     /// Puts the near and far plane of a box on the grid to a range that holds them: the range held
-    /// from an earlier frame as long as it still holds them and is at most `waste` times as long as a
+    /// from an earlier frame as long as it still holds them and is at most `max_oversize` times as long as a
     /// new one.
     #[inline(always)]
-    pub(crate) fn stabilise_depth(&mut self, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
+    pub(crate) fn stabilise_depth(&mut self, origin: DVec3, held: Option<(f64, f64)>, max_oversize: f64) {
         let anchor = anchor(&self.axes, origin).z;
         if let Some(grid) = &mut self.grid {
-            grid.z = stabilised_depth(held, self.min.z + anchor, self.max.z + anchor, waste);
+            grid.z = stabilised_depth(held, self.min.z + anchor, self.max.z + anchor, max_oversize);
             (self.min.z, self.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
             self.light_at_near_plane();
         }

@@ -134,9 +134,9 @@ impl Matrix {
             let (unit, demand) = if axis < 2 {
                 let extent = (other - at).abs();
                 let texels = resolution[axis] / checks::within("the light's box", extent, f64::MIN_POSITIVE, f64::MAX)?;
-                let disc = f64::from(query.reach.disc[axis]);
+                let disc = f64::from(query.filter_radius.disc[axis]);
                 // The centre of the first texel beyond the border lies half a texel out.
-                let read = (f64::from(query.reach.taps) + disc - 0.5).max(0.0);
+                let read = (f64::from(query.filter_radius.taps) + disc - 0.5).max(0.0);
                 (texels, read + f64::from(query.normal_offset) / metres * texels)
             } else {
                 (metres, 0.0)

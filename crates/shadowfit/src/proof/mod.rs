@@ -21,7 +21,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::checks::UNIT;
 use crate::base::{FitError, box_corners, checks};
-use crate::bias::{Bias, HARDWARE_SNAP, Reach};
+use crate::bias::{Bias, FilterRadius, HARDWARE_SNAP};
 use crate::content::{Bounds, Content, Found, Query, Visit, VisitCorners};
 use crate::diagnostics::{DepthRounding, DepthStorage, depth_rounding};
 use crate::fits::Covers;
@@ -30,6 +30,7 @@ use crate::input::{FitInput, Scratch};
 use crate::light::{LightAxes, Outline, OutlineScratch};
 use crate::map::FittedMap;
 use crate::projection::LightProjection;
+use crate::selection::DepthRange;
 use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, FitSettings};
 use crate::view::Range;
@@ -111,7 +112,7 @@ pub struct Margins {
 /// proof reports any caster that lies before the frustum.
 ///
 /// ```
-/// use shadowfit::bias::Reach;
+/// use shadowfit::bias::FilterRadius;
 /// use shadowfit::glam::{DVec2, DVec3, Vec3};
 /// use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, prove};
 /// use shadowfit::settings::FitSettings;
@@ -133,7 +134,7 @@ pub struct Margins {
 ///
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
 /// let settings = FitSettings::default().with_border(0.5);
-/// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
+/// let query = CoverageQuery::of_fit(&settings, FilterRadius::HARDWARE_2X2);
 /// let map = shadowfit::fit_scene(&input, &settings, &mut scratch)?;
 /// assert!(prove(&input, &map, &query, &mut scratch)?.is_proven());
 ///
@@ -261,7 +262,7 @@ fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> WholeMap
 /// How far around the outline casters are read, in metres: the reach of the filter with the
 /// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
 fn caster_reach(fit: &LightProjection, query: &CoverageQuery, distance: f64) -> f64 {
-    let reach = query.reach.disc.as_dvec2() + f64::from(query.reach.taps);
+    let reach = query.filter_radius.disc.as_dvec2() + f64::from(query.filter_radius.taps);
     texels(fit, reach) + f64::from(query.normal_offset) + raster_reach(fit, distance)
 }
 
@@ -399,10 +400,10 @@ pub struct CoverageQuery {
     pub near: f32,
     /// View depth up to which receivers read the map, in metres.
     pub far: f32,
-    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. A sampler's rounding of
-    /// texture coordinates only shifts weights by as much, so it counts only where [`Reach::on_hardware`] has included
-    /// it.
-    pub reach: Reach,
+    /// Radius of the filter: of all texels that it reads, the centres must lie in the map. A sampler's rounding of
+    /// texture coordinates only shifts weights by as much, so it counts only where [`FilterRadius::on_hardware`] has
+    /// included it.
+    pub filter_radius: FilterRadius,
     /// How far across the light the looked-up point may lie off the receiver, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
     /// is looked up before the near plane is lit, as it should be where no caster is lost.
@@ -422,21 +423,28 @@ pub struct CoverageQuery {
 impl CoverageQuery {
     /// What a single map of [`fit_scene`](crate::fit_scene) is made for: all receivers up to the
     /// shadow distance.
-    pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
+    pub const fn of_fit(settings: &FitSettings, reach: FilterRadius) -> Self {
         let (near, far) = (f32::MIN, settings.map.max_distance);
         let casters = settings.map.casters;
-        Self { near, far, reach, normal_offset: 0.0, is_shared: false, casters, bias: None }
+        Self { near, far, filter_radius: reach, normal_offset: 0.0, is_shared: false, casters, bias: None }
     }
 
-    /// What one of several maps is made for: the receivers from [`FittedMap::covered_near`] to
-    /// [`FittedMap::far`] or the shadow distance. Where maps are read by coverage, proofs for each map of
+    /// What one of several maps is made for: the receivers from [`DepthRange::covered_from`] to
+    /// [`DepthRange::far`] or the shadow distance. Where maps are read by coverage, proofs for each map of
     /// a frame are a proof for all: every receiver is held by the map of its own depth, and whichever finer
     /// map it reads has all of its casters.
-    pub const fn of_map(map: &FittedMap, settings: &Technique, reach: Reach) -> Self {
-        let far = map.far.min(settings.fit.max_distance);
-        let (near, is_shared) = (map.covered_near.min(far), settings.shares_maps());
+    pub const fn of_map(map: &FittedMap, settings: &Technique, reach: FilterRadius) -> Self {
+        let shadow_distance = settings.fit.max_distance;
+        let (near, far) = match map.depths {
+            Some(DepthRange { far, covered_from: Some(near), .. }) => {
+                let far = if let Some(far) = far { (far as f32).min(shadow_distance) } else { shadow_distance };
+                ((near as f32).min(far), far)
+            }
+            _ => (shadow_distance, shadow_distance),
+        };
+        let is_shared = settings.shares_maps();
         let bias = Some((map.bias.constant_depth, DepthStorage::of(settings.format)));
-        Self { near, far, reach, normal_offset: 0.0, is_shared, casters: settings.fit.casters, bias }
+        Self { near, far, filter_radius: reach, normal_offset: 0.0, is_shared, casters: settings.fit.casters, bias }
     }
 
     /// This query with another [`normal_offset`](Self::normal_offset).
@@ -453,7 +461,7 @@ impl CoverageQuery {
             checks::finite("the query's constant bias", f64::from(bias))?;
         }
         checks::within("the query's normal offset", f64::from(self.normal_offset), 0.0, checks::MAX_LENGTH)?;
-        self.reach.checked()?;
+        self.filter_radius.checked()?;
         if self.near > self.far {
             return Err(FitError::NearNotBelowFar { near: self.near, far: self.far });
         }
@@ -480,6 +488,6 @@ pub enum MapPlane {
 }
 
 impl MapPlane {
-    /// All planes, in the order of [`LightProjection::set_by`](crate::LightProjection::set_by).
+    /// All planes, in the order of [`LightProjection::bounds_from`](crate::LightProjection::bounds_from).
     pub const ALL: [Self; 6] = [Self::Left, Self::Right, Self::Bottom, Self::Top, Self::Far, Self::Near];
 }

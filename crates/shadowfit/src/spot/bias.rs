@@ -46,7 +46,7 @@ use super::SpotFit;
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH, UNIT};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
-use crate::bias::{HARDWARE_SNAP, MIN_COSINE, PlaneBias, Reach};
+use crate::bias::{FilterRadius, HARDWARE_SNAP, MIN_COSINE, PlaneBias};
 use crate::technique::settings::BiasSettings;
 
 /// Biases ready for a shader. Let n be the geometric normal, turned toward the light, α its angle to the light's axis
@@ -161,7 +161,7 @@ impl SpotBias {
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, also where it is wider than the distance
     /// from the light itself (a map of very few texels), and for a fit that was filled by hand with what is not finite.
     pub fn automatic(
-        reach: impl Into<Reach>,
+        reach: impl Into<FilterRadius>,
         storage: impl Into<DepthStorage>,
         fit: &SpotFit,
     ) -> Result<Self, FitError> {
@@ -185,7 +185,7 @@ impl SpotBias {
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, or for a fit that was filled by hand with
     /// what is not finite.
     pub fn automatic_receiver_plane(
-        reach: impl Into<Reach>,
+        reach: impl Into<FilterRadius>,
         storage: impl Into<DepthStorage>,
         fit: &SpotFit,
     ) -> Result<Self, FitError> {
@@ -245,11 +245,11 @@ impl SpotBias {
 /// # Errors
 ///
 /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach.
-pub fn on_hardware(fit: &SpotFit, reach: impl Into<Reach>) -> Result<Reach, FitError> {
+pub fn on_hardware(fit: &SpotFit, reach: impl Into<FilterRadius>) -> Result<FilterRadius, FitError> {
     let reach = reach.into().checked()?;
     let texel = f64::from(fit.texel_size.x.min(fit.texel_size.y));
     let rounding = TERMS * fit.stretch() * fit.stretch() / texel;
-    Reach { taps: reach.taps + HARDWARE_SNAP + rounding as f32, ..reach }.checked()
+    FilterRadius { taps: reach.taps + HARDWARE_SNAP + rounding as f32, ..reach }.checked()
 }
 
 /// Normal offset that a plane needs at a world position (f64, metres), in metres along its normal on the light's side
@@ -262,7 +262,12 @@ pub fn on_hardware(fit: &SpotFit, reach: impl Into<Reach>) -> Result<Reach, FitE
 ///
 /// [`FitError::NotFinite`]; [`FitError::OutOfRange`] for the reach, for a point that is not before the light, and where
 /// the filter is so wide that no lift clears the plane; [`FitError::BadDirection`] for the normal.
-pub fn normal_offset(fit: &SpotFit, reach: impl Into<Reach>, point: DVec3, normal: Vec3) -> Result<f32, FitError> {
+pub fn normal_offset(
+    fit: &SpotFit,
+    reach: impl Into<FilterRadius>,
+    point: DVec3,
+    normal: Vec3,
+) -> Result<f32, FitError> {
     let plane = Plane::of(fit, point, normal)?;
     let rise = plane.rise(reach.into().checked()?);
     let rest = 1.0 + rise * plane.along;
@@ -279,7 +284,7 @@ pub fn normal_offset(fit: &SpotFit, reach: impl Into<Reach>, point: DVec3, norma
 /// As [`normal_offset`].
 pub fn receiver_plane_depth(
     fit: &SpotFit,
-    reach: impl Into<Reach>,
+    reach: impl Into<FilterRadius>,
     point: DVec3,
     normal: Vec3,
 ) -> Result<f32, FitError> {
@@ -353,7 +358,7 @@ impl Plane {
     }
 
     /// Greatest height of the plane over itself within a filter's reach, per metre along the axis: s.
-    pub(super) fn rise(&self, reach: Reach) -> f64 {
+    pub(super) fn rise(&self, reach: FilterRadius) -> f64 {
         reach.rise(self.u, self.v)
     }
 

@@ -7,7 +7,8 @@
 //! ```
 //! use shadowfit::glam::{DVec3, UVec2, Vec3};
 //! use shadowfit::settings::{FilterKind, MapFormat};
-//! use shadowfit::{DepthConvention, SpotBias, SpotLight};
+//! use shadowfit::spot::{SpotBias, SpotLight};
+//! use shadowfit::DepthConvention;
 //!
 //! let eye = DVec3::new(3.0, 1.7, 8.0);
 //! let lamp = SpotLight::toward(DVec3::new(0.0, 4.0, 0.0), DVec3::new(0.5, 0.0, -2.0), 0.9, 1.0, 0.1, 30.0);

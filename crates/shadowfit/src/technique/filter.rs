@@ -53,11 +53,11 @@ impl FilterKind {
         matches!(self, Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss)
     }
 
-    /// Reach E of the filter: the greatest distance along one axis from the sampled point to a texel
+    /// Filter radius E of the filter: the greatest distance along one axis from the sampled point to a texel
     /// centre of non-zero weight, in texels. Of a [soft](Self::is_soft) filter it is that of one of its look-ups: the
     /// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
-    /// [`Technique::reach`](crate::Technique::reach) has both.
-    pub const fn reach(self) -> f32 {
+    /// [`Technique::filter_radius`](crate::Technique::filter_radius) has both.
+    pub const fn filter_radius(self) -> f32 {
         match self {
             Self::Point => 0.5,
             Self::Hardware2x2 | Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss => 1.0,
@@ -154,10 +154,10 @@ impl Softness {
         }
     }
 
-    /// Greatest reach of a filter per axis, in texels, in any map: the [look-up's](FilterKind::reach), and for soft filters the
-    /// [ceiling](Self::ceiling) of their disc.
-    pub const fn reach(&self, filter: FilterKind) -> f32 {
-        filter.reach() + if filter.is_soft() { self.ceiling } else { 0.0 }
+    /// Greatest reach of a filter per axis, in texels, in any map: the [look-up's](FilterKind::filter_radius), and for
+    /// soft filters the [ceiling](Self::ceiling) of their disc.
+    pub const fn filter_radius(&self, filter: FilterKind) -> f32 {
+        filter.filter_radius() + if filter.is_soft() { self.ceiling } else { 0.0 }
     }
 
     /// Least width of a texel, in metres, with which a filter needs no larger radius than the

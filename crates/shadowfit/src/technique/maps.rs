@@ -12,10 +12,10 @@ use crate::technique::settings::{
 pub enum Maps {
     /// Rectangles that are fixed to the world, each where it helps most of what is visible. The default.
     Windows(Windows),
-    /// Slices of the view, one behind the other.
-    Slices(Slices),
+    /// Cascades, one behind the other.
+    Cascades(Cascades),
     /// One map around everything that is shadowed.
-    One(OneMap),
+    Single(SingleMap),
 }
 
 impl Default for Maps {
@@ -33,9 +33,9 @@ impl Default for Maps {
 /// [earlier frame showed](crate::FitInput::demand), or else of what rays through the boxes find. They are whole: the
 /// last one holds all receivers in view, so that a late or wrong count costs sharpness and never coverage.
 ///
-/// A lens below 3 degrees of vertical view sees a thin strip of that plane, which slices may fit better, as they do above
-/// 120 degrees. Windows need up to 2.5 times the resolution of the presets `focused-4` and `calm-4` at 1 degree, and 3.7
-/// times at 0.2 degrees. They need up to 1.7 times from 5 to 120 degrees, and 3.1 times at 170 degrees.
+/// A lens below 3 degrees of vertical view sees a thin strip of that plane, which cascades may fit better, as they do
+/// above 120 degrees. Windows need up to 2.5 times the resolution of the presets `focused-4` and `calm-4` at 1 degree,
+/// and 3.7 times at 0.2 degrees. They need up to 1.7 times from 5 to 120 degrees, and 3.1 times at 170 degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Windows {
@@ -45,12 +45,12 @@ pub struct Windows {
     /// 0..=[`MapSelection::MAX_BLEND`]; 0 for none. Default: 8.
     pub blend: f32,
     /// A window's depth range is kept until it is longer than necessary by this factor, 1..=100. Default: 1.8.
-    pub max_depth_waste: f32,
+    pub max_depth_oversize: f32,
 }
 
 impl Default for Windows {
     fn default() -> Self {
-        Self { count: 4, blend: MapSelection::DEFAULT_BLEND, max_depth_waste: DEFAULT_WASTE }
+        Self { count: 4, blend: MapSelection::DEFAULT_BLEND, max_depth_oversize: DEFAULT_WASTE }
     }
 }
 
@@ -59,10 +59,10 @@ impl Windows {
     pub(crate) const WHOLE: Shape = Shape { rectangle: RectangleKind::AxisAligned, ..Shape::new(FitKind::Focused) };
 }
 
-/// Slices of the view: each map holds a range of view depths of its own, as in other engines' cascades.
+/// Cascades: each map holds a range of view depths of its own, as in other engines' cascades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct Slices {
+pub struct Cascades {
     /// Number of maps, 2..=8. Default: 4, as Bevy and Babylon.js have it.
     pub count: u32,
     /// Shape of each map across the light. Default: [`FitKind::Focused`].
@@ -76,7 +76,7 @@ pub struct Slices {
     pub stabilise: Stabilise,
 }
 
-impl Default for Slices {
+impl Default for Cascades {
     fn default() -> Self {
         Self {
             count: 4,
@@ -91,29 +91,29 @@ impl Default for Slices {
 /// One map around everything that is shadowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct OneMap {
+pub struct SingleMap {
     /// Its shape across the light. Default: [`FitKind::Focused`].
     pub shape: Shape,
     /// What keeps it stable. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
 }
 
-impl OneMap {
+impl SingleMap {
     /// The map as the only slice of the view.
-    pub(crate) fn slice(&self) -> Slices {
+    pub(crate) fn slice(&self) -> Cascades {
         let Self { shape, stabilise } = *self;
         let selection = MapSelection::Coverage { blend: 0.0 };
-        Slices { count: 1, shape, splits: SplitScheme::Logarithmic, selection, stabilise }
+        Cascades { count: 1, shape, splits: SplitScheme::Logarithmic, selection, stabilise }
     }
 }
 
 setters!(Windows {
     with_count count: u32,
     with_blend blend: f32,
-    with_max_depth_waste max_depth_waste: f32,
+    with_max_depth_oversize max_depth_oversize: f32,
 });
 
-setters!(Slices {
+setters!(Cascades {
     with_count count: u32,
     with_shape shape: Shape,
     with_splits splits: SplitScheme,
@@ -121,7 +121,7 @@ setters!(Slices {
     with_stabilise stabilise: Stabilise,
 });
 
-setters!(OneMap {
+setters!(SingleMap {
     with_shape shape: Shape,
     with_stabilise stabilise: Stabilise,
 });
@@ -132,15 +132,15 @@ impl From<Windows> for Maps {
     }
 }
 
-impl From<Slices> for Maps {
-    fn from(slices: Slices) -> Self {
-        Self::Slices(slices)
+impl From<Cascades> for Maps {
+    fn from(cascades: Cascades) -> Self {
+        Self::Cascades(cascades)
     }
 }
 
-impl From<OneMap> for Maps {
-    fn from(one: OneMap) -> Self {
-        Self::One(one)
+impl From<SingleMap> for Maps {
+    fn from(one: SingleMap) -> Self {
+        Self::Single(one)
     }
 }
 
@@ -149,30 +149,30 @@ impl Maps {
     pub const fn count(&self) -> u32 {
         match self {
             Self::Windows(windows) => windows.count,
-            Self::Slices(slices) => slices.count,
-            Self::One(_) => 1,
+            Self::Cascades(cascades) => cascades.count,
+            Self::Single(_) => 1,
         }
     }
 
-    /// As many maps of the same kind; slices that become one are [one map](Self::One) of their shape, and the other way
-    /// round.
+    /// As many maps of the same kind; cascades that become one are [one map](Self::Single) of their shape, and the
+    /// other way round.
     #[must_use]
     pub fn with_count(self, count: u32) -> Self {
         match self {
             Self::Windows(windows) => windows.with_count(count).into(),
-            Self::Slices(_) | Self::One(_) if count == 1 => self.as_one().into(),
-            Self::Slices(slices) => slices.with_count(count).into(),
-            Self::One(_) => self.as_slices().with_count(count).into(),
+            Self::Cascades(_) | Self::Single(_) if count == 1 => self.as_single().into(),
+            Self::Cascades(cascades) => cascades.with_count(count).into(),
+            Self::Single(_) => self.as_cascades().with_count(count).into(),
         }
     }
 
-    /// As many maps of the view, of a shape across the light: [slices](Self::Slices), or [one map](Self::One).
+    /// As many maps of the view, of a shape across the light: [cascades](Self::Cascades), or [one map](Self::Single).
     #[must_use]
     pub fn with_shape(self, shape: Shape) -> Self {
         if self.count() == 1 {
-            self.as_one().with_shape(shape).into()
+            self.as_single().with_shape(shape).into()
         } else {
-            self.as_slices().with_shape(shape).into()
+            self.as_cascades().with_shape(shape).into()
         }
     }
 
@@ -182,58 +182,62 @@ impl Maps {
         self.with_shape(self.shape().unwrap_or_default().with_kind(kind))
     }
 
-    /// As many maps of the view, kept as told: [slices](Self::Slices), or [one map](Self::One).
+    /// As many maps of the view, kept as told: [cascades](Self::Cascades), or [one map](Self::Single).
     #[must_use]
     pub fn with_stabilise(self, stabilise: Stabilise) -> Self {
         if self.count() == 1 {
-            self.as_one().with_stabilise(stabilise).into()
+            self.as_single().with_stabilise(stabilise).into()
         } else {
-            self.as_slices().with_stabilise(stabilise).into()
+            self.as_cascades().with_stabilise(stabilise).into()
         }
     }
 
-    /// These slices, or the nearest to maps of another kind: as many (of one map: 2), with what both kinds have.
-    pub fn as_slices(&self) -> Slices {
+    /// These cascades, or the nearest to maps of another kind: as many (of one map: 2), with what both kinds have.
+    pub fn as_cascades(&self) -> Cascades {
         match *self {
-            Self::Windows(Windows { count, blend, max_depth_waste: max_waste }) => Slices {
+            Self::Windows(Windows { count, blend, max_depth_oversize: max_oversize }) => Cascades {
                 count: count.max(2),
                 selection: MapSelection::Coverage { blend },
-                stabilise: Stabilise::Hysteresis(Hysteresis { max_waste, ..Hysteresis::default() }),
-                ..Slices::default()
+                stabilise: Stabilise::Hysteresis(Hysteresis { max_oversize, ..Hysteresis::default() }),
+                ..Cascades::default()
             },
-            Self::Slices(slices) => slices,
-            Self::One(OneMap { shape, stabilise }) => Slices { count: 2, shape, stabilise, ..Slices::default() },
+            Self::Cascades(cascades) => cascades,
+            Self::Single(SingleMap { shape, stabilise }) => {
+                Cascades { count: 2, shape, stabilise, ..Cascades::default() }
+            }
         }
     }
 
     /// These windows, or the nearest to maps of another kind: as many, with what both kinds have.
     pub fn as_windows(&self) -> Windows {
-        let windows = |count, blend, max_depth_waste| Windows { count, blend, max_depth_waste };
+        let windows = |count, blend, max_depth_oversize| Windows { count, blend, max_depth_oversize };
         match *self {
             Self::Windows(windows) => windows,
-            Self::Slices(Slices { count, selection, stabilise, .. }) => {
+            Self::Cascades(Cascades { count, selection, stabilise, .. }) => {
                 let blend = if selection.is_by_coverage() { selection.blend() } else { MapSelection::DEFAULT_BLEND };
-                windows(count, blend, stabilise.max_waste())
+                windows(count, blend, stabilise.max_oversize())
             }
-            Self::One(OneMap { stabilise, .. }) => windows(1, MapSelection::DEFAULT_BLEND, stabilise.max_waste()),
+            Self::Single(SingleMap { stabilise, .. }) => {
+                windows(1, MapSelection::DEFAULT_BLEND, stabilise.max_oversize())
+            }
         }
     }
 
     /// This map, or the nearest to maps of another kind: one around them all, with what both kinds have.
-    pub fn as_one(&self) -> OneMap {
-        if let Self::One(one) = *self {
+    pub fn as_single(&self) -> SingleMap {
+        if let Self::Single(one) = *self {
             return one;
         }
-        let Slices { shape, stabilise, .. } = self.as_slices();
-        OneMap { shape, stabilise }
+        let Cascades { shape, stabilise, .. } = self.as_cascades();
+        SingleMap { shape, stabilise }
     }
 
     /// The shape of each map; `None` of windows, whose shape follows from the light.
     pub const fn shape(&self) -> Option<Shape> {
         match self {
             Self::Windows(_) => None,
-            Self::Slices(slices) => Some(slices.shape),
-            Self::One(one) => Some(one.shape),
+            Self::Cascades(cascades) => Some(cascades.shape),
+            Self::Single(one) => Some(one.shape),
         }
     }
 
@@ -241,17 +245,17 @@ impl Maps {
     pub const fn selection(&self) -> MapSelection {
         match self {
             Self::Windows(windows) => MapSelection::Coverage { blend: windows.blend },
-            Self::Slices(slices) => slices.selection,
-            Self::One(_) => MapSelection::Coverage { blend: 0.0 },
+            Self::Cascades(cascades) => cascades.selection,
+            Self::Single(_) => MapSelection::Coverage { blend: 0.0 },
         }
     }
 
     /// Whether fits go by what an earlier frame showed, where that is known.
-    pub const fn uses_seen(&self) -> bool {
+    pub const fn uses_visible_demand(&self) -> bool {
         match self {
             Self::Windows(_) => true,
-            Self::Slices(slices) => matches!(slices.splits, SplitScheme::FromHistogram),
-            Self::One(_) => false,
+            Self::Cascades(cascades) => matches!(cascades.splits, SplitScheme::FromHistogram),
+            Self::Single(_) => false,
         }
     }
 
@@ -259,7 +263,7 @@ impl Maps {
     pub(crate) const fn are_kept(&self) -> bool {
         match self {
             Self::Windows(_) => true,
-            Self::Slices(Slices { stabilise, .. }) | Self::One(OneMap { stabilise, .. }) => {
+            Self::Cascades(Cascades { stabilise, .. }) | Self::Single(SingleMap { stabilise, .. }) => {
                 !matches!(stabilise, Stabilise::Off)
             }
         }
@@ -272,7 +276,7 @@ impl Maps {
 
     /// Refuses numbers that are out of range.
     pub(crate) fn check(&self) -> Result<(), FitError> {
-        let least = if matches!(self, Self::Slices(_)) { 2.0 } else { 1.0 };
+        let least = if matches!(self, Self::Cascades(_)) { 2.0 } else { 1.0 };
         checks::within("the number of maps", f64::from(self.count()), least, MAX_MAPS as f64)?;
         match self.selection() {
             MapSelection::Coverage { blend } => {
@@ -284,9 +288,11 @@ impl Maps {
         }
         match self {
             Self::Windows(windows) => {
-                checks::within("the windows' depth waste", f64::from(windows.max_depth_waste), 1.0, 100.0)?;
+                checks::within("the windows' depth oversize", f64::from(windows.max_depth_oversize), 1.0, 100.0)?;
             }
-            Self::Slices(Slices { stabilise, .. }) | Self::One(OneMap { stabilise, .. }) => check_kept(*stabilise)?,
+            Self::Cascades(Cascades { stabilise, .. }) | Self::Single(SingleMap { stabilise, .. }) => {
+                check_kept(*stabilise)?;
+            }
         }
         Ok(())
     }
@@ -298,6 +304,6 @@ fn check_kept(stabilise: Stabilise) -> Result<(), FitError> {
         checks::within("the hysteresis's margin", f64::from(hysteresis.margin), 0.0, 10.0)?;
         checks::within("the hysteresis's greatest growth", f64::from(hysteresis.max_growth), 1.0, 100.0)?;
     }
-    checks::within("the maps' greatest waste", f64::from(stabilise.max_waste()), 1.0, 100.0)?;
+    checks::within("the maps' greatest oversize", f64::from(stabilise.max_oversize()), 1.0, 100.0)?;
     Ok(())
 }

@@ -12,7 +12,7 @@ mod presets;
 mod setters;
 pub mod settings;
 
-pub use maps::{Maps, OneMap, Slices, Windows};
+pub use maps::{Cascades, Maps, SingleMap, Windows};
 pub use presets::{PRESETS, Preset};
 
 /// How shadows are made: the maps and their fit, the filter and the bias that read them, their
@@ -74,14 +74,14 @@ setters!(Technique {
 });
 
 impl Technique {
-    /// This technique with other maps: [`Windows`], [`Slices`] or [`OneMap`].
+    /// This technique with other maps: [`Windows`], [`Cascades`] or [`SingleMap`].
     #[must_use]
     pub fn with_maps(mut self, maps: impl Into<Maps>) -> Self {
         self.maps = maps.into();
         self
     }
 
-    /// This technique with another number of maps; slices of the view that become one are [one map](OneMap), and the
+    /// This technique with another number of maps; cascades that become one are [one map](SingleMap), and the
     /// other way round.
     #[must_use]
     pub fn with_count(mut self, count: u32) -> Self {
@@ -133,15 +133,15 @@ impl Technique {
         match self.fit.border {
             Some(texels) => texels,
             // The looked-up point moves across the light by the offset at most.
-            None => self.reach() + self.bias.normal_offset,
+            None => self.filter_radius() + self.bias.normal_offset,
         }
     }
 
     /// Greatest reach of the filter per axis, in texels, in any map: of a soft filter that of one look-up and the
     /// [ceiling](Softness::ceiling) of its disc. The border and the choice by coverage go by it, so that they do not
     /// change with the texels of a map.
-    pub const fn reach(&self) -> f32 {
-        self.softness.reach(self.filter)
+    pub const fn filter_radius(&self) -> f32 {
+        self.softness.filter_radius(self.filter)
     }
 
     /// Least width of a texel, in metres; 0 for no limit. It is [`MapSettings::least_texel`], or more where a

@@ -1,7 +1,7 @@
 //! Techniques by name, each with a line that says when to take it.
 
 use crate::technique::settings::{Edges, FitKind, Shape, SplitScheme, Stabilise};
-use crate::technique::{OneMap, Slices, Technique, Windows};
+use crate::technique::{Cascades, SingleMap, Technique, Windows};
 
 /// A technique by name.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +57,7 @@ pub static PRESETS: [Preset; 10] = [
         summary: "4 maps around spheres on a fixed grid of texels, splits from the boxes and held",
         advice: "Where edges must stand still, and coarser shadows are a fair price: they move only in the frame in which \
                  the splits are chosen again, once in a while on a way through very different views.",
-        make: || several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap { max_waste: 4.0 }),
+        make: || several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap { max_oversize: 4.0 }),
     },
     Preset {
         name: "focused-4",
@@ -69,8 +69,8 @@ pub static PRESETS: [Preset; 10] = [
     Preset {
         name: "calm-4",
         summary: "as focused-4, maps held while they serve and moved by whole texels",
-        advice: "Where maps must be slices of the view, as for engines that read them by view depth: nearly as still as \
-                 stable-4, and sharper.",
+        advice: "Where maps must be cascades: nearly as still as stable-4, and sharper. An engine that reads maps by \
+                 view depth sets Selection to By view depth.",
         make: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::default()),
     },
     Preset {
@@ -104,11 +104,11 @@ impl Technique {
 }
 
 fn single(kind: FitKind) -> Technique {
-    Technique::default().with_maps(OneMap { shape: Shape::new(kind), stabilise: Stabilise::Off })
+    Technique::default().with_maps(SingleMap { shape: Shape::new(kind), stabilise: Stabilise::Off })
 }
 
 fn several(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> Technique {
-    Technique::default().with_maps(Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() })
+    Technique::default().with_maps(Cascades { shape: Shape::new(kind), splits, stabilise, ..Cascades::default() })
 }
 
 #[cfg(test)]

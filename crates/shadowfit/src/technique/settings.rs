@@ -271,10 +271,10 @@ pub enum Stabilise {
     /// still change when the camera turns.
     Snap {
         /// Splits and depth ranges are kept until they are larger than necessary by this factor, 1..=100.
-        max_waste: f32,
+        max_oversize: f32,
     },
     /// A map is kept, its angle included, and moved by whole texels as long as it covers what it
-    /// must and wastes no more than [`Hysteresis::max_waste`]. A new map is made large enough for the
+    /// must and wastes no more than [`Hysteresis::max_oversize`]. A new map is made large enough for the
     /// predicted motion. The default.
     Hysteresis(Hysteresis),
 }
@@ -287,12 +287,12 @@ impl Default for Stabilise {
 
 impl Stabilise {
     /// How many times larger than necessary something that is kept may become.
-    pub const fn max_waste(self) -> f32 {
+    pub const fn max_oversize(self) -> f32 {
         match self {
             // Nothing but the depth range of a sphere, which lies on the world's grid.
             Self::Off => DEFAULT_WASTE,
-            Self::Snap { max_waste } => max_waste,
-            Self::Hysteresis(hysteresis) => hysteresis.max_waste,
+            Self::Snap { max_oversize } => max_oversize,
+            Self::Hysteresis(hysteresis) => hysteresis.max_oversize,
         }
     }
 }
@@ -308,14 +308,14 @@ pub struct Hysteresis {
     pub max_growth: f32,
     /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
     /// splits are chosen anew by the same rule. Default: 1.8.
-    pub max_waste: f32,
+    pub max_oversize: f32,
     /// Greatest number of frames to look ahead. Default: 32.
     pub look_ahead: u32,
 }
 
 impl Default for Hysteresis {
     fn default() -> Self {
-        Self { margin: 0.02, max_growth: 1.4, max_waste: DEFAULT_WASTE, look_ahead: 32 }
+        Self { margin: 0.02, max_growth: 1.4, max_oversize: DEFAULT_WASTE, look_ahead: 32 }
     }
 }
 
@@ -493,7 +493,7 @@ setters!(FitSettings.map {
 setters!(Hysteresis {
     with_margin margin: f32,
     with_max_growth max_growth: f32,
-    with_max_waste max_waste: f32,
+    with_max_oversize max_oversize: f32,
     with_look_ahead look_ahead: u32,
 });
 

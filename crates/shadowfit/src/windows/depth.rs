@@ -8,7 +8,7 @@ use crate::base::{Boxes, FitError, moved};
 use crate::content::{Bounds, Content, Found, Query, Visit, VisitCorners};
 use crate::demand::grid::Plane;
 use crate::fits::{Depth, FitRule};
-use crate::light::{Column, Constraint, LightAxes};
+use crate::light::{BoundSource, Column, LightAxes};
 use crate::view::Range;
 
 /// Boxes as the light sees them, those of the lists three elements each: least and greatest x and y, and z.
@@ -92,28 +92,28 @@ impl<'a, 'b> Shadows<'a, 'b> {
         let mut over = Over::new(&self.axes, min, max);
         if !self.is_empty {
             over.add_list(receivers, self.receivers, self.content.origin);
-            self.content.visit(Query::Standing, &mut over);
+            self.content.visit(Query::StaticBoxes, &mut over);
         }
-        let (mut far_by, mut near_by) = (Constraint::Receivers, Constraint::Receivers);
+        let (mut far_by, mut near_by) = (BoundSource::Receivers, BoundSource::Receivers);
         if over.low > over.high {
             (over.low, over.high) = (self.min.z, self.max.z);
-            (far_by, near_by) = (Constraint::View, Constraint::View);
+            (far_by, near_by) = (BoundSource::View, BoundSource::View);
         }
         let (low, covered, vertices) = (over.low, over.high, over.farthest_squared);
         let mut high = covered;
         match rule.depth {
             Depth::AtCovered | Depth::Doubled => {}
-            Depth::Extended(metres) => (high, near_by) = (high + metres, Constraint::CasterExtension),
+            Depth::Extended(metres) => (high, near_by) = (high + metres, BoundSource::CasterExtension),
             Depth::AtCasterBounds | Depth::AtCasters => {
                 // They move the near plane alone.
                 (over.low, over.farthest_squared) = (f64::MIN, f64::MAX);
                 over.add_list(casters, self.casters, self.content.origin);
                 if self.is_empty {
                     over.add_list(receivers.filter(|_| casters.is_none()), self.receivers, self.content.origin);
-                    self.content.visit(Query::Standing, &mut over);
+                    self.content.visit(Query::StaticBoxes, &mut over);
                 }
                 high = over.high;
-                near_by = if high > covered { Constraint::Casters } else { near_by };
+                near_by = if high > covered { BoundSource::Casters } else { near_by };
             }
         }
         let farthest = min.abs().max(max.abs()).max_element() + low.abs().max(high.abs());
@@ -230,8 +230,8 @@ fn farthest_squared(b: &[DVec2; PER_BOX]) -> f64 {
 pub(super) struct WindowDepth {
     pub(super) low: f64,
     pub(super) high: f64,
-    pub(super) far_by: Constraint,
-    pub(super) near_by: Constraint,
+    pub(super) far_by: BoundSource,
+    pub(super) near_by: BoundSource,
     /// Greatest distance of a corner of the receivers' boxes from the origin, in metres.
     pub(super) vertices: f64,
 }

@@ -1,4 +1,4 @@
-//! Windows: maps that are no slices of the view, but squares of the plane across the light, each put
+//! Windows: maps that are no cascades, but squares of the plane across the light, each put
 //! where it helps most of what is visible. Sharp, and still: the
 //! [recommended technique](crate::Technique) has four of them.
 //!
@@ -70,7 +70,8 @@ use crate::base::FitError;
 use crate::demand::grid::Plane;
 use crate::fits::{Frame, PlacedMap, PlacedMaps};
 use crate::light::grid::{self, Grid};
-use crate::light::{Constraint, Volume};
+use crate::light::{BoundSource, Volume};
+use crate::selection::DepthRange;
 use crate::technique::Windows;
 use crate::technique::settings::MAX_MAPS;
 use cells::Cells;
@@ -104,10 +105,11 @@ pub(crate) fn place(
     for (i, map) in maps.iter_mut().enumerate().take(last + 1) {
         let window = &mut held.drawn[i];
         window.z = drawn_before.map(|drawn| &drawn[i]).filter(|was| was.steps == window.steps).and_then(|was| was.z);
-        let volume = volume(frame, settings.max_depth_waste, &lattice, window, &shadows);
+        let volume = volume(frame, settings.max_depth_oversize, &lattice, window, &shadows);
+        let [near, far] = [frame.range.near, frame.range.far].map(f64::from);
         // Only the last one holds all that is seen between any depths.
-        let covered_near = if i < last { frame.range.far } else { frame.range.near };
-        *map = Some(PlacedMap { volume, near: frame.range.near, far: frame.range.far, covered_near });
+        let depths = DepthRange { near, far: Some(far), covered_from: (i == last).then_some(near) };
+        *map = Some(PlacedMap { volume, depths: Some(depths) });
     }
     Ok((maps, held))
 }
@@ -126,17 +128,17 @@ fn visible(frame: &Frame, plane: &Plane) -> (Cells, bool) {
 }
 
 /// A window's box. Its depth range is taken from the window while it serves, and written to it.
-fn volume(frame: &Frame, waste: f32, lattice: &Lattice, window: &mut Window, shadows: &Shadows) -> Volume {
+fn volume(frame: &Frame, max_oversize: f32, lattice: &Lattice, window: &mut Window, shadows: &Shadows) -> Volume {
     let (axes, origin) = (lattice.plane.axes, frame.content.origin);
     let (anchor, resolution) = (grid::anchor(&axes, origin), frame.rule.resolution.as_dvec2());
     let mut grid = Grid { first: window.first, texel: lattice.texel(window.steps), z: (0.0, 0.0) };
     let (min, max) = grid.across(anchor, resolution);
     // A texel more on all sides, for the rasteriser.
     let depth = shadows.depth(min - grid.texel, max + grid.texel, frame.rule);
-    grid.z = grid::stabilised_depth(window.z, depth.low + anchor.z, depth.high + anchor.z, f64::from(waste));
+    grid.z = grid::stabilised_depth(window.z, depth.low + anchor.z, depth.high + anchor.z, f64::from(max_oversize));
     window.z = Some(grid.z);
-    let side = Constraint::Window;
-    let set_by = [side, side, side, side, depth.far_by, depth.near_by];
-    let volume = Volume::on_grid(axes, grid, resolution, origin, set_by, shadows.is_empty);
+    let side = BoundSource::Window;
+    let bounds_from = [side, side, side, side, depth.far_by, depth.near_by];
+    let volume = Volume::on_grid(axes, grid, resolution, origin, bounds_from, shadows.is_empty);
     Volume { vertex_distance: depth.vertices, ..volume }
 }

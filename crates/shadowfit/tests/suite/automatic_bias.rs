@@ -8,7 +8,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
-use shadowfit::bias::{MIN_COSINE, Reach, depth_gradient, depth_precision, normal_offset};
+use shadowfit::bias::{FilterRadius, MIN_COSINE, depth_gradient, depth_precision, normal_offset};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3, Vec3Swizzles};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat};
@@ -305,7 +305,7 @@ proptest! {
         }
         // The default technique compares each texel of the hardware's 2×2 with the plane's own depth.
         for format in MapFormat::ALL {
-            for (kind, reach) in [(FilterKind::Point, Reach::POINT), (FilterKind::Pcf5x5, Reach::HARDWARE_2X2)] {
+            for (kind, reach) in [(FilterKind::Point, FilterRadius::POINT), (FilterKind::Pcf5x5, FilterRadius::HARDWARE_2X2)] {
                 let bias = Bias::from_texels(&BiasSettings::automatic(kind), format, &case.fit);
                 let all = filters();
                 let filter = all.iter().find(|filter| filter.reach == reach).expect("a filter of this reach");

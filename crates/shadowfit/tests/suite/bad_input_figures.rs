@@ -2,10 +2,10 @@
 //! zero, subnormal or huge: an error or a finite result, never a panic.
 
 use proptest::prelude::*;
-use shadowfit::bias::{Reach, acos_bias, depth_gradient, normal_offset, receiver_plane_depth};
+use shadowfit::bias::{FilterRadius, acos_bias, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, share_of_map};
 use shadowfit::glam::{DVec3, Vec2, Vec3};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::settings::{BiasSettings, FitKind, MapFormat};
 use shadowfit::{Bias, FitError, LightProjection};
 
@@ -21,7 +21,7 @@ const ODD: [f32; 12] =
 struct Inputs {
     normal: Vec3,
     point: DVec3,
-    reach: Reach,
+    reach: FilterRadius,
     bias: Bias,
     fixed: f32,
     epsilon: f32,
@@ -29,7 +29,7 @@ struct Inputs {
     depth: f32,
     range: f32,
     direction: Vec3,
-    steps: LightStepSettings,
+    steps: LightSteps,
     seconds: f32,
 }
 
@@ -66,14 +66,14 @@ const SETTERS: [Setter; 29] = [
     ("normal", |i, v| i.normal = Vec3::splat(v)),
     ("point", |i, v| i.point = DVec3::splat(f64::from(v))),
     ("direction", |i, v| i.direction = Vec3::splat(v)),
-    ("reach", |i, v| i.reach = Reach { taps: v, disc: Vec2::splat(v) }),
+    ("reach", |i, v| i.reach = FilterRadius { taps: v, disc: Vec2::splat(v) }),
 ];
 
 fn good() -> Inputs {
     Inputs {
         normal: Vec3::new(0.2, 0.9, -0.1),
         point: camera().eye + camera().forward.as_dvec3() * 10.0,
-        reach: Reach::HARDWARE_2X2.over_disc(2.0),
+        reach: FilterRadius::HARDWARE_2X2.over_disc(2.0),
         bias: Bias { constant_depth: 0.001, slope_depth: 0.001, normal_offset: 0.01, receiver_plane: 1.0 },
         fixed: 0.001,
         epsilon: 0.001,
@@ -81,7 +81,7 @@ fn good() -> Inputs {
         depth: 0.5,
         range: 100.0,
         direction: DIRECTION,
-        steps: LightStepSettings::default(),
+        steps: LightSteps::default(),
         seconds: 0.016,
     }
 }
@@ -94,7 +94,7 @@ fn figures(fit: &LightProjection, i: &Inputs) -> Result<Vec<f32>, FitError> {
     let receiver_plane = Bias::automatic_receiver_plane(i.reach, DepthStorage::Float16, fit)?;
     let margin = acne_margin(fit, &i.bias, i.reach, DepthStorage::Float32, i.point, i.normal)?;
     coverage(fit, i.reach, i.point)?;
-    let mut light = LightSteps::default();
+    let mut light = LightStepState::default();
     light.update(DIRECTION, &i.steps, i.seconds)?;
     let step = light.update(i.direction, &i.steps, i.seconds)?;
     let step = light.update(-i.direction, &i.steps, i.seconds).map(|next| [step.blend, next.blend])?;
@@ -209,7 +209,7 @@ fn a_fit_filled_with_bad_numbers_by_hand_gives_an_error_or_finite_figures() {
             if let Ok(figures) = figures(&bad, &good()) {
                 assert!(figures.iter().all(|figure| figure.is_finite()), "{value:e}: {figures:?}");
             }
-            let _ = LightStepSettings { extent: LightStepSettings::extent_of(&bad), ..Default::default() }.angle();
+            let _ = LightSteps { extent: LightSteps::extent_of(&bad), ..Default::default() }.angle();
         }
     }
 }

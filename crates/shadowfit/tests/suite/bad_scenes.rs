@@ -10,11 +10,11 @@ use shadowfit::settings::{
     SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, FitError, FitInput, FitState, FittedMaps, LightProjection, Maps, OneMap, Scratch, Slices, Technique,
-    ViewFrustum, Windows,
+    Aabb, Boxes, Cascades, FitError, FitInput, FitState, FittedMaps, LightProjection, Maps, Scratch, SingleMap,
+    Technique, ViewFrustum, Windows,
 };
 
-use crate::support::{DIRECTION, camera, cases, every_stabilise, sliced};
+use crate::support::{DIRECTION, ShaderDepths, camera, cases, every_stabilise, sliced};
 
 /// All inputs of a fit of a scene.
 #[derive(Clone, Debug)]
@@ -78,18 +78,18 @@ impl Inputs {
         self.with(|input, scratch| shadowfit::fit_scene(input, &settings, scratch))
     }
 
-    /// Changes slices; leaves other maps as they are.
-    fn slices(&mut self, change: impl FnOnce(&mut Slices)) {
-        if let Maps::Slices(slices) = &mut self.settings.maps {
-            change(slices);
+    /// Changes cascades; leaves other maps as they are.
+    fn cascades(&mut self, change: impl FnOnce(&mut Cascades)) {
+        if let Maps::Cascades(cascades) = &mut self.settings.maps {
+            change(cascades);
         }
     }
 
-    /// Changes what keeps slices and single maps.
+    /// Changes what keeps cascades and single maps.
     fn stabilise(&mut self, change: impl FnOnce(&mut Stabilise)) {
         match &mut self.settings.maps {
             Maps::Windows(_) => {}
-            Maps::Slices(Slices { stabilise, .. }) | Maps::One(OneMap { stabilise, .. }) => change(stabilise),
+            Maps::Cascades(Cascades { stabilise, .. }) | Maps::Single(SingleMap { stabilise, .. }) => change(stabilise),
         }
     }
 
@@ -104,27 +104,27 @@ impl Inputs {
 
     fn set_count(&mut self, number: u32) {
         match &mut self.settings.maps {
-            Maps::Windows(Windows { count, .. }) | Maps::Slices(Slices { count, .. }) => *count = number,
-            Maps::One(_) => {}
+            Maps::Windows(Windows { count, .. }) | Maps::Cascades(Cascades { count, .. }) => *count = number,
+            Maps::Single(_) => {}
         }
     }
 
     fn set_blend(&mut self, texels: f32) {
         match &mut self.settings.maps {
             Maps::Windows(windows) => windows.blend = texels,
-            Maps::Slices(slices) => slices.selection = MapSelection::Coverage { blend: texels },
-            Maps::One(_) => {}
+            Maps::Cascades(cascades) => cascades.selection = MapSelection::Coverage { blend: texels },
+            Maps::Single(_) => {}
         }
     }
 
-    fn set_waste(&mut self, factor: f32) {
+    fn set_max_oversize(&mut self, factor: f32) {
         if let Maps::Windows(windows) = &mut self.settings.maps {
-            windows.max_depth_waste = factor;
+            windows.max_depth_oversize = factor;
         }
         self.stabilise(|stabilise| match stabilise {
             Stabilise::Off => {}
-            Stabilise::Snap { max_waste } => *max_waste = factor,
-            Stabilise::Hysteresis(hold) => hold.max_waste = factor,
+            Stabilise::Snap { max_oversize } => *max_oversize = factor,
+            Stabilise::Hysteresis(hold) => hold.max_oversize = factor,
         });
     }
 
@@ -134,7 +134,7 @@ impl Inputs {
         for _ in 0..2 {
             for map in self.fit(&mut fitter).iter().flat_map(|maps| maps.iter()) {
                 assert!(is_finite(&map.projection), "{name}: {map:?}");
-                assert!(!map.near.is_nan() && !map.far.is_nan() && !map.covered_near.is_nan(), "{name}: {map:?}");
+                assert!(!map.near().is_nan() && !map.far().is_nan() && !map.covered_from().is_nan(), "{name}: {map:?}");
             }
         }
         if let Ok(fit) = self.single() {
@@ -194,18 +194,18 @@ const SETTERS: [Setter; 57] = [
     ("up", |i, v| i.settings.fit.up = Vec3::splat(v as f32)),
     ("resolution", |i, v| i.settings.fit.resolution = UVec2::new(v as u32, 512)),
     ("count", |i, v| i.set_count(v as u32)),
-    ("lambda", |i, v| i.slices(|slices| slices.splits = SplitScheme::Practical(v as f32))),
+    ("lambda", |i, v| i.cascades(|cascades| cascades.splits = SplitScheme::Practical(v as f32))),
     ("first manual split", |i, v| {
-        i.slices(|slices| slices.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0]));
+        i.cascades(|cascades| cascades.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0]));
     }),
     ("second manual split", |i, v| {
-        i.slices(|slices| slices.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]));
+        i.cascades(|cascades| cascades.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]));
     }),
-    ("overlap", |i, v| i.slices(|slices| slices.selection = MapSelection::ViewDepth { overlap: v as f32 })),
+    ("overlap", |i, v| i.cascades(|cascades| cascades.selection = MapSelection::ViewDepth { overlap: v as f32 })),
     ("blend", |i, v| i.set_blend(v as f32)),
     ("hold margin", |i, v| i.hold(|hold| hold.margin = v as f32)),
     ("hold growth", |i, v| i.hold(|hold| hold.max_growth = v as f32)),
-    ("waste", |i, v| i.set_waste(v as f32)),
+    ("oversize", |i, v| i.set_max_oversize(v as f32)),
     ("softness in metres", |i, v| i.settings.softness.radius = SoftRadius::Metres(v as f32)),
     ("softness by angle", |i, v| i.settings.softness.radius = SoftRadius::SunAngle(v as f32)),
     ("softness floor", |i, v| i.settings.softness.floor = v as f32),
@@ -251,14 +251,14 @@ const VALUES: [f64; 22] = [
 const KINDS: [FitKind; 5] =
     [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-/// Slices, single maps and windows with these kinds of fits, as far as they have one.
+/// Cascades, single maps and windows with these kinds of fits, as far as they have one.
 fn maps_of(kinds: &[FitKind]) -> Vec<Maps> {
     let shapes = kinds.iter().map(|kind| Shape::new(*kind));
     let all = shapes.flat_map(|shape| every_stabilise().map(|stabilise| (shape, stabilise)));
-    let slices = |(shape, stabilise)| Slices { count: 3, shape, stabilise, ..Slices::default() }.into();
-    let one = |(shape, stabilise)| OneMap { shape, stabilise }.into();
+    let cascades = |(shape, stabilise)| Cascades { count: 3, shape, stabilise, ..Cascades::default() }.into();
+    let one = |(shape, stabilise)| SingleMap { shape, stabilise }.into();
     let windows = Windows::default().with_count(3).into();
-    all.clone().map(slices).chain(all.map(one)).chain([windows]).collect()
+    all.clone().map(cascades).chain(all.map(one)).chain([windows]).collect()
 }
 
 fn every_maps() -> Vec<Maps> {
@@ -267,12 +267,12 @@ fn every_maps() -> Vec<Maps> {
 
 /// Whether maps have a number of this name.
 fn have(maps: &Maps, name: &str) -> bool {
-    let stabilise = if let Maps::Windows(_) = maps { None } else { Some(maps.as_one().stabilise) };
+    let stabilise = if let Maps::Windows(_) = maps { None } else { Some(maps.as_single().stabilise) };
     match name {
-        "lambda" | "first manual split" | "second manual split" | "overlap" => matches!(maps, Maps::Slices(_)),
-        "blend" => !matches!(maps, Maps::One(_)),
+        "lambda" | "first manual split" | "second manual split" | "overlap" => matches!(maps, Maps::Cascades(_)),
+        "blend" => !matches!(maps, Maps::Single(_)),
         "hold margin" | "hold growth" => matches!(stabilise, Some(Stabilise::Hysteresis(_))),
-        "waste" => stabilise != Some(Stabilise::Off),
+        "oversize" => stabilise != Some(Stabilise::Off),
         _ => true,
     }
 }
@@ -347,32 +347,34 @@ fn counts_outside_of_one_to_eight_windows_and_two_to_eight_slices_are_refused() 
     };
     for count in [0, 9, u32::MAX] {
         refused(Windows::default().with_count(count).into());
-        refused(Slices::default().with_count(count).into());
+        refused(Cascades::default().with_count(count).into());
     }
-    refused(Slices::default().with_count(1).into());
+    refused(Cascades::default().with_count(1).into());
 }
 
 #[test]
 fn settings_without_meaning_are_refused() {
     let refused: [Setter; 32] = [
-        ("lambda above", |i, _| i.slices(|slices| slices.splits = SplitScheme::Practical(1.1))),
-        ("lambda below", |i, _| i.slices(|slices| slices.splits = SplitScheme::Practical(-0.1))),
+        ("lambda above", |i, _| i.cascades(|cascades| cascades.splits = SplitScheme::Practical(1.1))),
+        ("lambda below", |i, _| i.cascades(|cascades| cascades.splits = SplitScheme::Practical(-0.1))),
         ("splits that fall", |i, _| {
-            i.slices(|slices| slices.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
+            i.cascades(|cascades| cascades.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
         }),
         ("splits that stay", |i, _| {
-            i.slices(|slices| slices.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
+            i.cascades(|cascades| cascades.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
         }),
-        ("overlap above", |i, _| i.slices(|slices| slices.selection = MapSelection::ViewDepth { overlap: 1.1 })),
-        ("overlap below", |i, _| i.slices(|slices| slices.selection = MapSelection::ViewDepth { overlap: -0.1 })),
+        ("overlap above", |i, _| i.cascades(|cascades| cascades.selection = MapSelection::ViewDepth { overlap: 1.1 })),
+        ("overlap below", |i, _| i.cascades(|cascades| cascades.selection = MapSelection::ViewDepth { overlap: -0.1 })),
         ("blend above", |i, _| i.set_blend(64.1)),
         ("blend below", |i, _| i.set_blend(-0.1)),
         ("windows' blend above", |i, _| i.settings.maps = Windows::default().with_blend(64.1).into()),
         ("windows' blend below", |i, _| i.settings.maps = Windows::default().with_blend(-0.1).into()),
-        ("windows' waste above", |i, _| i.settings.maps = Windows::default().with_max_depth_waste(100.1).into()),
-        ("windows' waste below", |i, _| i.settings.maps = Windows::default().with_max_depth_waste(0.9).into()),
-        ("snapped waste above", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { max_waste: 100.1 })),
-        ("snapped waste below", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { max_waste: 0.9 })),
+        ("windows' oversize above", |i, _| i.settings.maps = Windows::default().with_max_depth_oversize(100.1).into()),
+        ("windows' oversize below", |i, _| i.settings.maps = Windows::default().with_max_depth_oversize(0.9).into()),
+        ("snapped oversize above", |i, _| {
+            i.stabilise(|stabilise| *stabilise = Stabilise::Snap { max_oversize: 100.1 });
+        }),
+        ("snapped oversize below", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { max_oversize: 0.9 })),
         ("fade above", |i, _| i.settings.fade = 1.1),
         ("fade below", |i, _| i.settings.fade = -0.1),
         ("least texel", |i, _| i.settings.fit.least_texel = -0.1),
@@ -388,7 +390,7 @@ fn settings_without_meaning_are_refused() {
         }),
         ("ceiling below", |i, _| (i.settings.softness.floor, i.settings.softness.ceiling) = (0.0, 0.9)),
         ("ceiling above", |i, _| i.settings.softness.ceiling = 64.1),
-        ("waste", |i, _| i.hold(|hold| hold.max_waste = 0.9)),
+        ("oversize", |i, _| i.hold(|hold| hold.max_oversize = 0.9)),
         ("growth", |i, _| i.hold(|hold| hold.max_growth = 0.9)),
         ("hold margin", |i, _| i.hold(|hold| hold.margin = -0.1)),
         ("kernel as wide as the map", |i, _| i.settings.fit.border = Some(1e4)),
@@ -459,7 +461,7 @@ fn a_workspace_of_any_length_is_too_small_or_enough() {
         for storage in 0..=Scratch::required(2, 2) {
             let mut inputs = good();
             inputs.settings.maps = maps;
-            inputs.slices(|slices| slices.splits = SplitScheme::Uniform);
+            inputs.cascades(|cascades| cascades.splits = SplitScheme::Uniform);
             inputs.storage = storage;
             let results = [inputs.single().map(|_| ()), inputs.fit(&mut FitState::new()).map(|_| ())];
             for result in results {
@@ -502,7 +504,7 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                     receivers: boxes.clone(),
                     casters: boxes.clone(),
                     cones: Vec::new(),
-                    settings: sliced(&fit, Slices { count: 2, splits, stabilise, ..Slices::default() }),
+                    settings: sliced(&fit, Cascades { count: 2, splits, stabilise, ..Cascades::default() }),
                     storage: Scratch::required(boxes.len(), 1),
                     ..good()
                 };
@@ -529,7 +531,7 @@ proptest! {
         let mut inputs = good();
         inputs.settings.maps = maps;
         inputs.settings.fit.casters = policy;
-        inputs.slices(|slices| slices.splits = splits);
+        inputs.cascades(|cascades| cascades.splits = splits);
         for (i, bits, is_raw) in bits {
             let value = if is_raw { f64::from(f32::from_bits(bits)) } else { VALUES[bits as usize % VALUES.len()] };
             SETTERS[i].1(&mut inputs, value);

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::{
-    ACOS_BIAS_LIMIT, MIN_COSINE, Reach, XNA_DEPTH_BIAS, acos_bias, acos_epsilon, automatic_normal_offset,
+    ACOS_BIAS_LIMIT, FilterRadius, MIN_COSINE, XNA_DEPTH_BIAS, acos_bias, acos_epsilon, automatic_normal_offset,
     depth_gradient, depth_precision,
 };
 use shadowfit::diagnostics::DepthStorage;
@@ -64,7 +64,7 @@ proptest! {
     ) {
         let plane = Plane::new(theta, azimuth);
         for (kind, filter) in kinds() {
-            let texels = f64::from(plane_normal_offset(SOFTNESS.reach(kind), azimuth as f32));
+            let texels = f64::from(plane_normal_offset(SOFTNESS.filter_radius(kind), azimuth as f32));
             // The offset itself is f32.
             let least = plane.clearance(DVec2::new(x, y), texel, texels * texel * (1.0 + 1e-6), &filter);
             prop_assert!(least >= -1e-9 * texel * plane.slope.length(), "{least:e}");
@@ -101,8 +101,8 @@ fn five_percent_less_than_the_plane_offset_leaves_acne() {
         for azimuth in [0.0, 0.3, 0.785, 1.2, 2.5, 4.0, 5.5] {
             let plane = Plane::new(1.2, azimuth);
             // A disc reaches as far at all azimuths, the box of a look-up farther along its diagonals.
-            let disc = f64::from(SOFTNESS.reach(kind) - kind.reach());
-            let offset = 0.95 * (disc + f64::from(plane_normal_offset(kind.reach(), azimuth as f32)));
+            let disc = f64::from(SOFTNESS.filter_radius(kind) - kind.filter_radius());
+            let offset = 0.95 * (disc + f64::from(plane_normal_offset(kind.filter_radius(), azimuth as f32)));
             let side = if kind.is_soft() { 30 } else { 100 };
             let worst = (0..side * side)
                 .map(|i| DVec2::new(f64::from(i % side), f64::from(i / side)) * (1.01 / f64::from(side)))
@@ -162,7 +162,7 @@ fn automatic_settings_follow_the_filter_s_reach() {
 fn the_automatic_bias_is_the_worst_azimuth_s_on_hardware() {
     let settings = exact(FitKind::FrustumAabb).with_resolution(UVec2::new(512, 2048));
     let fit: LightProjection = fitted(&camera(), DIRECTION, &settings);
-    let reach = Reach::kernel(3);
+    let reach = FilterRadius::kernel(3);
     let bias = Bias::automatic(reach, DepthStorage::Unorm16, &fit).unwrap();
     let needed = f64::from(reach.on_hardware(&fit).taps) * fit.texel_size.as_dvec2().length();
     assert!((f64::from(bias.normal_offset) / needed - 1.0).abs() < 1e-6, "{bias:?} for {needed}");
@@ -185,10 +185,13 @@ fn reaches_are_what_their_filters_read() {
         let reach = f64::from(filter.reach.per_axis());
         assert!(greatest <= reach && greatest > 0.97 * reach, "{}: {greatest} of {reach}", filter.name);
     }
-    assert_eq!([1, 3, 5, 7].map(|taps| Reach::kernel(taps).per_axis()), [1.0, 2.0, 3.0, 4.0]);
-    let tents = [3, 5, 7].map(Reach::kernel);
-    let of_kinds = [Reach::POINT, Reach::HARDWARE_2X2].into_iter().chain(tents).chain([Reach::HARDWARE_2X2; 4]);
-    assert_eq!(FilterKind::ALL.map(Reach::from).to_vec(), of_kinds.collect::<Vec<_>>());
+    assert_eq!([1, 3, 5, 7].map(|taps| FilterRadius::kernel(taps).per_axis()), [1.0, 2.0, 3.0, 4.0]);
+    let tents = [3, 5, 7].map(FilterRadius::kernel);
+    let of_kinds = [FilterRadius::POINT, FilterRadius::HARDWARE_2X2]
+        .into_iter()
+        .chain(tents)
+        .chain([FilterRadius::HARDWARE_2X2; 4]);
+    assert_eq!(FilterKind::ALL.map(FilterRadius::from).to_vec(), of_kinds.collect::<Vec<_>>());
 }
 
 #[test]

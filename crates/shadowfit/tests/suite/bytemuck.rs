@@ -5,7 +5,8 @@ use shadowfit::NormalCone;
 use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FitSettings};
-use shadowfit::{Aabb, Bias, CasterVolume, SpotBias};
+use shadowfit::spot::SpotBias;
+use shadowfit::{Aabb, Bias, CasterVolume};
 
 use crate::support::{DIRECTION, camera, fitted};
 

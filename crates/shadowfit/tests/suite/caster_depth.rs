@@ -10,7 +10,7 @@ use shadowfit::{Aabb, Boxes, FitInput, FitState, LightProjection, Scratch, Techn
 use crate::scenes::{
     BoxPlan, SceneView, Walk, any_box, any_covering_fit, any_light, any_technique, any_view, any_walk, share,
 };
-use crate::support::{apply, cases, double};
+use crate::support::{ShaderDepths, apply, cases, double};
 
 /// A box around a point on the way from the light to what is seen.
 #[derive(Clone, Copy, Debug)]
@@ -170,7 +170,7 @@ proptest! {
         let last = f64::from(settings.fit.max_distance);
         prop_assume!(view.lens.near < last);
         let mut fitter = FitState::new();
-        let frames = if matches!(settings.maps.as_one().stabilise, Stabilise::Hysteresis(_)) { 3 } else { 1 };
+        let frames = if matches!(settings.maps.as_single().stabilise, Stabilise::Hysteresis(_)) { 3 } else { 1 };
         let mut view = view;
         for _ in 0..frames {
             if let Some(stage) = Stage::new(&view, &boxes, &casters, direction, &places, last) {
@@ -187,7 +187,7 @@ fn check_frame(fitter: &mut FitState, view: &SceneView, settings: &Technique, st
     let maps = fitter.fit(&stage.input(&views, direction), settings, &mut Scratch::new(&mut storage)).unwrap();
     for point in &stage.points {
         let depth = views[0].forward.dot(point.as_vec3());
-        let map = maps.iter().find(|map| depth < map.far).unwrap();
+        let map = maps.iter().find(|map| depth < map.far()).unwrap();
         assert_kept(&map.projection, *point, &stage.casters, stage.to_light);
     }
 }

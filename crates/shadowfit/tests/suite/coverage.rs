@@ -13,7 +13,7 @@ use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMap, LightProjection, Scr
 use crate::scenes::{
     BoxPlan, SceneView, any_box, any_covering_fit, any_light, any_technique, any_view, any_walk, of_camera, share,
 };
-use crate::support::{any_camera, apply, cases};
+use crate::support::{ShaderDepths, any_camera, apply, cases};
 
 /// A point of a view: position in the picture and share of the depth, and whether that is of log
 /// depth.
@@ -75,8 +75,8 @@ fn assert_stored(fit: &LightProjection, border: f32, point: DVec3) {
 
 /// The map that a shader takes for a view depth, and the next one where they overlap.
 fn chosen(maps: &[FittedMap], depth: f32) -> impl Iterator<Item = &FittedMap> {
-    let first = maps.iter().position(|map| depth < map.far).unwrap_or(maps.len() - 1);
-    let next = maps.get(first + 1).filter(move |next| depth >= next.covered_near);
+    let first = maps.iter().position(|map| depth < map.far()).unwrap_or(maps.len() - 1);
+    let next = maps.get(first + 1).filter(move |next| depth >= next.covered_from());
     [Some(&maps[first]), next].into_iter().flatten()
 }
 

@@ -1,7 +1,7 @@
 //! Figures of a fit against numeric differentiation, other algorithms and cases known by hand.
 
 use proptest::prelude::*;
-use shadowfit::bias::{Reach, normal_offset};
+use shadowfit::bias::{FilterRadius, normal_offset};
 use shadowfit::diagnostics::{
     Coverage, DepthStorage, acne_margin, coverage, depth_step, depth_step_at, pixels_per_texel, share_of_map,
 };
@@ -135,7 +135,7 @@ fn coverage_names_the_side_on_which_a_point_is_out() {
         for kind in [FitKind::XnaSample, FitKind::FrustumAabb] {
             let settings = exact(kind).with_depth(depth).with_resolution(UVec2::new(100, 200));
             let fit = fitted(&camera(), DIRECTION, &settings);
-            let at = |u, v, depth| coverage(&fit, Reach::kernel(3), in_map(&fit, u, v, depth)).unwrap();
+            let at = |u, v, depth| coverage(&fit, FilterRadius::kernel(3), in_map(&fit, u, v, depth)).unwrap();
             assert_eq!(at(0.5, 0.5, 0.5), Coverage::Covered);
             assert_eq!(at(0.5, 0.5, -0.1), Coverage::BeforeNear);
             assert_eq!(at(0.5, 0.5, 1.1), Coverage::BehindFar);
@@ -146,7 +146,7 @@ fn coverage_names_the_side_on_which_a_point_is_out() {
             // A 3×3 kernel reads two texels each way, so it needs one and a half to the border.
             assert_eq!((at(0.0151, 0.5, 0.5), at(0.0149, 0.5, 0.5)), (Coverage::Covered, Coverage::Border));
             assert_eq!((at(0.5, 0.992_4, 0.5), at(0.5, 0.992_6, 0.5)), (Coverage::Covered, Coverage::Border));
-            let point = |u| coverage(&fit, Reach::POINT, in_map(&fit, u, 0.5, 0.5)).unwrap();
+            let point = |u| coverage(&fit, FilterRadius::POINT, in_map(&fit, u, 0.5, 0.5)).unwrap();
             assert_eq!(point(0.001), Coverage::Covered, "the nearest texel is always inside");
             assert!(Coverage::Border.is_inside() && !Coverage::Aside.is_inside());
         }
@@ -245,12 +245,17 @@ fn the_acne_margin_is_what_is_given_less_what_the_plane_needs() {
         let across = to_light.any_orthonormal_vector();
         let slope = across * azimuth.cos() + to_light.cross(across) * azimuth.sin();
         let normal = to_light * theta.cos() + slope * theta.sin();
-        let margin = |bias: &Bias, reach: Reach| {
+        let margin = |bias: &Bias, reach: FilterRadius| {
             let margin = acne_margin(&fit, bias, reach, DepthStorage::Float32, point, normal).unwrap().unwrap();
             assert!((margin.texels - margin.metres / texel).abs() <= 1e-6 * margin.texels.abs());
             margin.texels
         };
-        for reach in [Reach::POINT, Reach::HARDWARE_2X2, Reach::kernel(5), Reach::POINT.over_disc(3.0)] {
+        for reach in [
+            FilterRadius::POINT,
+            FilterRadius::HARDWARE_2X2,
+            FilterRadius::kernel(5),
+            FilterRadius::POINT.over_disc(3.0),
+        ] {
             let needed = normal_offset(&fit, reach, normal).unwrap() / texel;
             let none = margin(&Bias::default(), reach);
             assert!(none < -needed && none > -needed - 0.05, "{i}: {none} for {needed}");

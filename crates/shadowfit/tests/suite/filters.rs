@@ -1,6 +1,6 @@
 //! Filters as the texels that they read, simulated from their definitions.
 
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::glam::DVec2;
 use shadowfit::settings::{FilterKind, Softness};
 
@@ -35,7 +35,7 @@ impl LookUp {
 /// A filter: where it looks, relative to the sampled point in texels, and the reach that it has.
 pub(crate) struct Filter {
     pub(crate) name: &'static str,
-    pub(crate) reach: Reach,
+    pub(crate) reach: FilterRadius,
     pub(crate) look_up: LookUp,
     pub(crate) offsets: Vec<DVec2>,
 }
@@ -49,7 +49,7 @@ impl Filter {
     fn kernel(name: &'static str, taps: u32) -> Self {
         let side = || (0..taps).map(|i| f64::from(i) - f64::from(taps - 1) * 0.5);
         let offsets = side().flat_map(|x| side().map(move |y| DVec2::new(x, y))).collect();
-        Self { name, reach: Reach::kernel(taps), look_up: LookUp::Bilinear, offsets }
+        Self { name, reach: FilterRadius::kernel(taps), look_up: LookUp::Bilinear, offsets }
     }
 
     /// Look-ups spread evenly over a disc (H. Vogel, 1979), turned as they are from pixel to pixel.
@@ -61,7 +61,7 @@ impl Filter {
             })
         };
         let offsets = (0..turns).flat_map(turn).collect();
-        Self { name, reach: Reach::HARDWARE_2X2.over_disc(radius), look_up: LookUp::Bilinear, offsets }
+        Self { name, reach: FilterRadius::HARDWARE_2X2.over_disc(radius), look_up: LookUp::Bilinear, offsets }
     }
 
     /// A kind of filter, with the widest disc that a softness allows.
@@ -81,7 +81,7 @@ impl Filter {
     }
 
     /// A disc: its rim, and as many look-ups inside.
-    fn disc(name: &'static str, reach: Reach, look_up: LookUp) -> Self {
+    fn disc(name: &'static str, reach: FilterRadius, look_up: LookUp) -> Self {
         let radii = reach.disc.as_dvec2();
         let offsets = (0..64)
             .map(|i| {
@@ -97,15 +97,15 @@ impl Filter {
 /// Every kind of filter, with reaches from half a texel to four.
 pub(crate) fn filters() -> Vec<Filter> {
     let one = |name, reach, look_up| Filter { name, reach, look_up, offsets: vec![DVec2::ZERO] };
-    let ellipse = Reach { disc: shadowfit::glam::Vec2::new(3.5, 1.2), ..Reach::POINT };
+    let ellipse = FilterRadius { disc: shadowfit::glam::Vec2::new(3.5, 1.2), ..FilterRadius::POINT };
     vec![
-        one("point", Reach::POINT, LookUp::Nearest),
-        one("2x2", Reach::HARDWARE_2X2, LookUp::Bilinear),
+        one("point", FilterRadius::POINT, LookUp::Nearest),
+        one("2x2", FilterRadius::HARDWARE_2X2, LookUp::Bilinear),
         Filter::kernel("3x3", 3),
         Filter::kernel("5x5", 5),
         Filter::kernel("7x7", 7),
-        Filter::disc("disc of nearest texels", Reach::POINT.over_disc(2.5), LookUp::Nearest),
-        Filter::disc("disc of 2x2", Reach::HARDWARE_2X2.over_disc(2.5), LookUp::Bilinear),
+        Filter::disc("disc of nearest texels", FilterRadius::POINT.over_disc(2.5), LookUp::Nearest),
+        Filter::disc("disc of 2x2", FilterRadius::HARDWARE_2X2.over_disc(2.5), LookUp::Bilinear),
         Filter::vogel("Vogel disc", 16, 2.5, 8),
         Filter::disc("ellipse of nearest texels", ellipse, LookUp::Nearest),
     ]

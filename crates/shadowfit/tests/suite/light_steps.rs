@@ -2,14 +2,14 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::settings::FitKind;
 use shadowfit::{FitError, LightProjection};
 
 use crate::support::{DIRECTION, camera, double, exact, fitted};
 
 /// One texel at the edge of a map of 2048.
-const SETTINGS: LightStepSettings = LightStepSettings { texels: 1.0, extent: 2048.0, fade: 0.0 };
+const SETTINGS: LightSteps = LightSteps { texels: 1.0, extent: 2048.0, fade: 0.0 };
 
 /// A sun that circles the vertical: its direction at an angle, in radians.
 fn sun(angle: f64) -> Vec3 {
@@ -28,7 +28,7 @@ fn bits(direction: Vec3) -> [u32; 3] {
 
 #[test]
 fn a_light_is_held_to_the_bit_until_it_moves_the_edge_by_more_than_is_set() {
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     let first = steps.update(sun(0.0), &SETTINGS, 0.016).unwrap();
     assert_eq!((first.previous, first.blend), (None, 1.0));
     for i in 0..=98 {
@@ -46,7 +46,7 @@ fn a_light_is_held_to_the_bit_until_it_moves_the_edge_by_more_than_is_set() {
 
 #[test]
 fn a_day_has_as_many_steps_as_its_turn_has_texels() {
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     let mut directions = Vec::new();
     for i in 0..100_000 {
         let step = steps.update(sun(texels(f64::from(i) * 0.01)), &SETTINGS, 0.016).unwrap();
@@ -61,7 +61,7 @@ fn a_day_has_as_many_steps_as_its_turn_has_texels() {
 #[test]
 fn zero_texels_follow_every_change_and_hold_what_does_not_change() {
     let settings = SETTINGS.with_texels(0.0).with_fade(1.0);
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     for _ in 0..3 {
         let step = steps.update(DIRECTION, &settings, 0.1).unwrap();
         assert_eq!((step.previous, step.blend), (None, 1.0));
@@ -72,7 +72,7 @@ fn zero_texels_follow_every_change_and_hold_what_does_not_change() {
 #[test]
 fn a_fade_grows_from_zero_to_one_and_joins_the_steps_without_a_jump() {
     let settings = SETTINGS.with_fade(0.5);
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     let mut last = steps.update(sun(0.0), &settings, 0.0).unwrap();
     let (mut begun, mut ended) = (0, 0);
     for i in 1..1000 {
@@ -104,7 +104,7 @@ fn a_fade_grows_from_zero_to_one_and_joins_the_steps_without_a_jump() {
 #[test]
 fn a_light_that_outruns_its_fade_lags_by_no_more_than_the_fade() {
     let settings = SETTINGS.with_fade(0.25);
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     let frame = |i: i32| sun(texels(f64::from(i) * 3.0));
     for i in 0..200 {
         let step = steps.update(frame(i), &settings, 1.0 / 60.0).unwrap();
@@ -117,18 +117,18 @@ fn a_light_that_outruns_its_fade_lags_by_no_more_than_the_fade() {
 #[test]
 fn reset_takes_the_next_direction_as_it_is() {
     let settings = SETTINGS.with_fade(10.0);
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     steps.update(sun(0.0), &settings, 0.1).unwrap();
     assert!(steps.update(sun(1.0), &settings, 0.1).unwrap().previous.is_some());
     steps.reset();
-    assert_eq!(steps, LightSteps::default());
+    assert_eq!(steps, LightStepState::default());
     let step = steps.update(sun(texels(0.1)), &settings, 0.1).unwrap();
     assert_eq!((bits(step.direction), step.previous, step.blend), (bits(sun(texels(0.1))), None, 1.0));
 }
 
 #[test]
 fn an_error_leaves_the_state_as_it_was() {
-    let mut steps = LightSteps::default();
+    let mut steps = LightStepState::default();
     steps.update(sun(0.0), &SETTINGS.with_fade(1.0), 0.1).unwrap();
     steps.update(sun(1.0), &SETTINGS.with_fade(1.0), 0.1).unwrap();
     let before = steps;
@@ -140,7 +140,7 @@ fn an_error_leaves_the_state_as_it_was() {
     ];
     assert!(bad.iter().all(Result::is_err), "{bad:?}");
     assert_eq!(steps, before);
-    let mut filled = LightSteps { held: Some(Vec3::NAN), ..LightSteps::default() };
+    let mut filled = LightStepState { held: Some(Vec3::NAN), ..LightStepState::default() };
     assert!(matches!(filled.update(DIRECTION, &SETTINGS, 0.1), Err(FitError::NotFinite { .. })));
 }
 
@@ -165,7 +165,7 @@ proptest! {
         let (a, b) = (light(azimuth, elevation), light(azimuth + along, (elevation + up).clamp(0.0, 1.57)));
         let [from, to] = [a, b].map(|direction| fitted(&camera(), direction, &exact(FitKind::FrustumAabb)));
         let angle = DVec3::angle_between(a.as_dvec3(), b.as_dvec3());
-        let bound = angle * f64::from(LightStepSettings::extent_of(&from)) / 2.0;
+        let bound = angle * f64::from(LightSteps::extent_of(&from)) / 2.0;
         let corners = from.corners();
         let middle = corners.iter().sum::<Vec3>() / 8.0;
         for corner in corners {

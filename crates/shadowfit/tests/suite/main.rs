@@ -45,7 +45,7 @@ mod spot;
 mod spot_bad_input;
 mod spot_bias;
 mod spot_self_shadowing;
-mod standing;
+mod static_boxes;
 mod support;
 mod sweep;
 mod texel_phase;

@@ -1,16 +1,20 @@
 //! Several maps for one view: where they are split, what they say of themselves, what is held.
 
 use proptest::prelude::*;
-use shadowfit::Constraint;
+use shadowfit::BoundSource;
 use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::selection::DepthRange;
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapSelection, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FitState, FittedMap, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique, ViewFrustum,
+    Aabb, Boxes, Cascades, FitInput, FitState, FittedMap, FittedMaps, PerspectiveCamera, Scratch, Technique,
+    ViewFrustum,
 };
 
 use crate::scenes::{COVERING, any_light, any_technique, any_view};
-use crate::support::{DIRECTION, SNAP, any_camera, any_direction, camera, cases, every_stabilise, sliced};
+use crate::support::{
+    DIRECTION, SNAP, ShaderDepths, any_camera, any_direction, camera, cases, every_stabilise, sliced,
+};
 
 fn fit_with(fitter: &mut FitState, input: &FitInput, settings: &Technique) -> FittedMaps {
     let boxes =
@@ -29,13 +33,13 @@ fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
 
 fn kept(kind: FitKind, splits: SplitScheme, count: u32, stabilise: Stabilise) -> Technique {
     let fit = FitSettings::default().with_kind(kind).with_max_distance(f32::MAX).with_casters(CasterPolicy::None);
-    let choice = MapSelection::ViewDepth { overlap: 0.0 };
-    sliced(&fit, Slices { count, splits, selection: choice, stabilise, ..Slices::default() })
+    let selection = MapSelection::ViewDepth { overlap: 0.0 };
+    sliced(&fit, Cascades { count, splits, selection, stabilise, ..Cascades::default() })
 }
 
 /// Ends of all maps but the last.
 fn splits_of(maps: &[FittedMap]) -> Vec<f64> {
-    maps[..maps.len() - 1].iter().map(|map| f64::from(map.far)).collect()
+    maps[..maps.len() - 1].iter().map(|map| f64::from(map.far())).collect()
 }
 
 fn assert_splits(maps: &[FittedMap], expected: impl Fn(f64) -> f64) {
@@ -58,19 +62,19 @@ proptest! {
         let views = [view.frustum()];
         let maps = fit_once(&FitInput::new(&views, direction), &settings);
         prop_assert_eq!(maps.len(), settings.maps.count() as usize);
-        let ranged: Vec<&FittedMap> = maps.iter().filter(|map| map.near < map.far).collect();
-        prop_assert_eq!(ranged[0].near, views[0].near);
-        prop_assert_eq!(ranged[ranged.len() - 1].far, f32::MAX);
+        let ranged: Vec<&FittedMap> = maps.iter().filter(|map| map.near() < map.far()).collect();
+        prop_assert_eq!(ranged[0].near(), views[0].near);
+        prop_assert_eq!(ranged[ranged.len() - 1].far(), f32::MAX);
         let overlap = if let MapSelection::ViewDepth { overlap } = settings.maps.selection() { overlap } else { 0.0 };
         for pair in ranged.windows(2) {
-            prop_assert_eq!(pair[0].far, pair[1].near);
-            let before = pair[1].near - overlap * (pair[0].far - pair[0].near);
-            prop_assert!(pair[1].projection.is_empty || (pair[1].covered_near - before).abs() <= 1e-6 * before.abs());
+            prop_assert_eq!(pair[0].far(), pair[1].near());
+            let before = pair[1].near() - overlap * (pair[0].far() - pair[0].near());
+            prop_assert!(pair[1].projection.is_empty || (pair[1].covered_from() - before).abs() <= 1e-6 * before.abs());
         }
         // Maps without a range are chosen by no depth.
         for depth in [views[0].near, views[0].far, 0.5 * (views[0].near + views[0].far)] {
-            let chosen = maps.iter().find(|map| depth < map.far).unwrap();
-            prop_assert!(chosen.near < chosen.far);
+            let chosen = maps.iter().find(|map| depth < map.far()).unwrap();
+            prop_assert!(chosen.near() < chosen.far());
         }
     }
 
@@ -98,7 +102,7 @@ proptest! {
         let maps = fit_once(&input, &settings(FitKind::FrustumAabb, SplitScheme::Uniform, count));
         let near = f64::from(near);
         assert_splits(&maps, |s| near + (60.0 - near) * s);
-        prop_assert_eq!(maps[0].near, views[0].near);
+        prop_assert_eq!(maps[0].near(), views[0].near);
     }
 
     #[test]
@@ -130,7 +134,7 @@ proptest! {
         let second = fit_with(&mut fitter, &input, &settings);
         for (a, b) in first.iter().zip(second.iter()) {
             prop_assert_eq!(a.projection.uv_from_world, b.projection.uv_from_world);
-            prop_assert_eq!((a.near, a.far, a.covered_near), (b.near, b.far, b.covered_near));
+            prop_assert_eq!(a.depths, b.depths);
         }
         for _ in 0..3 {
             prop_assert_eq!(fit_with(&mut fitter, &input, &settings), second);
@@ -173,7 +177,7 @@ fn quantile(maps: &[FittedMap], view: &ViewFrustum) -> f64 {
     let mut errors: Vec<f64> = (0..1000)
         .map(|i| {
             let depth = near * (far / near).powf((f64::from(i) + 0.5) / 1000.0);
-            let map = maps.iter().find(|map| depth < f64::from(map.far)).unwrap();
+            let map = maps.iter().find(|map| depth < f64::from(map.far())).unwrap();
             f64::from(map.projection.texel_size.max_element()) / depth
         })
         .collect();
@@ -216,7 +220,7 @@ fn manual_splits_outside_of_what_is_shadowed_leave_maps_empty() {
             let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings);
             let empty: Vec<bool> = maps.iter().map(|map| map.projection.is_empty).collect();
             assert_eq!(empty, [true, true, false, false, false, true, true, true], "{kind:?}");
-            assert_eq!((maps[2].near, maps[4].far), (0.1, f32::MAX));
+            assert_eq!((maps[2].near(), maps[4].far()), (0.1, f32::MAX));
         }
     }
 }
@@ -236,14 +240,14 @@ fn a_histogram_with_one_narrow_band_splits_around_it() {
     for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere] {
         let at = |splits| {
             let maps = fit_once(&input, &settings(kind, splits, 3));
-            let map = *maps.iter().find(|map| 19.0 < map.far).unwrap();
+            let map = *maps.iter().find(|map| 19.0 < map.far()).unwrap();
             (map.projection.texel_size.max_element(), map)
         };
         let (chosen, map) = at(SplitScheme::FromHistogram);
         let (logarithmic, _) = at(SplitScheme::Logarithmic);
         assert!(chosen < logarithmic, "{kind:?}: {chosen} and {logarithmic}");
         // It ends with the band, but for the few points that may be left out.
-        assert!(map.far > 18.0 && map.far < 25.0, "{kind:?}: {}..{}", map.near, map.far);
+        assert!(map.far() > 18.0 && map.far() < 25.0, "{kind:?}: {}..{}", map.near(), map.far());
     }
 }
 
@@ -260,12 +264,27 @@ fn splits_from_boxes_are_finer_where_boxes_are() {
     for kind in [FitKind::FrustumAabb, FitKind::Focused, FitKind::Sphere] {
         let texel = |splits, depth: f32| {
             let maps = fit_once(&input, &settings(kind, splits, 2));
-            maps.iter().find(|map| depth < map.far).unwrap().projection.texel_size.max_element() / depth
+            maps.iter().find(|map| depth < map.far()).unwrap().projection.texel_size.max_element() / depth
         };
         let worst = |splits| texel(splits, 2.5).max(texel(splits, 21.0));
         let (chosen, logarithmic) = (worst(SplitScheme::FromBoxes), worst(SplitScheme::Logarithmic));
         assert!(chosen <= logarithmic * 1.01, "{kind:?}: {chosen} and {logarithmic}");
     }
+}
+
+/// Receivers end at 45 m, in front of the ends that are set for the second map and those behind it. Splits of spheres end
+/// with the receivers.
+#[test]
+fn cascades_behind_all_receivers_begin_where_shadows_end() {
+    let views = [ahead()];
+    let boxes = [Aabb::new(Vec3::new(-5.0, -2.0, -45.0), Vec3::new(5.0, -1.0, -5.0))];
+    let receivers = Some(Boxes { origin: DVec3::ZERO, boxes: &boxes });
+    let input = FitInput { receivers, ..FitInput::new(&views, DIRECTION) };
+    let splits = SplitScheme::Manual([10.0, 60.0, 70.0, 80.0, 90.0, 95.0, 99.0]);
+    let maps = fit_once(&input, &settings(FitKind::Sphere, splits, 4).with_max_distance(80.0));
+    let depths: Vec<_> = maps.iter().map(|map| map.depths).collect();
+    let last = DepthRange { covered_from: Some(10.0), ..DepthRange::new(10.0, None) };
+    assert_eq!(depths[1..], [Some(last), Some(DepthRange::new(80.0, None)), Some(DepthRange::new(80.0, None))]);
 }
 
 /// Visible from 2 to 20 m only, in a view from 0.1 to 100 m.
@@ -277,10 +296,10 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     for kind in COVERING {
         let inner = |splits, near, far| {
             let maps = fit_once(&bounds(near, far), &settings(kind, splits, 3));
-            assert!(maps[0].near <= 0.1 && maps[0].covered_near <= 0.1, "{kind:?}");
-            let last = maps.iter().rfind(|map| map.near < map.far).unwrap();
-            assert!(last.far >= 100.0 && !last.projection.is_empty, "{kind:?}");
-            [maps[1].near, maps[2].near]
+            assert!(maps[0].near() <= 0.1 && maps[0].covered_from() <= 0.1, "{kind:?}");
+            let last = maps.iter().rfind(|map| map.near() < map.far()).unwrap();
+            assert!(last.far() >= 100.0 && !last.projection.is_empty, "{kind:?}");
+            [maps[1].near(), maps[2].near()]
         };
         let is_near = |[a, b]: [f32; 2], [c, d]: [f32; 2]| (a / c - 1.0).abs() < 1e-5 && (b / d - 1.0).abs() < 1e-5;
         let third = 10.0_f32.cbrt();
@@ -288,10 +307,12 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
         assert!(is_near(inner(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
         // Bounds beyond the view are the view's own.
         let whole = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Logarithmic, 3));
-        assert!(is_near(inner(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near, whole[2].near]), "{kind:?}");
+        assert!(is_near(inner(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near(), whole[2].near()]), "{kind:?}");
         // A wall that is one depth all over.
         let flat = fit_once(&bounds(5.0, 5.0), &settings(kind, SplitScheme::Logarithmic, 3));
-        assert!(flat.iter().any(|map| map.near <= 4.9 && map.far > 4.9) && flat.iter().any(|map| map.far >= 100.0));
+        assert!(
+            flat.iter().any(|map| map.near() <= 4.9 && map.far() > 4.9) && flat.iter().any(|map| map.far() >= 100.0)
+        );
     }
     for (near, far) in [(f32::NAN, 5.0), (1.0, f32::INFINITY), (6.0, 5.0)] {
         let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
@@ -309,7 +330,7 @@ fn held_splits_follow_depth_bounds_that_leave_them() {
     let mut split = |near, far| {
         let input = FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
         // Held splits are compared every few frames.
-        (0..16).map(|_| fit_with(&mut fitter, &input, &settings)[1].near).last().unwrap()
+        (0..16).map(|_| fit_with(&mut fitter, &input, &settings)[1].near()).last().unwrap()
     };
     let first = split(2.0, 20.0);
     assert_eq!(split(2.2, 22.0), first);
@@ -372,7 +393,7 @@ fn a_far_plane_that_comes_nearer_leaves_held_splits_without_error() {
                 for far in [80.0, 60.0, 50.0, 46.0, 79.0] {
                     let views = [PerspectiveCamera { far, ..camera() }.frustum().unwrap()];
                     let maps = fit_with(&mut fitter, &FitInput::new(&views, DIRECTION), &settings);
-                    let last = maps.iter().find(|map| far * 0.999 < map.far).unwrap();
+                    let last = maps.iter().find(|map| far * 0.999 < map.far()).unwrap();
                     assert!(!last.projection.is_empty, "{kind:?} {far}");
                 }
             }
@@ -382,36 +403,36 @@ fn a_far_plane_that_comes_nearer_leaves_held_splits_without_error() {
 
 #[test]
 fn what_set_each_plane_is_named() {
-    use Constraint::{CasterExtension, Casters, Held, Receivers, Sphere, View};
+    use BoundSource::{CasterExtension, Casters, Held, Receivers, Sphere, View};
     let views = [ahead()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
-    let set_by = |input: &FitInput, kind, casters| {
+    let bounds_from = |input: &FitInput, kind, casters| {
         let fit = FitSettings::default().with_kind(kind).with_casters(casters).with_caster_extension(5.0);
         let mut storage = [DVec2::ZERO; Scratch::required(2, 1)];
-        shadowfit::fit_scene(input, &fit, &mut Scratch::new(&mut storage)).unwrap().set_by
+        shadowfit::fit_scene(input, &fit, &mut Scratch::new(&mut storage)).unwrap().bounds_from
     };
     for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Focused] {
-        assert_eq!(set_by(&input, kind, CasterPolicy::None), [View; 6]);
-        assert_eq!(set_by(&input, kind, CasterPolicy::Extend), [View, View, View, View, View, CasterExtension]);
+        assert_eq!(bounds_from(&input, kind, CasterPolicy::None), [View; 6]);
+        assert_eq!(bounds_from(&input, kind, CasterPolicy::Extend), [View, View, View, View, View, CasterExtension]);
     }
-    assert_eq!(set_by(&input, FitKind::Sphere, CasterPolicy::None), [Sphere; 6]);
+    assert_eq!(bounds_from(&input, FitKind::Sphere, CasterPolicy::None), [Sphere; 6]);
     let ball = [Aabb::new(Vec3::new(-1.0, -1.0, -21.0), Vec3::new(1.0, 1.0, -19.0))];
     let above = [Aabb::new(Vec3::new(-1.0, 5.0, -21.0), Vec3::new(1.0, 6.0, -19.0))];
     let receivers = Some(Boxes { origin: DVec3::ZERO, boxes: &ball });
     let casters = Boxes { origin: DVec3::ZERO, boxes: &above };
     let boxed = FitInput { receivers, casters: Some(casters), ..input };
-    assert_eq!(set_by(&boxed, FitKind::Focused, CasterPolicy::None), [Receivers; 6]);
+    assert_eq!(bounds_from(&boxed, FitKind::Focused, CasterPolicy::None), [Receivers; 6]);
     for casters in [CasterPolicy::PerObject, CasterPolicy::SceneBounds] {
         let expected = [Receivers, Receivers, Receivers, Receivers, Receivers, Casters];
-        assert_eq!(set_by(&boxed, FitKind::Focused, casters), expected);
+        assert_eq!(bounds_from(&boxed, FitKind::Focused, casters), expected);
     }
     // A floor under all that is seen: the view ends it to the sides, the floor itself below.
     let floor = [Aabb::new(Vec3::new(-500.0, -2.0, -500.0), Vec3::new(500.0, -1.0, 500.0))];
     let floored = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &floor }), ..input };
-    let by = set_by(&floored, FitKind::Focused, CasterPolicy::None);
+    let by = bounds_from(&floored, FitKind::Focused, CasterPolicy::None);
     assert_eq!((by[3], by[4], by[5]), (View, Receivers, Receivers));
     let mut fitter = FitState::new();
     let held = kept(FitKind::Focused, SplitScheme::Uniform, 1, Stabilise::default());
-    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].projection.set_by, [Receivers; 6]);
-    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].projection.set_by, [Held; 6]);
+    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].projection.bounds_from, [Receivers; 6]);
+    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].projection.bounds_from, [Held; 6]);
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec3};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, FitState, LightProjection, OneMap, Scratch, Technique, ViewFrustum,
+    Aabb, Boxes, DepthConvention, FitInput, FitState, LightProjection, Scratch, SingleMap, Technique, ViewFrustum,
 };
 
 use crate::scenes::{BoxPlan, COVERING, SceneView, any_box, any_light, any_view};
@@ -93,7 +93,7 @@ fn settings(kind: FitKind, rectangle: RectangleKind) -> FitSettings {
 
 /// One map on the world's grid.
 fn snapped(fit: &FitSettings) -> Technique {
-    Technique::default().with_maps(OneMap { shape: fit.shape, stabilise: SNAP }).with_fit(fit.map)
+    Technique::default().with_maps(SingleMap { shape: fit.shape, stabilise: SNAP }).with_fit(fit.map)
 }
 
 fn area(fit: &LightProjection) -> f64 {
@@ -213,7 +213,7 @@ proptest! {
         // The clipped box's vertices are the frustum's own corners, blended once more in f64.
         prop_assert!((area(&a) / area(&b) - 1.0).abs() < 1e-6);
         prop_assert!((a.depth_range / b.depth_range - 1.0).abs() < 1e-6);
-        prop_assert_eq!(a.set_by, b.set_by);
+        prop_assert_eq!(a.bounds_from, b.bounds_from);
     }
 
     /// Boxes stay boxes under quarter turns about the world's axes.

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
-use shadowfit::demand::{DepthRows, SeenSpace};
+use shadowfit::demand::{DepthRows, VisibleDemandSpace};
 use shadowfit::glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::{
@@ -228,7 +228,7 @@ proptest! {
 fn assert_proven(input: &FitInput, maps: &FittedMaps, technique: &Technique) {
     let mut storage = vec![DVec2::ZERO; input.scratch()];
     for (i, map) in maps.iter().enumerate() {
-        let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
+        let query = CoverageQuery::of_map(map, technique, technique.filter_radius_in(&map.projection))
             .with_normal_offset(map.bias.normal_offset);
         let proof = prove(input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
         assert!(proof.is_proven(), "map {i}: {proof:?} of {:?}", technique.maps);
@@ -395,7 +395,7 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
         let mut oblique = mirrored(2.0, 0.3);
         (oblique.view.lens.depth, oblique.view.lens.is_mirrored) = (depth, false);
         let view = oblique.frustum().unwrap();
-        let space = SeenSpace::new(&view, Vec3::new(0.2, -0.7, -0.5), Vec3::Y, 200.0).unwrap();
+        let space = VisibleDemandSpace::new(&view, Vec3::new(0.2, -0.7, -0.5), Vec3::Y, 200.0).unwrap();
         // A wall over the water, 40 m away, square to the light's horizon.
         let wall = -40.0;
         let counted = |clip_from_world: DMat4| {
@@ -413,7 +413,7 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
                 (if depth == DepthConvention::NegativeOneToOne { z * 0.5 + 0.5 } else { z }) as f32
             };
             let depths: Vec<f32> = (0..SIZE[0] * SIZE[1]).map(stored).collect();
-            let mut seen = shadowfit::Seen::new(space);
+            let mut seen = shadowfit::VisibleDemand::new(space);
             let clip_from_world = clip_from_world.as_mat4();
             let rows = DepthRows { depths: &depths, width: SIZE[0], clip_from_world, depth, view: &view };
             seen.count_rows(&rows, 1).unwrap();

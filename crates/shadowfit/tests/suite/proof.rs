@@ -1,15 +1,15 @@
 //! The proof: what it proves of fits, and what it finds in broken ones.
 
 use proptest::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, prove};
 use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, Hysteresis, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitError, FitInput, FitState, LightProjection, PerspectiveCamera, Scratch, Slices,
-    Technique, ViewFrustum,
+    Aabb, Bias, Boxes, Cascades, DepthConvention, FitError, FitInput, FitState, FittedMap, LightProjection,
+    PerspectiveCamera, Scratch, Technique, ViewFrustum,
 };
 
 use crate::scenes::{COVERING, any_choice, any_walk};
@@ -121,14 +121,14 @@ fn any_technique() -> impl Strategy<Value = Technique> {
     let held = prop_oneof![Just(0.0), Just(0.02), float(0.0, 0.5)]
         .prop_map(|margin| Stabilise::Hysteresis(Hysteresis::default().with_margin(margin)));
     let stabilise = prop_oneof![Just(Stabilise::Off), Just(SNAP), held];
-    (any_fit(), 1..=8_u32, splits, any_choice(), stabilise).prop_map(|(fit, count, splits, choice, stabilise)| {
-        sliced(&fit, Slices { count, splits, selection: choice, stabilise, ..Slices::default() })
+    (any_fit(), 1..=8_u32, splits, any_choice(), stabilise).prop_map(|(fit, count, splits, selection, stabilise)| {
+        sliced(&fit, Cascades { count, splits, selection, stabilise, ..Cascades::default() })
     })
 }
 
 /// The widest reach that a border is enough for.
-fn reach_of(settings: &MapSettings) -> Reach {
-    Reach::taps(settings.border.unwrap_or(3.0) + 0.5)
+fn reach_of(settings: &MapSettings) -> FilterRadius {
+    FilterRadius::taps(settings.border.unwrap_or(3.0) + 0.5)
 }
 
 proptest! {
@@ -229,7 +229,7 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
         .with_casters(CasterPolicy::PerObject)
         .with_border(3.195_267_7)
         .with_resolution(UVec2::new(64, 40));
-    let settings = sliced(&fit, Slices { count: 7, splits: SplitScheme::Logarithmic, ..Slices::default() });
+    let settings = sliced(&fit, Cascades { count: 7, splits: SplitScheme::Logarithmic, ..Cascades::default() });
     let views = [camera.frustum().unwrap()];
     let input = scene.input(&views, Vec3::new(-0.172_338_68, -0.965_532_3, -0.195_055_77));
     let mut storage = storage(scene.len());
@@ -240,6 +240,16 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
         let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
         assert!(proof.is_proven(), "map {i}: {proof:?}");
     }
+}
+
+#[test]
+fn a_map_for_all_view_depths_is_made_for_what_lies_behind_the_eye_of_orthographic_views_too() {
+    let fit = FitSettings::default();
+    let (technique, reach) = (sliced(&fit, Cascades::default()), reach_of(&fit.map));
+    let map = FittedMap::new(LightProjection::default(), Bias::default());
+    let [by_map, by_fit] =
+        [CoverageQuery::of_map(&map, &technique, reach), CoverageQuery::of_fit(&fit, reach)].map(|query| query.near);
+    assert_eq!(by_map, by_fit);
 }
 
 /// What a shader computes for a world position, in f32.
@@ -292,7 +302,7 @@ fn the_margins_left_are_those_of_the_settings() {
         casters: Some(Boxes { origin: views[0].origin, boxes: &casters }),
         ..FitInput::new(&views, Vec3::NEG_Y)
     };
-    let query = CoverageQuery::of_fit(&settings, Reach::POINT);
+    let query = CoverageQuery::of_fit(&settings, FilterRadius::POINT);
     let CoverageProof::Proven(margins) = proof(&input, &fit, &query) else { panic!("{fit:?}") };
     let expected = [800.0 / 9.0 * 0.5, 800.0 / 9.0 * 0.5, 400.0 / 5.0 * 0.5, 400.0 / 5.0 * 0.5, 0.5, 0.5];
     for (margin, expected) in margins.planes.into_iter().zip(expected) {
@@ -301,7 +311,7 @@ fn the_margins_left_are_those_of_the_settings() {
     // The caster's top is 0.625 m below the eye, the near plane 0.5 m.
     assert!((margins.casters - 0.125).abs() < 1e-4, "{}", margins.casters);
     // The filter takes its reach, from half a texel on, and the normal offset what it is long.
-    let query = CoverageQuery::of_fit(&settings, Reach::POINT.over_disc(3.0)).with_normal_offset(0.1);
+    let query = CoverageQuery::of_fit(&settings, FilterRadius::POINT.over_disc(3.0)).with_normal_offset(0.1);
     let CoverageProof::Proven(wide) = proof(&input, &fit, &query) else { panic!("{fit:?}") };
     for (i, per_metre) in [800.0 / 9.0, 800.0 / 9.0, 80.0, 80.0].into_iter().enumerate() {
         assert!((margins.planes[i] - wide.planes[i] - 3.0 - 0.1 * per_metre).abs() < 1e-3);
@@ -314,7 +324,7 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
-    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), FilterRadius::POINT);
     assert!(proof(&input, &fit, &query).is_proven());
     for (i, plane) in MapPlane::ALL.into_iter().enumerate() {
         let mut small = fit;
@@ -365,7 +375,7 @@ fn each_of_the_matrices_counts_by_itself() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
-    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), FilterRadius::POINT);
     let refused = |fit: &LightProjection| {
         matches!(proof(&input, fit, &query), CoverageProof::Uncovered { plane: MapPlane::Right, .. })
     };
@@ -386,11 +396,11 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let origin = views[0].origin;
     let settings = plain();
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
-    let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
+    let query = CoverageQuery::of_fit(&settings, FilterRadius::HARDWARE_2X2);
     let check = |caster: Aabb, query: &CoverageQuery| {
         let casters = [over(0.0, -2.0, 0.5), caster];
         let casters = Boxes { origin, boxes: &casters };
-        let query = CoverageQuery { reach: Reach::POINT, ..*query };
+        let query = CoverageQuery { filter_radius: FilterRadius::POINT, ..*query };
         proof(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &query)
     };
     // 5 m above the eye; the near plane is 1 m below it.
@@ -410,7 +420,7 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let input = FitInput { casters: Some(Boxes { origin, boxes: &casters }), ..FitInput::new(&views, Vec3::NEG_Y) };
     let settings = settings.with_border(1.5);
     let wide = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
-    let proof = proof(&input, &wide, &CoverageQuery::of_fit(&settings, Reach::taps(2.0)));
+    let proof = proof(&input, &wide, &CoverageQuery::of_fit(&settings, FilterRadius::taps(2.0)));
     assert!(matches!(proof, CoverageProof::CasterLost { .. }), "{proof:?}");
 }
 
@@ -419,7 +429,7 @@ fn the_xna_fit_covers_the_view_but_loses_casters_before_it() {
     let views = [PerspectiveCamera { far: 20.0, ..camera() }.frustum().unwrap()];
     let settings = plain().with_kind(FitKind::XnaSample).with_margin(0.01);
     let fit = shadowfit::fit(&views[0], DIRECTION, &settings).unwrap();
-    let query = CoverageQuery::of_fit(&settings, Reach::POINT);
+    let query = CoverageQuery::of_fit(&settings, FilterRadius::POINT);
     let input = FitInput::new(&views, DIRECTION);
     assert!(proof(&input, &fit, &query).is_proven());
     let middle = (fit.corners()[0] + fit.corners()[2]) * 0.5 - fit.direction * 10.0;
@@ -442,7 +452,7 @@ fn receivers_of_a_map_that_nobody_draws_are_found() {
     let boxes = Boxes { origin: views[0].origin, boxes: &receivers };
     let input = FitInput { receivers: Some(boxes), ..FitInput::new(&views, Vec3::NEG_Y) };
     let fit = LightProjection { is_empty: true, ..shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap() };
-    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), FilterRadius::POINT);
     assert!(matches!(proof(&input, &fit, &query), CoverageProof::MarkedEmpty { .. }));
     // Nothing is required where nothing receives, in the range or at all.
     for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
@@ -460,7 +470,7 @@ fn another_origin_far_away_is_refused_for_its_rounding() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain().with_margin(0.001)).unwrap();
-    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), FilterRadius::POINT);
     assert!(proof(&input, &fit, &query).is_proven());
     let near = fit.relative_to(fit.origin + DVec3::new(10.0, 0.0, 10.0));
     assert!(proof(&input, &near, &query).is_proven());
@@ -474,7 +484,7 @@ fn bad_numbers_are_errors() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
-    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), FilterRadius::POINT);
     let mut storage = storage(1);
     let mut error = |input: &FitInput, fit: &LightProjection, query: &CoverageQuery| {
         prove(input, fit, query, &mut Scratch::new(&mut storage)).unwrap_err()
@@ -485,8 +495,8 @@ fn bad_numbers_are_errors() {
             CoverageQuery { near: bad, ..query },
             CoverageQuery { far: bad, ..query },
             CoverageQuery { normal_offset: bad, ..query },
-            CoverageQuery { reach: Reach::taps(bad), ..query },
-            CoverageQuery { reach: Reach::POINT.over_disc(bad), ..query },
+            CoverageQuery { filter_radius: FilterRadius::taps(bad), ..query },
+            CoverageQuery { filter_radius: FilterRadius::POINT.over_disc(bad), ..query },
         ] {
             assert!(is_bad(error(&input, &fit, &query)), "{query:?}");
         }

@@ -2,7 +2,7 @@
 //! culling leaves, and the proof proves it.
 
 use proptest::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
 use shadowfit::settings::{CasterPolicy, FitKind, MapSelection, SplitScheme};
@@ -147,7 +147,7 @@ proptest! {
             let mut scratch = Scratch::new(&mut storage);
             let maps = fitter.fit(&input, &technique, &mut scratch).unwrap();
             for (i, map) in maps.iter().enumerate() {
-                let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
+                let query = CoverageQuery::of_map(map, &technique, FilterRadius::HARDWARE_2X2);
                 let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
                 prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
             }
@@ -178,13 +178,13 @@ fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
     let mut storage = vec![DVec2::ZERO; Scratch::required(boxes.len(), 1)];
     let mut scratch = Scratch::new(&mut storage);
     let manual = SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
-    let mut proof = |choice| {
+    let mut proof = |selection| {
         // Spheres serve all of their map anyway, rectangles do not.
-        let stable = Technique::preset("stable-4").unwrap().maps.with_kind(FitKind::FrustumAabb).as_slices();
-        let slices = stable.with_count(3).with_splits(manual).with_selection(choice);
-        let technique = Technique::default().with_maps(slices);
+        let stable = Technique::preset("stable-4").unwrap().maps.with_kind(FitKind::FrustumAabb).as_cascades();
+        let cascades = stable.with_count(3).with_splits(manual).with_selection(selection);
+        let technique = Technique::default().with_maps(cascades);
         let map = FitState::new().fit(&input, &technique, &mut scratch).unwrap()[0];
-        let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
+        let query = CoverageQuery::of_map(&map, &technique, FilterRadius::HARDWARE_2X2);
         let query = CoverageQuery { is_shared: true, ..query };
         prove(&input, &map.projection, &query, &mut scratch).unwrap()
     };

@@ -5,7 +5,7 @@ use shadowfit::settings::{
     BiasSettings, FilterKind, FitKind, FitSettings, Hysteresis, MapFormat, MapSelection, MapSettings, Shape,
     SplitScheme, Stabilise,
 };
-use shadowfit::{Maps, OneMap, PRESETS, Slices, Technique, Windows};
+use shadowfit::{Cascades, Maps, PRESETS, SingleMap, Technique, Windows};
 
 #[test]
 fn the_default_technique_is_the_recommended_preset() {
@@ -25,15 +25,18 @@ fn the_defaults_of_its_parts_are_those_of_the_technique() {
 
 #[test]
 fn the_kinds_of_maps_have_the_same_defaults() {
-    let (windows, slices, one) = (Windows::default(), Slices::default(), OneMap::default());
+    let (windows, cascades, one) = (Windows::default(), Cascades::default(), SingleMap::default());
     // A single map, which has no frame before, is no window.
     let single = FitSettings::default();
     assert_eq!((single.shape.kind, single.map), (FitKind::Focused, MapSettings::default()));
-    assert_eq!([single.shape, slices.shape, one.shape], [Shape::default(); 3]);
-    assert_eq!((slices.splits, slices.selection), (SplitScheme::default(), MapSelection::default()));
-    assert_eq!([slices.stabilise, one.stabilise], [Stabilise::default(); 2]);
-    assert_eq!([windows.blend, slices.selection.blend()], [MapSelection::DEFAULT_BLEND; 2]);
-    assert_eq!([windows.max_depth_waste, slices.stabilise.max_waste()], [Hysteresis::default().max_waste; 2]);
-    assert_eq!(slices.stabilise, Stabilise::Hysteresis(Hysteresis::default()));
-    assert_eq!(windows.count, slices.count);
+    assert_eq!([single.shape, cascades.shape, one.shape], [Shape::default(); 3]);
+    assert_eq!((cascades.splits, cascades.selection), (SplitScheme::default(), MapSelection::default()));
+    assert_eq!([cascades.stabilise, one.stabilise], [Stabilise::default(); 2]);
+    assert_eq!([windows.blend, cascades.selection.blend()], [MapSelection::DEFAULT_BLEND; 2]);
+    assert_eq!(
+        [windows.max_depth_oversize, cascades.stabilise.max_oversize()],
+        [Hysteresis::default().max_oversize; 2]
+    );
+    assert_eq!(cascades.stabilise, Stabilise::Hysteresis(Hysteresis::default()));
+    assert_eq!(windows.count, cascades.count);
 }

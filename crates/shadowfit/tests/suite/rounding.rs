@@ -2,12 +2,12 @@
 
 use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::scroll::Scroll;
 use shadowfit::settings::{FitKind, Shape, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Slices, Technique,
+    Aabb, Boxes, Cascades, DepthConvention, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique,
     ViewFrustum,
 };
 
@@ -114,7 +114,7 @@ fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut
         let mut scratch = Scratch::new(&mut storage);
         let maps = fitter.fit(&input, technique, &mut scratch).unwrap();
         for map in maps.iter() {
-            let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.projection))
+            let query = CoverageQuery::of_map(map, technique, technique.filter_radius_in(&map.projection))
                 .with_normal_offset(map.bias.normal_offset);
             let proof = prove(&input, &map.projection, &query, &mut scratch).unwrap();
             assert!(proof.is_proven(), "{way:?}: {proof:?}");
@@ -125,7 +125,7 @@ fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut
 
 fn held(kind: FitKind, splits: SplitScheme) -> Technique {
     let stabilise = Stabilise::default();
-    Technique::default().with_maps(Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() })
+    Technique::default().with_maps(Cascades { shape: Shape::new(kind), splits, stabilise, ..Cascades::default() })
 }
 
 fn assert_kept(name: &str, technique: &Technique) {
@@ -134,7 +134,8 @@ fn assert_kept(name: &str, technique: &Technique) {
         fly(way, technique, knows_boxes, |maps| {
             for (a, b) in last.iter().flat_map(|last| last.iter()).zip(maps.iter()) {
                 let what = format!("{name}, {way:?}, boxes known: {knows_boxes}");
-                assert_eq!((a.near, a.far), (b.near, b.far), "splits of {what}");
+                let split = |map: &shadowfit::FittedMap| map.depths.map(|range| (range.near, range.far));
+                assert_eq!(split(a), split(b), "splits of {what}");
                 assert_eq!(a.projection.texel_size, b.projection.texel_size, "texels of {what}");
                 let scroll = Scroll::between(a, b);
                 assert!(!scroll.is_new, "{what}: {a:?} {b:?}");
@@ -160,8 +161,8 @@ fn the_spheres_of_a_stable_fit_stay_although_every_input_wavers() {
 
 #[test]
 fn a_light_that_wavers_does_not_step() {
-    let (mut waver, mut steps) = (Waver(3), LightSteps::default());
-    let settings = LightStepSettings::default().with_texels(0.0).with_fade(1.0);
+    let (mut waver, mut steps) = (Waver(3), LightStepState::default());
+    let settings = LightSteps::default().with_texels(0.0).with_fade(1.0);
     let direction = Vec3::new(0.3, -0.8, 0.4).normalize();
     let first = steps.update(direction, &settings, 0.1).unwrap();
     for _ in 0..FRAMES {

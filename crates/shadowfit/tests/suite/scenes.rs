@@ -8,7 +8,7 @@ use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, MapSelection, MapSettings, RectangleKind, Shape, SplitScheme,
 };
-use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Slices, Technique, ViewFrustum};
+use shadowfit::{Aabb, Cascades, DepthConvention, PerspectiveCamera, Technique, ViewFrustum};
 
 use crate::support::{any_direction, double, every_stabilise, float, sliced};
 
@@ -256,12 +256,12 @@ pub(crate) fn any_choice() -> impl Strategy<Value = MapSelection> {
     prop_oneof![Just(MapSelection::default()), overlap.prop_map(|overlap| MapSelection::ViewDepth { overlap })]
 }
 
-/// One map, or slices of the view.
+/// One map, or cascades.
 pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     let stabilise = prop::sample::select(every_stabilise().to_vec());
     (any_covering_fit(), 1..=8_u32, any_splits(), any_choice(), stabilise).prop_map(
-        |(fit, count, splits, choice, stabilise)| {
-            sliced(&fit, Slices { count, splits, selection: choice, stabilise, ..Slices::default() })
+        |(fit, count, splits, selection, stabilise)| {
+            sliced(&fit, Cascades { count, splits, selection, stabilise, ..Cascades::default() })
         },
     )
 }

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use proptest::prelude::*;
 use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
-use shadowfit::scroll::{GridAnchor, Scroll, TexelRect, Tile, tiles};
+use shadowfit::scroll::{GridPosition, Scroll, TexelRect, Tile, tiles};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FitState, FittedMap, FittedMaps, LightProjection,
-    PerspectiveCamera, Scratch, Slices, Technique,
+    Aabb, Boxes, Cascades, CasterVolume, DepthConvention, FitError, FitInput, FitState, FittedMap, FittedMaps,
+    LightProjection, PerspectiveCamera, Scratch, Technique,
 };
 
 use crate::support::{DIRECTION, SNAP, any_direction, camera, double, sliced};
@@ -20,7 +20,7 @@ fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> Technique {
         .with_casters(CasterPolicy::PerObject)
         .with_resolution(UVec2::new(resolution, resolution * 3 / 4));
     let splits = SplitScheme::Manual([8.0, 18.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    sliced(&fit, Slices { count: 3, splits, stabilise, ..Slices::default() })
+    sliced(&fit, Cascades { count: 3, splits, stabilise, ..Cascades::default() })
 }
 
 /// Houses on a square of ground around the tests' camera, relative to the world's origin.
@@ -50,17 +50,17 @@ fn frame(
 
 /// A map of 2 m texels straight below the light, whose left bottom corner is at a grid line.
 fn plain_map(first: [i64; 2], resolution: UVec2) -> FittedMap {
-    let anchor = GridAnchor { first, texel: DVec2::splat(2.0), depth: [-10.0, 30.0] };
+    let grid_position = GridPosition { first, texel: DVec2::splat(2.0), depth: [-10.0, 30.0] };
     FittedMap {
         projection: LightProjection { resolution, ..LightProjection::default() },
-        anchor: Some(anchor),
+        grid_position: Some(grid_position),
         ..FittedMap::default()
     }
 }
 
 /// World column and row, counted upward, of a texel of a map.
-fn world_texel(anchor: &GridAnchor, resolution: UVec2, x: u32, y: u32) -> (i64, i64) {
-    (anchor.first[0] + i64::from(x), anchor.first[1] + i64::from(resolution.y - 1 - y))
+fn world_texel(grid_position: &GridPosition, resolution: UVec2, x: u32, y: u32) -> (i64, i64) {
+    (grid_position.first[0] + i64::from(x), grid_position.first[1] + i64::from(resolution.y - 1 - y))
 }
 
 fn is_in(rect: &TexelRect, x: u32, y: u32) -> bool {
@@ -76,7 +76,7 @@ proptest! {
     ) {
         let resolution = UVec2::new(w, h);
         let (before, now) = (plain_map([x, y], resolution), plain_map([x + dx, y + dy], resolution));
-        let (old, new) = (before.anchor.unwrap(), now.anchor.unwrap());
+        let (old, new) = (before.grid_position.unwrap(), now.grid_position.unwrap());
         let held: HashMap<_, _> = (0..w).flat_map(|x| (0..h).map(move |y| (x, y)))
             .map(|(x, y)| (world_texel(&old, resolution, x, y), (x, y))).collect();
         let scroll = Scroll::between(&before, &now);
@@ -185,7 +185,7 @@ fn tiles_have_the_same_bits_wherever_the_camera_is() {
     let (mut again, mut levels) = (0, std::collections::HashSet::new());
     for _ in 0..60 {
         for (level, map) in frame(&mut fitter, &camera, DIRECTION, &settings, &town).iter().enumerate() {
-            let depth = map.anchor.unwrap().depth.map(f64::to_bits);
+            let depth = map.grid_position.unwrap().depth.map(f64::to_bits);
             for tile in tiles(map, 64).unwrap() {
                 levels.insert((level, depth));
                 let first = *known.entry((level, tile.index, depth)).or_insert(tile.projection);
@@ -244,20 +244,20 @@ fn what_changes_the_projection_makes_a_new_map() {
     let before = plain_map([3, 4], resolution);
     let same = Scroll::between(&before, &before);
     assert!(!same.is_redraw() && same.exposed().count() == 0);
-    let anchor = before.anchor.unwrap();
-    let with = |anchor: GridAnchor| FittedMap { anchor: Some(anchor), ..before };
+    let grid_position = before.grid_position.unwrap();
+    let with = |grid_position: GridPosition| FittedMap { grid_position: Some(grid_position), ..before };
     let with_fit = |fit: LightProjection| FittedMap { projection: fit, ..before };
-    let depth = Scroll::between(&before, &with(GridAnchor { depth: [-10.0, 31.0], ..anchor }));
+    let depth = Scroll::between(&before, &with(GridPosition { depth: [-10.0, 31.0], ..grid_position }));
     assert!(!depth.is_new && depth.depth_changed && depth.is_redraw() && depth.exposed().count() == 0);
     let mut turned = before.projection;
     turned.light_from_world.x_axis.y = 1e-7;
     for other in [
-        with(GridAnchor { texel: DVec2::new(2.0, 2.000_001), ..anchor }),
-        with(GridAnchor { first: [i64::MAX, i64::MIN], ..anchor }),
+        with(GridPosition { texel: DVec2::new(2.0, 2.000_001), ..grid_position }),
+        with(GridPosition { first: [i64::MAX, i64::MIN], ..grid_position }),
         with_fit(LightProjection { resolution: UVec2::new(8, 9), ..before.projection }),
         with_fit(LightProjection { depth: DepthConvention::Reversed, ..before.projection }),
         with_fit(turned),
-        FittedMap { anchor: None, ..before },
+        FittedMap { grid_position: None, ..before },
     ] {
         for scroll in [Scroll::between(&before, &other), Scroll::between(&other, &before)] {
             assert!(scroll.is_new && scroll.is_redraw(), "{other:?}");
@@ -274,40 +274,40 @@ fn what_changes_the_projection_makes_a_new_map() {
 fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
     let free =
         frame(&mut FitState::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Off, 64), &town());
-    assert!(free[0].anchor.is_none());
+    assert!(free[0].grid_position.is_none());
     assert_eq!(tiles(&free[0], 64).unwrap_err(), FitError::NotOnGrid);
     let good = frame(&mut FitState::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, SNAP, 64), &town())[0];
     assert!(tiles(&good, 64).is_ok());
-    let anchor = good.anchor.unwrap();
+    let grid_position = good.grid_position.unwrap();
     for size in [0, 65_537, u32::MAX] {
         assert!(matches!(tiles(&good, size), Err(FitError::OutOfRange { .. })), "{size}");
     }
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
-        let with = |anchor: GridAnchor| FittedMap { anchor: Some(anchor), ..good };
-        assert!(tiles(&with(GridAnchor { texel: DVec2::new(bad, 1.0), ..anchor }), 64).is_err(), "{bad}");
-        assert!(tiles(&with(GridAnchor { depth: [0.0, bad], ..anchor }), 64).is_err(), "{bad}");
+        let with = |grid_position: GridPosition| FittedMap { grid_position: Some(grid_position), ..good };
+        assert!(tiles(&with(GridPosition { texel: DVec2::new(bad, 1.0), ..grid_position }), 64).is_err(), "{bad}");
+        assert!(tiles(&with(GridPosition { depth: [0.0, bad], ..grid_position }), 64).is_err(), "{bad}");
         let mut fit = good.projection;
         fit.light_from_world.y_axis.y = bad as f32;
         fit.light_from_world.z_axis.y = bad as f32;
         assert!(tiles(&FittedMap { projection: fit, ..good }, 64).is_err(), "{bad}");
     }
-    let far = GridAnchor { first: [i64::MIN, i64::MAX], ..anchor };
-    assert!(tiles(&FittedMap { anchor: Some(far), ..good }, 64).is_err());
+    let far = GridPosition { first: [i64::MIN, i64::MAX], ..grid_position };
+    assert!(tiles(&FittedMap { grid_position: Some(far), ..good }, 64).is_err());
 }
 
 proptest! {
-    /// By brute force: a part of a map is stored texel by texel at (t + wrap) modulo the size, each once, in pieces whose
-    /// viewport leads from the one to the other.
+    /// By brute force: a part of a map is stored texel by texel at (t + texel_offset) modulo the size, each once, in
+    /// pieces whose viewport leads from the one to the other.
     #[test]
     fn a_part_of_a_map_is_stored_wrapped_around_texel_by_texel(
         (w, h) in (1_u32..12, 1_u32..12), (x, y) in (0_u32..12, 0_u32..12), (dx, dy) in (0_u32..14, 0_u32..14),
         (wx, wy) in (0_u32..12, 0_u32..12),
     ) {
         let size = UVec2::new(w, h);
-        let wrap = UVec2::new(wx % w, wy % h);
+        let texel_offset = UVec2::new(wx % w, wy % h);
         let part = TexelRect { min: UVec2::new(x, y), size: UVec2::new(dx, dy) };
         let mut found = HashMap::new();
-        for piece in part.stored(wrap, size) {
+        for piece in part.stored(texel_offset, size) {
             prop_assert_eq!(piece.window.size, piece.stored.size);
             for column in 0..piece.stored.size.x {
                 for row in 0..piece.stored.size.y {
@@ -323,7 +323,7 @@ proptest! {
         prop_assert_eq!(found.len() as u64, inside.area());
         for (texel, stored) in found {
             prop_assert!(is_in(&inside, texel.x, texel.y));
-            prop_assert_eq!(stored, (texel + wrap) % size);
+            prop_assert_eq!(stored, (texel + texel_offset) % size);
         }
     }
 
@@ -333,12 +333,12 @@ proptest! {
         shifts in prop::collection::vec((-9_i64..9, -9_i64..9), 1..20), (w, h) in (1_u32..12, 1_u32..12),
     ) {
         let size = UVec2::new(w, h);
-        let (mut before, mut wrap) = (plain_map([40, -70], size), UVec2::ZERO);
+        let (mut before, mut texel_offset) = (plain_map([40, -70], size), UVec2::ZERO);
         for (dx, dy) in shifts {
-            let [x, y] = before.anchor.unwrap().first;
+            let [x, y] = before.grid_position.unwrap().first;
             let now = plain_map([x + dx, y + dy], size);
             let scroll = Scroll::between(&before, &now);
-            let next = scroll.wrap(wrap, size);
+            let next = scroll.texel_offset(texel_offset, size);
             prop_assert!(next.cmplt(size).all());
             if scroll.is_redraw() {
                 prop_assert_eq!(next, UVec2::ZERO);
@@ -348,12 +348,12 @@ proptest! {
                         let now = UVec2::new(column, row);
                         let old = now.as_ivec2() + scroll.shift;
                         if old.cmpge(shadowfit::glam::IVec2::ZERO).all() && old.as_uvec2().cmplt(size).all() {
-                            prop_assert_eq!((now + next) % size, (old.as_uvec2() + wrap) % size);
+                            prop_assert_eq!((now + next) % size, (old.as_uvec2() + texel_offset) % size);
                         }
                     }
                 }
             }
-            (before, wrap) = (now, next);
+            (before, texel_offset) = (now, next);
         }
     }
 

@@ -50,9 +50,9 @@ fn where_the_filter_fits_nowhere_it_is_clamped_to_the_finest_map_that_holds_the_
 
 #[test]
 fn by_view_depth_the_first_map_that_ends_behind_a_point_and_holds_it_is_read() {
-    let ends = [10.0, 20.0, f64::MAX];
+    let ends = [Some(10.0), Some(20.0), None];
     let at = |depth: f64, held: [bool; 3]| {
-        let ranges = ends.map(|far| DepthRange { blend_near: f64::MAX, far });
+        let ranges = ends.map(|far| Some(DepthRange::new(0.0, far)));
         by_view_depth(ranges, depth, |map| held[map])
     };
     assert_eq!([5.0, 10.0, 20.0].map(|depth| at(depth, [true; 3])), [Some(alone(0)), Some(alone(1)), Some(alone(2))]);
@@ -64,8 +64,9 @@ fn by_view_depth_the_first_map_that_ends_behind_a_point_and_holds_it_is_read() {
 #[test]
 fn by_view_depth_maps_are_blended_where_they_overlap() {
     let at = |depth: f64, holds_next: bool| {
-        let ranges = [(f64::MIN, 10.0), (8.0, 20.0), (20.0, f64::MAX)];
-        let ranges = ranges.map(|(blend_near, far)| DepthRange { blend_near, far });
+        let ranges = [(0.0, Some(10.0)), (8.0, Some(20.0)), (20.0, None)];
+        let ranges =
+            ranges.map(|(start, far)| Some(DepthRange { covered_from: Some(start), ..DepthRange::new(start, far) }));
         by_view_depth(ranges, depth, |map| map != 1 || holds_next)
     };
     assert_eq!([7.0, 8.0].map(|depth| at(depth, true)), [Some(alone(0)); 2]);
@@ -83,8 +84,8 @@ fn the_map_that_weighs_more_is_the_first_one_unless_the_second_has_more_than_hal
 #[test]
 fn the_order_has_no_more_than_the_greatest_number_of_maps() {
     let maps = [LightProjection::default(); MAX_MAPS + 1];
-    for choice in [MapSelection::default(), MapSelection::ViewDepth { overlap: 0.0 }] {
-        assert!(MapOrder::new(choice, &maps).iter().eq(0..MAX_MAPS));
+    for selection in [MapSelection::default(), MapSelection::ViewDepth { overlap: 0.0 }] {
+        assert!(MapOrder::new(selection, &maps).iter().eq(0..MAX_MAPS));
     }
 }
 
@@ -119,7 +120,7 @@ fn free_texels_are_counted_from_the_nearest_side() {
         (DVec2::new(3.0, size.y * -0.5 + 2.5), Some(2.5)),
         (DVec2::new(0.0, size.y * 0.5 + 0.5), None),
     ] {
-        let free = fit.free_texels(middle + axis(0) * (texels.x * texel.x) + axis(1) * (texels.y * texel.y));
+        let free = fit.texels_to_edge(middle + axis(0) * (texels.x * texel.x) + axis(1) * (texels.y * texel.y));
         // f32 rows of the matrix, 4 roundings of 2⁻²⁴ of half of a map of 2048 texels.
         let is_near = match (free, expected) {
             (Some(free), Some(expected)) => (free - expected).abs() < 1e-3,
@@ -127,7 +128,7 @@ fn free_texels_are_counted_from_the_nearest_side() {
         };
         assert!(is_near, "{free:?} instead of {expected:?} at {texels}");
     }
-    assert_eq!(fit.free_texels(DVec3::NAN), None);
+    assert_eq!(fit.texels_to_edge(DVec3::NAN), None);
 }
 
 #[test]
@@ -171,8 +172,8 @@ proptest! {
         for (u, v, w) in places {
             let across = |side: usize| corners[side].lerp(corners[side + 1], u).lerp(corners[side + 3].lerp(corners[side + 2], u), v);
             let point = across(0).lerp(across(4), w);
-            let free = |map: usize| maps[map].projection.free_texels(point);
-            let needed = f64::from(technique.reach());
+            let free = |map: usize| maps[map].projection.texels_to_edge(point);
+            let needed = f64::from(technique.filter_radius());
             let roomy: Vec<usize> =
                 sorted.iter().copied().filter(|map| free(*map).is_some_and(|free| free >= needed)).collect();
             let clamped = sorted.iter().copied().find(|map| free(*map).is_some());

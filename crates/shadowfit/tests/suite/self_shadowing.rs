@@ -3,7 +3,7 @@
 //! The map is simulated: a texel stores the depth that the plane has at its centre, the filter
 //! reads the texels that its definition says.
 
-use shadowfit::bias::{Reach, depth_gradient, normal_offset, receiver_plane_depth};
+use shadowfit::bias::{FilterRadius, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use shadowfit::settings::FitKind;
 use shadowfit::{DepthConvention, LightProjection};
@@ -160,8 +160,8 @@ fn with_the_gradient_at_each_look_up_only_the_reach_of_one_is_left() {
         let (texel, range) = (fit.texel_size.as_dvec2(), f64::from(fit.depth_range));
         let gradient = depth_gradient(fit, plane.world_normal).unwrap().as_dvec2() * DVec2::new(1.0, -1.0);
         let one = match filter.look_up {
-            LookUp::Nearest => Reach::POINT,
-            LookUp::Bilinear => Reach::HARDWARE_2X2,
+            LookUp::Nearest => FilterRadius::POINT,
+            LookUp::Bilinear => FilterRadius::HARDWARE_2X2,
         };
         let bias = f64::from(receiver_plane_depth(fit, one, plane.world_normal).unwrap());
         for at in positions().take(20) {

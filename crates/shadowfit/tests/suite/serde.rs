@@ -4,17 +4,18 @@ use std::fmt::Debug;
 
 use serde::{Serialize, de::DeserializeOwned};
 use shadowfit::NormalCone;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::proof::{CoverageProof, CoverageQuery, MapPlane, Margins};
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, Edges, FitKind, FitSettings, MapSelection, RectangleKind, SplitScheme,
 };
+use shadowfit::spot::SpotBias;
 use shadowfit::{
-    Aabb, Bias, DepthConvention, FitInput, FitState, OneMap, Scratch, Slices, SpotBias, Technique, ViewFrustum, Windows,
+    Aabb, Bias, Cascades, DepthConvention, FitInput, FitState, Scratch, SingleMap, Technique, ViewFrustum, Windows,
 };
 
 use crate::support::{DIRECTION, camera, every_stabilise, fitted};
@@ -40,17 +41,17 @@ fn settings_survive() {
     survives(&single);
     let technique = Technique::default().with_fit(single.map);
     let splits = SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]);
-    let slices = Slices { shape: single.shape, splits, ..Slices::default() };
-    survives(&technique.with_maps(slices));
-    survives(&technique.with_maps(slices.with_splits(SplitScheme::Practical(0.7))));
+    let cascades = Cascades { shape: single.shape, splits, ..Cascades::default() };
+    survives(&technique.with_maps(cascades));
+    survives(&technique.with_maps(cascades.with_splits(SplitScheme::Practical(0.7))));
     for stabilise in every_stabilise() {
-        let choice = MapSelection::ViewDepth { overlap: 0.1 };
-        survives(&technique.with_maps(slices.with_stabilise(stabilise).with_selection(choice)));
-        survives(&technique.with_maps(OneMap { shape: single.shape, stabilise }));
+        let selection = MapSelection::ViewDepth { overlap: 0.1 };
+        survives(&technique.with_maps(cascades.with_stabilise(stabilise).with_selection(selection)));
+        survives(&technique.with_maps(SingleMap { shape: single.shape, stabilise }));
     }
-    survives(&technique.with_maps(Windows { count: 7, blend: 0.1, max_depth_waste: 1.3 }));
+    survives(&technique.with_maps(Windows { count: 7, blend: 0.1, max_depth_oversize: 1.3 }));
     survives(&technique.with_edges(Edges::Traced { samples: 7 }));
-    survives(&LightStepSettings::default());
+    survives(&LightSteps::default());
 }
 
 #[test]
@@ -58,8 +59,8 @@ fn settings_that_a_file_does_not_name_have_their_defaults() {
     let technique: Technique = serde_json::from_str(r#"{"bias": {"slope": 2.0}}"#).unwrap();
     let bias = BiasSettings::default().with_slope(2.0);
     assert_eq!(technique, Technique { bias, ..Technique::default() });
-    let technique: Technique = serde_json::from_str(r#"{"maps": {"Slices": {"count": 3}}}"#).unwrap();
-    assert_eq!(technique, Technique::default().with_maps(Slices::default().with_count(3)));
+    let technique: Technique = serde_json::from_str(r#"{"maps": {"Cascades": {"count": 3}}}"#).unwrap();
+    assert_eq!(technique, Technique::default().with_maps(Cascades::default().with_count(3)));
 }
 
 #[test]
@@ -82,25 +83,25 @@ fn outputs_survive() {
     survives(&fit.world_matrices());
     survives(&fit.caster_volume());
     survives(&CasterPlanes::from(&fit.caster_volume()));
-    let bias = Bias::automatic(Reach::POINT, DepthStorage::Float16, &fit).unwrap();
+    let bias = Bias::automatic(FilterRadius::POINT, DepthStorage::Float16, &fit).unwrap();
     survives(&bias);
     survives(&bias.on_plane(&fit, Vec3::Y).unwrap());
-    survives(&Reach::HARDWARE_2X2.over_disc(3.0));
+    survives(&FilterRadius::HARDWARE_2X2.over_disc(3.0));
     survives(&Coverage::BeforeNear);
-    survives(&CoverageQuery::of_fit(&FitSettings::default(), Reach::POINT));
+    survives(&CoverageQuery::of_fit(&FitSettings::default(), FilterRadius::POINT));
     survives(&CoverageProof::Uncovered { plane: MapPlane::Far, point: DVec3::splat(0.1), by: 0.3 });
     survives(&CoverageProof::Proven(Margins { planes: [0.1; 6], casters: 2.5 }));
     survives(&AcneMargin { metres: 0.1, texels: -0.3 });
     survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
     let spot = crate::spot::lamp().fit(UVec2::splat(512), DepthConvention::Reversed).unwrap();
     survives(&spot);
-    survives(&SpotBias::automatic(Reach::POINT, DepthStorage::Float16, &spot).unwrap());
+    survives(&SpotBias::automatic(FilterRadius::POINT, DepthStorage::Float16, &spot).unwrap());
 }
 
 #[test]
 fn lights_that_step_go_on() {
-    let settings = LightStepSettings::default().with_fade(1.0);
-    let mut steps = LightSteps::default();
+    let settings = LightSteps::default().with_fade(1.0);
+    let mut steps = LightStepState::default();
     steps.update(DIRECTION, &settings, 0.1).unwrap();
     steps.update(Vec3::NEG_Y, &settings, 0.1).unwrap();
     let mut other = read_back(&steps);

@@ -29,7 +29,7 @@ fn another_filter_brings_its_bias_and_its_border() {
     assert_eq!(moved.border(), 0.5 + offset.normal_offset, "the looked-up point moves by the offset");
     assert_eq!(moved.with_fit(MapSettings::default().with_border(7.0)).border(), 7.0, "what is set stays");
     let soft = Technique::default().with_filter(FilterKind::Vogel16);
-    assert_eq!((soft.reach(), soft.border()), (17.0, 17.0), "a look-up over the widest disc");
+    assert_eq!((soft.filter_radius(), soft.border()), (17.0, 17.0), "a look-up over the widest disc");
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn windows_are_read_by_coverage_and_slices_as_they_say() {
     let windows = Windows::default().with_blend(5.0);
     assert_eq!(Maps::from(windows).selection(), MapSelection::Coverage { blend: 5.0 });
     let by_depth = MapSelection::ViewDepth { overlap: 0.5 };
-    let slices = Technique::preset("focused-4").expect("a preset").maps;
-    let chosen = [slices, slices.as_slices().with_selection(by_depth).into()].map(|maps| maps.selection());
+    let cascades = Technique::preset("focused-4").expect("a preset").maps;
+    let chosen = [cascades, cascades.as_cascades().with_selection(by_depth).into()].map(|maps| maps.selection());
     assert_eq!(chosen, [MapSelection::default(), by_depth]);
 }

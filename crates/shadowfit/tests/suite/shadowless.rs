@@ -1,7 +1,7 @@
 //! Views that begin beyond the shadow distance: frames without shadows, which are no errors, and after which held maps
 //! go on.
 
-use shadowfit::demand::SeenSpace;
+use shadowfit::demand::VisibleDemandSpace;
 use shadowfit::glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::settings::FitSettings;
@@ -118,7 +118,7 @@ fn a_view_beyond_the_distance_adds_nothing_to_the_maps_of_others() {
                 let maps = [(); 3].map(|()| *fitter.fit(&input).unwrap());
                 let mut storage = vec![DVec2::ZERO; input.scratch()];
                 for map in maps[2].iter().filter(|_| name != "xna-1") {
-                    let query = CoverageQuery::of_map(map, &technique, technique.reach_in(&map.projection))
+                    let query = CoverageQuery::of_map(map, &technique, technique.filter_radius_in(&map.projection))
                         .with_normal_offset(map.bias.normal_offset);
                     let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
                     assert!(proof.is_proven(), "{name}: {proof:?}");
@@ -163,7 +163,7 @@ fn held_maps_are_the_same_after_frames_without_shadows() {
             for frame in 0..3 {
                 let after = at(shown);
                 for (map, (a, b)) in after.iter().zip(before.iter()).enumerate() {
-                    assert_eq!(a.anchor, b.anchor, "{name}, frame {frame}, map {map}");
+                    assert_eq!(a.grid_position, b.grid_position, "{name}, frame {frame}, map {map}");
                     assert_eq!(a.projection, b.projection, "{name}, frame {frame}, map {map}");
                 }
             }
@@ -187,7 +187,7 @@ fn distances_that_are_none_and_views_turned_inside_out_are_still_refused() {
     let turned = ViewFrustum { near: view.far, far: view.near, ..view };
     assert!(ShadowFitter::default().fit(&FitInput::new(&[turned], DIRECTION)).is_err());
     // There is nothing to count.
-    assert!(matches!(SeenSpace::new(&view, DIRECTION, Vec3::Y, 0.2), Err(FitError::NearNotBelowFar { .. })));
+    assert!(matches!(VisibleDemandSpace::new(&view, DIRECTION, Vec3::Y, 0.2), Err(FitError::NearNotBelowFar { .. })));
 }
 
 /// Orthographic views may lie behind the eye as a whole.

@@ -1,13 +1,13 @@
 //! Soft filters: how wide they are in texels, how far they reach, and how fine maps may be for them.
 
 use proptest::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
 use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::settings::{
     Edges, FilterKind, FitKind, FitSettings, MapSettings, RectangleKind, Shape, SoftRadius, Softness, SplitScheme,
 };
-use shadowfit::{FitInput, FitState, FittedMaps, LightProjection, Maps, Scratch, Slices, Technique, ViewFrustum};
+use shadowfit::{Cascades, FitInput, FitState, FittedMaps, LightProjection, Maps, Scratch, Technique, ViewFrustum};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, exact, fitted, float};
 
@@ -34,8 +34,8 @@ fn a_sun_s_penumbra_is_its_tangent_times_the_distance() {
     for filter in hard {
         let fit = with_texels(Vec2::splat(0.01));
         assert_eq!((sun.metres(filter), sun.texels(filter, &fit)), (0.0, Vec2::ZERO), "{filter:?}");
-        assert_eq!(sun.reach_in(filter, &fit), Reach::from(filter), "{filter:?}");
-        assert_eq!((sun.reach(filter), sun.least_texel(filter)), (filter.reach(), 0.0), "{filter:?}");
+        assert_eq!(sun.filter_radius_in(filter, &fit), FilterRadius::from(filter), "{filter:?}");
+        assert_eq!((sun.filter_radius(filter), sun.least_texel(filter)), (filter.filter_radius(), 0.0), "{filter:?}");
     }
 }
 
@@ -85,7 +85,7 @@ fn discs_keep_within_the_floor_and_the_ceiling_on_either_axis() {
         assert_eq!(at(1.0, 100.0), Vec2::new(2.0, 10.0), "{filter:?}");
         let expected = Vec2::new(4.0, 6.0).map(|r| (r * r - Softness::LOOK_UP_SQUARE).sqrt());
         assert!(at(4.0, 6.0).abs_diff_eq(expected, 1e-4), "{filter:?}");
-        assert_eq!(softness.reach(filter), 11.0);
+        assert_eq!(softness.filter_radius(filter), 11.0);
     }
     // A floor above its ceiling is refused by fits; on its own it is no reason to panic.
     let broken = softness.with_floor(20.0);
@@ -106,7 +106,7 @@ fn a_least_texel_is_the_greater_of_what_is_set_and_what_the_ceiling_asks_for() {
     let traced = soft.with_edges(Edges::Traced { samples: 1 });
     assert_eq!(traced.least_texel(), 0.0, "rays make the penumbra");
     assert_eq!(traced.with_fit(set(0.01)).least_texel(), 0.01);
-    assert_eq!((soft.with_filter(FilterKind::Pcf7x7).reach(), soft.reach()), (4.0, 17.0));
+    assert_eq!((soft.with_filter(FilterKind::Pcf7x7).filter_radius(), soft.filter_radius()), (4.0, 17.0));
 }
 
 #[test]
@@ -134,10 +134,10 @@ fn any_softness() -> impl Strategy<Value = Softness> {
     (radius, float(1.0, 14.0)).prop_map(|(radius, ceiling)| Softness { radius, floor: 1.0, ceiling })
 }
 
-/// One map, slices of the view of every kind, and windows.
+/// One map, cascades of every kind, and windows.
 fn any_limited() -> impl Strategy<Value = Technique> {
-    let slices = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused].map(Some);
-    let kinds: Vec<Option<FitKind>> = slices.into_iter().chain([None]).collect();
+    let cascades = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused].map(Some);
+    let kinds: Vec<Option<FitKind>> = cascades.into_iter().chain([None]).collect();
     let rectangles = [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare];
     let kind = (prop::sample::select(kinds), prop::sample::select(rectangles.to_vec()));
     let stabilise = prop::sample::select(every_stabilise().to_vec());
@@ -147,12 +147,12 @@ fn any_limited() -> impl Strategy<Value = Technique> {
     let filter = (prop::sample::select(FilterKind::ALL.to_vec()), any_softness());
     (kind, stabilise, (sides(), sides()), (least, ratio), filter, 1..=8_u32).prop_map(
         |((kind, rectangle), stabilise, (width, height), (least_texel, max_texel_ratio), (filter, softness), count)| {
-            let slices = |kind| {
+            let cascades = |kind| {
                 let splits = SplitScheme::Logarithmic;
                 let shape = Shape { kind, rectangle, max_texel_ratio };
-                Maps::from(Slices { shape, splits, stabilise, ..Slices::default() })
+                Maps::from(Cascades { shape, splits, stabilise, ..Cascades::default() })
             };
-            let maps = kind.map_or(Maps::default(), slices).with_count(count);
+            let maps = kind.map_or(Maps::default(), cascades).with_count(count);
             let fit = MapSettings::default().with_least_texel(least_texel);
             Technique { maps, fit, softness, ..Technique::default() }.with_filter(filter).with_resolution(width, height)
         },
@@ -161,7 +161,7 @@ fn any_limited() -> impl Strategy<Value = Technique> {
 
 /// Whether windows are finer one by one, in eighths of an octave, and on the world's grid.
 fn are_windows(maps: &FittedMaps) -> bool {
-    let step = |map: &shadowfit::FittedMap| map.anchor.map(|anchor| anchor.texel.x.log2() * 8.0);
+    let step = |map: &shadowfit::FittedMap| map.grid_position.map(|grid_position| grid_position.texel.x.log2() * 8.0);
     let on_ladder = |step: Option<f64>| step.is_some_and(|step| (step - step.round()).abs() < 1e-6);
     maps.iter().map(step).all(on_ladder)
         && maps.windows(2).all(|pair| pair[0].projection.texel_size.cmplt(pair[1].projection.texel_size).all())
@@ -186,8 +186,8 @@ proptest! {
             for map in maps.iter() {
                 let (texel, least) = (map.projection.texel_size.min_element(), technique.least_texel());
                 prop_assert!(texel >= least * (1.0 - 1e-5), "{texel} of {least}");
-                let reach = technique.reach_in(&map.projection);
-                prop_assert!(reach.per_axis() <= technique.reach(), "{reach:?}");
+                let reach = technique.filter_radius_in(&map.projection);
+                prop_assert!(reach.per_axis() <= technique.filter_radius(), "{reach:?}");
                 let query = CoverageQuery::of_map(map, &technique, reach);
                 let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
                 // Only the last of windows holds all that it is asked for.
@@ -208,7 +208,7 @@ proptest! {
         let settings = FitSettings { shape: technique.maps.shape().unwrap_or_default(), map };
         let map = shadowfit::fit(&frustum, direction, &settings).unwrap();
         prop_assert!(map.texel_size.min_element() >= settings.map.least_texel * (1.0 - 1e-5), "{map:?}");
-        let query = CoverageQuery::of_fit(&settings, Reach::kernel(5));
+        let query = CoverageQuery::of_fit(&settings, FilterRadius::kernel(5));
         let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
         let views = [frustum];
         let input = FitInput::new(&views, direction);

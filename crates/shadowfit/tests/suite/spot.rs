@@ -2,8 +2,9 @@
 
 use proptest::prelude::*;
 use shadowfit::DepthConvention::{self, NegativeOneToOne, Reversed, ZeroToOne};
+use shadowfit::PerspectiveCamera;
 use shadowfit::glam::{DQuat, DVec3, Mat4, UVec2, Vec3, Vec4};
-use shadowfit::{PerspectiveCamera, SpotFit, SpotLight};
+use shadowfit::spot::{SpotFit, SpotLight};
 
 use crate::support::{any_direction, double, float};
 

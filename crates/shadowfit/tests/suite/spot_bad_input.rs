@@ -2,12 +2,13 @@
 //! result, never a panic.
 
 use proptest::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec3, UVec2, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, MapFormat};
+use shadowfit::spot::{SpotBias, SpotFit, SpotLight};
 use shadowfit::spot::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
-use shadowfit::{DepthConvention, FitError, SpotBias, SpotFit, SpotLight};
+use shadowfit::{DepthConvention, FitError};
 
 use crate::spot::{in_window, lamp};
 use crate::support::cases;
@@ -23,7 +24,7 @@ struct Inputs {
     lamp: SpotLight,
     normal: Vec3,
     point: DVec3,
-    reach: Reach,
+    reach: FilterRadius,
     bias: SpotBias,
     fixed: f32,
 }
@@ -68,7 +69,7 @@ fn good() -> Inputs {
         lamp: lamp(),
         normal: Vec3::new(0.2, 0.9, -0.1),
         point: in_window(&lamp(), 0.2, 0.3, 8.0),
-        reach: Reach::HARDWARE_2X2.over_disc(2.0),
+        reach: FilterRadius::HARDWARE_2X2.over_disc(2.0),
         bias: SpotBias {
             constant_depth: 0.001,
             distance_depth: 0.001,

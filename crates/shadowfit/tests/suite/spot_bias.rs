@@ -5,12 +5,13 @@
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
+use shadowfit::DepthConvention;
 use shadowfit::bias::MIN_COSINE;
 use shadowfit::diagnostics::{DepthStorage, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, MapFormat};
+use shadowfit::spot::{SpotBias, SpotFit};
 use shadowfit::spot::{depth_gradient, normal_offset, on_hardware};
-use shadowfit::{DepthConvention, SpotBias, SpotFit};
 
 use crate::filters::{Filter, filters};
 use crate::spot::{any_depth, any_lamp, homogeneous, in_window, lamp};
@@ -130,7 +131,7 @@ impl Case {
 }
 
 /// Maps of any lamp, of 128 to 8192 texels, relative to the light or to points up to four times the far distance away.
-fn any_fit() -> impl Strategy<Value = (shadowfit::SpotLight, SpotFit)> {
+fn any_fit() -> impl Strategy<Value = (shadowfit::spot::SpotLight, SpotFit)> {
     let side = || prop_oneof![Just(128_u32), Just(500), Just(2048), Just(8192)];
     let origin = (any_direction(), prop_oneof![Just(0.0), Just(0.5), Just(4.0)]);
     let lamps = any_lamp().prop_filter("the roll is defined", |l| l.direction.cross(l.up).length() > 0.1);

@@ -4,11 +4,12 @@
 //! that its definition says. [`crate::spot_bias`] adds what f32 and hardware do.
 
 use proptest::prelude::*;
-use shadowfit::bias::{MIN_COSINE, Reach};
+use shadowfit::DepthConvention;
+use shadowfit::bias::{FilterRadius, MIN_COSINE};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 use shadowfit::settings::MapFormat;
+use shadowfit::spot::{SpotBias, SpotFit, SpotLight};
 use shadowfit::spot::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
-use shadowfit::{DepthConvention, SpotBias, SpotFit, SpotLight};
 
 use crate::filters::{Filter, LookUp, filters};
 use crate::spot::{DEPTHS, lamp};
@@ -209,8 +210,8 @@ fn with_the_gradient_at_each_look_up_only_the_reach_of_one_is_left() {
         let point = world(fit, plane.point(plane.middle).unwrap());
         let gradient = depth_gradient(fit, point, plane.world_normal).unwrap().as_dvec2() * DVec2::new(1.0, -1.0);
         let one = match filter.look_up {
-            LookUp::Nearest => Reach::POINT,
-            LookUp::Bilinear => Reach::HARDWARE_2X2,
+            LookUp::Nearest => FilterRadius::POINT,
+            LookUp::Bilinear => FilterRadius::HARDWARE_2X2,
         };
         let bias = f64::from(receiver_plane_depth(fit, one, point, plane.world_normal).unwrap());
         for at in positions().take(20).map(|at| plane.middle + at) {

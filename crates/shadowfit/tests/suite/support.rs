@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, MapSelection, Stabilise};
-use shadowfit::{LightProjection, Maps, PerspectiveCamera, Slices, Technique};
+use shadowfit::{Cascades, FittedMap, LightProjection, Maps, PerspectiveCamera, Technique};
 
 /// Both fits.
 pub(crate) const KINDS: [FitKind; 2] = [FitKind::XnaSample, FitKind::FrustumAabb];
@@ -20,24 +20,24 @@ pub(crate) fn exact(kind: FitKind) -> FitSettings {
 }
 
 /// Snapped maps, kept as long as held ones are by default.
-pub(crate) const SNAP: Stabilise = Stabilise::Snap { max_waste: 1.8 };
+pub(crate) const SNAP: Stabilise = Stabilise::Snap { max_oversize: 1.8 };
 
 /// Every way to keep maps, with the defaults of the rest.
 pub(crate) fn every_stabilise() -> [Stabilise; 3] {
     [Stabilise::Off, SNAP, Stabilise::default()]
 }
 
-/// So many slices of the view, or one map where the count is 1, each fitted by the settings.
-pub(crate) fn sliced(fit: &FitSettings, slices: Slices) -> Technique {
-    let maps = Maps::from(slices.with_shape(fit.shape)).with_count(slices.count);
+/// So many cascades, or one map where the count is 1, each fitted by the settings.
+pub(crate) fn sliced(fit: &FitSettings, cascades: Cascades) -> Technique {
+    let maps = Maps::from(cascades.with_shape(fit.shape)).with_count(cascades.count);
     Technique::default().with_maps(maps).with_fit(fit.map)
 }
 
-/// The same with slices that are read by another choice; of a single map there is none.
-pub(crate) fn read_by(technique: &Technique, choice: MapSelection) -> Technique {
+/// The same with cascades that are read by another selection; of a single map there is none.
+pub(crate) fn read_by(technique: &Technique, selection: MapSelection) -> Technique {
     match technique.maps {
-        Maps::Slices(slices) => technique.with_maps(slices.with_selection(choice)),
-        Maps::Windows(_) | Maps::One(_) => *technique,
+        Maps::Cascades(cascades) => technique.with_maps(cascades.with_selection(selection)),
+        Maps::Windows(_) | Maps::Single(_) => *technique,
     }
 }
 
@@ -159,4 +159,29 @@ fn xna_case(json: &Value) -> XnaCase {
     };
     // The file's light points from the scene toward the light.
     XnaCase { camera, direction: -vector(&json["to_light"]).as_vec3(), json: json.clone() }
+}
+
+/// View depths of a map in f32, as shaders compare them.
+pub(crate) trait ShaderDepths {
+    /// Where it begins: at `f32::MAX` where it has no range.
+    fn near(&self) -> f32;
+    /// Where it ends: at `f32::MAX` for no end, at `f32::MIN` where no point reads it.
+    fn far(&self) -> f32;
+    /// From where it holds everything that is visible: at `f32::MAX` where it need not.
+    fn covered_from(&self) -> f32;
+}
+
+impl ShaderDepths for FittedMap {
+    fn near(&self) -> f32 {
+        let range = self.depths.filter(|range| range.far.is_some() || range.covered_from.is_some());
+        range.map_or(f32::MAX, |range| range.near as f32)
+    }
+
+    fn far(&self) -> f32 {
+        self.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
+    }
+
+    fn covered_from(&self) -> f32 {
+        self.depths.and_then(|range| range.covered_from).map_or(f32::MAX, |near| near as f32)
+    }
 }

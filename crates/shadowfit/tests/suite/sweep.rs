@@ -1,13 +1,13 @@
 //! The swept receiver volume culls no caster whose shadow is seen, and few others are kept.
 
 use proptest::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::culling::Sweep;
 use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, MapSelection, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitError, FitInput, FitState, LightProjection, Scratch, Slices, ViewFrustum,
+    Aabb, Boxes, Cascades, CasterVolume, FitError, FitInput, FitState, LightProjection, Scratch, ViewFrustum,
 };
 
 use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float, sliced};
@@ -175,7 +175,7 @@ proptest! {
         let size = Vec3::splat((to - from) * 2.0);
         let receivers = [Aabb::new(middle.as_vec3() - size, middle.as_vec3() + size)];
         let receivers = (kind == FitKind::Focused).then_some(Boxes { origin: view.origin, boxes: &receivers });
-        let reach = Reach { taps, disc: Vec2::new(disc, disc * 0.5) };
+        let reach = FilterRadius { taps, disc: Vec2::new(disc, disc * 0.5) };
         let settings = exact(kind).with_border(taps + disc + 1.0).with_max_distance(far);
         let fit = fit_of(&views, direction, &settings, receivers);
 
@@ -190,7 +190,7 @@ proptest! {
         let in_map = uv(&fit, caster);
         prop_assume!(in_map.cmpge(DVec2::ZERO).all() && in_map.cmple(DVec2::ONE).all());
 
-        let sweep = Sweep { near, far, reach, normal_offset, ..Sweep::new(&views) };
+        let sweep = Sweep { near, far, filter_radius: reach, normal_offset, ..Sweep::new(&views) };
         let volume = CasterVolume::swept(&fit, &sweep).unwrap();
         // Relative to the fit's origin, and to the world's own from up to 170 km away.
         let elsewhere = CasterVolume::swept(&fit.relative_to(DVec3::ZERO), &sweep).unwrap();
@@ -200,11 +200,11 @@ proptest! {
         }
     }
 
-    /// By both choices, and of two maps that are blended.
+    /// By both selections, and of two maps that are blended.
     #[test]
     fn no_map_of_several_loses_a_caster_by_its_own_volume(
         lens in any_lens(), direction in any_direction(), kind in 0..5_usize,
-        (is_bordered, is_held) in any::<(bool, bool)>(), choice in prop::sample::select(vec![
+        (is_bordered, is_held) in any::<(bool, bool)>(), selection in prop::sample::select(vec![
             MapSelection::default(), MapSelection::ViewDepth { overlap: 0.0 }, MapSelection::ViewDepth { overlap: 0.3 },
         ]),
         points in prop::collection::vec(prop::array::uniform3(double(0.0, 1.0)), 12), half in float(0.001, 0.2),
@@ -214,7 +214,7 @@ proptest! {
         let fit = if is_bordered { fit } else { fit.with_border(0.0) };
         let stabilise = if is_held { Stabilise::default() } else { Stabilise::Off };
         let splits = SplitScheme::Practical(0.5);
-        let technique = sliced(&fit, Slices { splits, stabilise, selection: choice, ..Slices::default() });
+        let technique = sliced(&fit, Cascades { splits, stabilise, selection, ..Cascades::default() });
         let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
         let input = FitInput::new(&views, direction);
         let fitted = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage));
@@ -232,7 +232,7 @@ proptest! {
                 let half = Vec3::splat(half * view.far);
                 let centre = over.as_vec3();
                 let kind = ALL_KINDS[kind];
-                prop_assert!(volume.intersects_aabb(centre - half, centre + half), "{point} by {kind:?}, {choice:?}");
+                prop_assert!(volume.intersects_aabb(centre - half, centre + half), "{point} by {kind:?}, {selection:?}");
             }
         }
     }
@@ -338,7 +338,7 @@ impl Counts {
 
 /// Counts, having made sure that no box which casts a shadow into view is culled.
 fn count(fit: &LightProjection, view: &ViewFrustum, half: f64) -> Counts {
-    let sweep = Sweep { reach: Reach::taps(0.0), ..Sweep::new(std::slice::from_ref(view)) };
+    let sweep = Sweep { filter_radius: FilterRadius::taps(0.0), ..Sweep::new(std::slice::from_ref(view)) };
     let volume = CasterVolume::swept(fit, &sweep).unwrap();
     let slice = planes_of(view);
     // What the reach of one texel adds, and rounding.
@@ -483,7 +483,10 @@ fn sweeps_that_make_no_sense_are_errors() {
         assert!(matches!(error(Sweep { near: value, ..good }), FitError::NotFinite { .. }));
         assert!(matches!(error(Sweep { far: value, ..good }), FitError::NotFinite { .. }));
         assert!(matches!(error(Sweep { normal_offset: value, ..good }), FitError::NotFinite { .. }));
-        assert!(matches!(error(Sweep { reach: Reach::taps(value), ..good }), FitError::NotFinite { .. }));
+        assert!(matches!(
+            error(Sweep { filter_radius: FilterRadius::taps(value), ..good }),
+            FitError::NotFinite { .. }
+        ));
     }
     assert!(matches!(error(Sweep { normal_offset: -1.0, ..good }), FitError::OutOfRange { .. }));
     assert_eq!(error(Sweep { near: 3.0, far: 3.0, ..good }), FitError::NearNotBelowFar { near: 3.0, far: 3.0 });

@@ -5,13 +5,15 @@
 //! from there.
 
 use proptest::prelude::*;
-use shadowfit::Constraint;
+use shadowfit::BoundSource;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
-use shadowfit::{FitInput, FitState, FittedMap, FittedMaps, LightProjection, Scratch, Slices, Technique, ViewFrustum};
+use shadowfit::{
+    Cascades, FitInput, FitState, FittedMap, FittedMaps, LightProjection, Scratch, Technique, ViewFrustum,
+};
 
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
-use crate::support::{SNAP, apply, cases, double, sliced};
+use crate::support::{SNAP, ShaderDepths, apply, cases, double, sliced};
 
 /// Room above each step of extents, as a share of it.
 const STEP_ROOM: f64 = 1e-5;
@@ -54,7 +56,7 @@ fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, bo
         .with_border(border)
         .with_max_distance(f32::MAX)
         .with_resolution(UVec2::splat(resolution));
-    sliced(&fit, Slices { count, splits: SplitScheme::Practical(0.7), stabilise, ..Slices::default() })
+    sliced(&fit, Cascades { count, splits: SplitScheme::Practical(0.7), stabilise, ..Cascades::default() })
 }
 
 fn frame(fitter: &mut FitState, view: &SceneView, direction: Vec3, settings: &Technique) -> FittedMaps {
@@ -65,7 +67,7 @@ fn frame(fitter: &mut FitState, view: &SceneView, direction: Vec3, settings: &Te
 
 /// Points that the first frame sees in one of its maps.
 fn points_in(map: &FittedMap, view: &SceneView, places: &[[f64; 3]]) -> Vec<DVec3> {
-    let (near, far) = (f64::from(map.near), f64::from(map.far).min(view.lens.far));
+    let (near, far) = (f64::from(map.near()), f64::from(map.far()).min(view.lens.far));
     places.iter().map(|[x, y, z]| view.eye + view.point(*x, *y, near + (far - near) * z)).collect()
 }
 
@@ -115,14 +117,14 @@ fn walk(
 /// are rounded, other ones in each frame, may choose between two steps.
 fn is_on_a_step(view: &SceneView, maps: &FittedMaps, radius: impl Fn(&FittedMap) -> f64) -> bool {
     let far = view.lens.far;
-    maps.iter().filter(|map| f64::from(map.near) < far).any(|map| {
+    maps.iter().filter(|map| f64::from(map.near()) < far).any(|map| {
         let steps = 8.0 * (2.0 * radius(map) * (1.0 - STEP_ROOM)).log2();
         (steps - steps.round()).abs() < 1e-4
     })
 }
 
 fn sphere_radius(view: &SceneView, map: &FittedMap) -> f64 {
-    let slice = view.frustum().slice(map.near, map.far.min(f32::MAX)).unwrap();
+    let slice = view.frustum().slice(map.near(), map.far().min(f32::MAX)).unwrap();
     slice.enclosing_sphere().unwrap().1
 }
 
@@ -171,7 +173,7 @@ proptest! {
         kind in prop::sample::select(COVERING.to_vec()), places in any_places(),
     ) {
         let settings = settings(kind, Stabilise::default(), count, size, border);
-        walk(view, step, direction, &settings, &places, |fit| fit.set_by == [Constraint::Held; 6]);
+        walk(view, step, direction, &settings, &places, |fit| fit.bounds_from == [BoundSource::Held; 6]);
     }
 }
 
@@ -184,7 +186,7 @@ fn maps_are_held_on_a_walk() {
     for kind in COVERING {
         let settings = settings(kind, Stabilise::default(), 4, 1024, 1.5);
         let kept = walk(view, walk_on, Vec3::new(0.3, -0.8, 0.4), &settings, &[[0.5; 3]], |fit| {
-            fit.set_by == [Constraint::Held; 6]
+            fit.bounds_from == [BoundSource::Held; 6]
         });
         assert!(kept >= 16, "{kind:?}: {kept} of 24 maps were held");
     }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
 use shadowfit::proof::{CoverageQuery, prove};
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme};
-use shadowfit::{FitError, FitInput, FitState, LightProjection, Scratch, Slices};
+use shadowfit::{Cascades, FitError, FitInput, FitState, LightProjection, Scratch};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, float, sliced};
 
@@ -73,7 +73,7 @@ proptest! {
         let resolution = if tall { UVec2::new(512, 1024) } else { UVec2::splat(1024) };
         let fit = FitSettings::default().with_kind(kind).with_rectangle(RECTANGLES[rectangle]);
         let fit = fit.with_resolution(resolution).with_max_texel_ratio(limit);
-        let technique = sliced(&fit, Slices { splits: SplitScheme::Logarithmic, stabilise, ..Slices::default() });
+        let technique = sliced(&fit, Cascades { splits: SplitScheme::Logarithmic, stabilise, ..Cascades::default() });
         let mut storage = [DVec2::ZERO; Scratch::required(0, 3)];
         let mut fitter = FitState::new();
         let mut camera = camera;
@@ -84,7 +84,7 @@ proptest! {
             let Ok(maps) = fitter.fit(&input, &technique, &mut Scratch::new(&mut storage)) else { return Ok(()) };
             for map in maps.iter() {
                 prop_assert!(ratio(&map.projection) <= limit * (1.0 + 1e-5), "{} of {limit}", ratio(&map.projection));
-                let query = CoverageQuery::of_map(map, &technique, technique.reach_in(&map.projection));
+                let query = CoverageQuery::of_map(map, &technique, technique.filter_radius_in(&map.projection));
                 let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
                 prop_assert!(proof.is_proven(), "{proof:?}");
             }

@@ -4,7 +4,8 @@ use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, Stabilise};
 use shadowfit::{
-    Aabb, FitInput, FitState, FittedMaps, LightProjection, OneMap, PerspectiveCamera, Scratch, Technique, ViewFrustum,
+    Aabb, FitInput, FitState, FittedMaps, LightProjection, PerspectiveCamera, Scratch, SingleMap, Technique,
+    ViewFrustum,
 };
 
 use super::canvas::{Canvas, Frame, GREY, Paint, stroke};
@@ -31,7 +32,7 @@ pub(super) fn plain_fit(kind: FitKind) -> FitSettings {
 
 /// One map of such a fit, made for each frame by itself.
 pub(super) fn one_map(fit: FitSettings) -> Technique {
-    let map = OneMap { shape: fit.shape, stabilise: Stabilise::Off };
+    let map = SingleMap { shape: fit.shape, stabilise: Stabilise::Off };
     Technique::default().with_maps(map).with_fit(fit.map)
 }
 

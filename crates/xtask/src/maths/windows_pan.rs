@@ -1,4 +1,4 @@
-//! A turning camera: windows beside slices that are as sharp, and beside slices that stand as still.
+//! A turning camera: windows beside cascades that are as sharp, and beside cascades that stand as still.
 
 use anyhow::{Context, Result};
 use shadowfit::diagnostics::pixels_per_texel;
@@ -26,7 +26,7 @@ const SIDE: f64 = 216.0;
 const REACH: f64 = 52.0;
 
 pub(super) fn draw() -> Result<String> {
-    let mut canvas = Canvas::new(388.0, "A turning camera's windows, and slices that are as sharp or stand as still");
+    let mut canvas = Canvas::new(388.0, "A turning camera's windows, and cascades that are as sharp or stand as still");
     for (i, preset) in ["windows-4", "focused-4", "stable-4"].into_iter().enumerate() {
         let technique = Technique::preset(preset).context("no such preset")?;
         let steps = turn(&technique)?;

@@ -19,11 +19,11 @@ fn main() -> ExitCode {
         Some([fits, windows]) => (*fits, *windows, 1),
         Some([fits, windows, seed]) => (*fits, *windows, *seed),
         _ => {
-            eprintln!("give the number of fits of slices, that of windows, and a seed or none");
+            eprintln!("give the number of fits of cascades, that of windows, and a seed or none");
             return ExitCode::from(2);
         }
     };
-    let results = [(Kind::Slices, fits), (Kind::Windows, windows)].map(|(kind, fits)| run(kind, fits, seed));
+    let results = [(Kind::Cascades, fits), (Kind::Windows, windows)].map(|(kind, fits)| run(kind, fits, seed));
     if results.into_iter().all(|is_right| is_right) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 

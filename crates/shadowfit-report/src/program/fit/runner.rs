@@ -7,7 +7,8 @@ use glam::{DMat4, DVec3, Vec3};
 use shadowfit::selection::MapOrder;
 use shadowfit::settings::MapSelection;
 use shadowfit::{
-    Aabb, Boxes, Clusters, FitInput, FittedMap, FittedMaps, NormalCone, Seen, ShadowFitter, Technique, ViewFrustum,
+    Aabb, Boxes, Clusters, FitInput, FittedMap, FittedMaps, NormalCone, ShadowFitter, Technique, ViewFrustum,
+    VisibleDemand,
 };
 use shadowfit_params::BoxSource;
 use shadowfit_report::geometry::Source;
@@ -34,7 +35,7 @@ struct Prepared {
     /// Whether the fitter has to forget what was before.
     is_first: bool,
     /// What the technique is told of the frame before.
-    seen: Option<Seen>,
+    seen: Option<VisibleDemand>,
 }
 
 /// How long fits took, in nanoseconds: each frame's fastest batch.
@@ -140,7 +141,7 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
                 fitter.reset();
             }
             if let Some(seen) = &frame.seen {
-                fitter.see(seen.clone());
+                fitter.set_visible_demand(seen.clone());
             }
             let views = [frame.view];
             let boxes = Boxes { origin: DVec3::ZERO, boxes: &known[frame.scene].boxes };
@@ -180,8 +181,8 @@ fn fit_map(map: &FittedMap) -> FitMap {
         view_proj: clip_from_world.to_cols_array(),
         resolution: width,
         resolution_xy: (width != height).then_some([width, height]),
-        split_near: f64::from(map.near),
-        split_far: map.depth_range().far.min(FitMap::NO_END),
+        split_near: map.depths.map_or(0.0, |range| range.near),
+        split_far: map.depths.map_or(-FitMap::NO_END, |range| range.far.unwrap_or(FitMap::NO_END)),
     }
 }
 

@@ -1,11 +1,11 @@
 //! The pictures of a side: fitted, judged and drawn as the view asks.
 
-use shadowfit::{Camera, FittedMap, PerspectiveCamera, Seen};
+use shadowfit::{Camera, FittedMap, PerspectiveCamera, VisibleDemand};
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Frame, Inset, Marks, Overlay, RenderTarget, Statistics};
 use shadowfit_study::{View, atmosphere};
 use shadowfit_wgpu::ShadowMapError;
-use shadowfit_wgpu::resolve::EdgeResult;
+use shadowfit_wgpu::exact_edges::EdgeOutcome;
 
 use super::Side;
 use crate::stage::fitted::Fitted;
@@ -34,9 +34,9 @@ struct Plan<'a> {
 }
 
 /// Why edges are filtered, where the technique traces them.
-pub(in crate::stage) fn filtered_edges(settings: &Settings, result: EdgeResult) -> Option<String> {
+pub(in crate::stage) fn filtered_edges(settings: &Settings, result: EdgeOutcome) -> Option<String> {
     let wants = settings.technique.edges.are_traced() && settings.view.shadows;
-    let EdgeResult::Filtered(why) = result else { return None };
+    let EdgeOutcome::Filtered(why) = result else { return None };
     wants.then(|| format!("Edges are filtered: {why}"))
 }
 
@@ -171,7 +171,7 @@ impl Side {
             let plan = Plan { view: shot.view(), maps: &fitted.maps, maps_stay: false };
             return self.draw_view(shot, &plan, Overlay::None, target);
         };
-        let demand = self.sun().fitter().seen().map(Seen::demand);
+        let demand = self.sun().fitter().visible_demand().map(VisibleDemand::demand);
         let quads = demand_view::quads(&from_light, fitted, demand);
         let lines = demand_view::lines(fitted);
         let view = View { camera: fitted.camera.unwrap_or(shot.camera), ..shot.view() };

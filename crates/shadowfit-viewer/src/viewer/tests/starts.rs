@@ -76,7 +76,7 @@ fn gpu_an_argument_may_need_what_was_saved() {
     let path = saved(folder.path(), "courtyard");
     let viewer = ready(&["--set", "splits.lambda=0.7"], Some(&path));
     assert_eq!(
-        viewer.stage.settings.technique.maps.as_slices().splits,
+        viewer.stage.settings.technique.maps.as_cascades().splits,
         shadowfit::settings::SplitScheme::Practical(0.7)
     );
 }

@@ -1,9 +1,9 @@
 //! The passes of a frame, for the engine to draw.
 
-use shadowfit::cache::{FramePlan, PassContent, PassPlan, PieceVolumes};
+use shadowfit::cache::{FramePlan, PassKind, PassPlan, RegionVolumes};
 
 use super::CachedMaps;
-use crate::CullingPiece;
+use crate::CullingRegion;
 use crate::maps::static_layers::Opening;
 
 /// A pass into a map. A map that is kept unchanged has none.
@@ -11,14 +11,14 @@ use crate::maps::static_layers::Opening;
 pub struct ShadowPass<'a> {
     pub(super) maps: &'a CachedMaps,
     pub(super) pass: &'a PassPlan,
-    /// Number of its plan's first piece, among those of all sets of maps.
-    first_piece: usize,
+    /// Number of its plan's first region, among those of all sets of maps.
+    first_region: usize,
 }
 
 /// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShadowPiece<'a> {
-    /// Number of the piece among those of all passes of the frame.
+pub struct DrawRegion<'a> {
+    /// Number of the region among those of all passes of the frame.
     pub number: usize,
     /// Number of the map.
     pub map: usize,
@@ -29,9 +29,9 @@ pub struct ShadowPiece<'a> {
     pub scissor: [u32; 4],
     /// The casters of the list to draw, by number, nearest to the light first, so that those behind others cost least.
     pub casters: &'a [u32],
-    /// The standing casters to draw ([`SunFrame::standing`](crate::SunFrame::standing)), by their numbers in the tree,
-    /// likewise.
-    pub standing: &'a [u32],
+    /// The static casters to draw ([`SunFrame::static_boxes`](crate::SunFrame::static_boxes)), by their numbers in the
+    /// tree, likewise.
+    pub static_boxes: &'a [u32],
 }
 
 impl<'a> ShadowPass<'a> {
@@ -41,7 +41,7 @@ impl<'a> ShadowPass<'a> {
     }
 
     /// What it draws.
-    pub fn content(&self) -> PassContent {
+    pub fn content(&self) -> PassKind {
         self.pass.content
     }
 
@@ -51,27 +51,27 @@ impl<'a> ShadowPass<'a> {
     }
 
     /// Its parts.
-    pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
+    pub fn regions(&self) -> impl ExactSizeIterator<Item = DrawRegion<'a>> + use<'a> {
         let (plan, pass) = (self.maps.cache.plan(), self.pass);
-        let first = self.first_piece;
-        pass.pieces.clone().map(move |piece| ShadowPiece { number: first + piece, ..shadow_piece(plan, pass, piece) })
+        let first = self.first_region;
+        pass.regions.clone().map(move |region| DrawRegion { number: first + region, ..draw_region(plan, pass, region) })
     }
 }
 
 impl<'a> ShadowPass<'a> {
-    /// The pass's pieces for shaders that find their casters.
-    pub(crate) fn culling_pieces(&self) -> impl Iterator<Item = CullingPiece> + use<'a> {
+    /// The pass's regions for shaders that find their casters.
+    pub(crate) fn culling_regions(&self) -> impl Iterator<Item = CullingRegion> + use<'a> {
         let (cache, pass) = (&self.maps.cache, self.pass);
-        let parts = cache.plan().pieces_of(pass).iter().map(|piece| piece.part.window);
-        self.pieces().zip(parts).map(move |(piece, part)| {
-            let PieceVolumes { casters, moving } = cache.piece_volumes(pass.map, pass.content, part);
-            let all = CullingPiece::new([casters].into_iter().chain(moving), cache.plan().origin);
-            CullingPiece {
-                viewport: piece.viewport,
-                scissor: piece.scissor,
-                map: piece.map as u32,
-                fixed: (pass.content != PassContent::Moving).into(),
-                moving: (pass.content != PassContent::Static).into(),
+        let parts = cache.plan().regions_of(pass).iter().map(|region| region.part.window);
+        self.regions().zip(parts).map(move |(region, part)| {
+            let RegionVolumes { casters, moving } = cache.region_volumes(pass.map, pass.content, part);
+            let all = CullingRegion::new([casters].into_iter().chain(moving), cache.plan().origin);
+            CullingRegion {
+                viewport: region.viewport,
+                scissor: region.scissor,
+                map: region.map as u32,
+                fixed: (pass.content != PassKind::Moving).into(),
+                moving: (pass.content != PassKind::Static).into(),
                 fixed_planes: casters.count,
                 ..all
             }
@@ -85,12 +85,12 @@ impl ShadowPass<'_> {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         group: u32,
-        draw: &mut impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+        draw: &mut impl FnMut(&mut wgpu::RenderPass<'_>, &DrawRegion<'_>),
     ) {
         let mut opened = self.begin(encoder, group, None);
-        for piece in self.pieces().filter(|piece| !piece.casters.is_empty() || !piece.standing.is_empty()) {
-            piece.set(&mut opened);
-            draw(&mut opened, &piece);
+        for region in self.regions().filter(|region| !region.casters.is_empty() || !region.static_boxes.is_empty()) {
+            region.set(&mut opened);
+            draw(&mut opened, &region);
         }
     }
 
@@ -106,20 +106,20 @@ impl ShadowPass<'_> {
     }
 }
 
-fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> ShadowPiece<'a> {
-    let piece = &plan.pieces[number];
-    let (first, stored) = (piece.part.viewport(), piece.part.stored);
-    ShadowPiece {
+fn draw_region<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> DrawRegion<'a> {
+    let region = &plan.regions[number];
+    let (first, stored) = (region.part.viewport(), region.part.stored);
+    DrawRegion {
         number,
         map: pass.map,
         viewport: [first.x as f32, first.y as f32, pass.size.x as f32, pass.size.y as f32],
         scissor: [stored.min.x, stored.min.y, stored.size.x, stored.size.y],
-        casters: plan.casters_of(piece),
-        standing: plan.standing_of(piece),
+        casters: plan.casters_of(region),
+        static_boxes: plan.static_boxes_of(region),
     }
 }
 
-impl ShadowPiece<'_> {
+impl DrawRegion<'_> {
     /// Sets viewport and scissor rectangle.
     pub fn set(&self, pass: &mut wgpu::RenderPass<'_>) {
         let [x, y, width, height] = self.viewport;
@@ -140,13 +140,13 @@ impl CachedMaps {
         self.cache.plan().passes.len()
     }
 
-    /// Number of the passes' pieces.
+    /// Number of the passes' regions.
     pub(crate) fn piece_count(&self) -> usize {
-        self.cache.plan().pieces.len()
+        self.cache.plan().regions.len()
     }
 
-    /// One of the passes, in the order in which they must be drawn. `first_piece`: number of the first piece of all.
-    pub(crate) fn pass(&self, index: usize, first_piece: usize) -> ShadowPass<'_> {
-        ShadowPass { maps: self, pass: &self.cache.plan().passes[index], first_piece }
+    /// One of the passes, in the order in which they must be drawn. `first_region`: number of the first region of all.
+    pub(crate) fn pass(&self, index: usize, first_region: usize) -> ShadowPass<'_> {
+        ShadowPass { maps: self, pass: &self.cache.plan().passes[index], first_region }
     }
 }

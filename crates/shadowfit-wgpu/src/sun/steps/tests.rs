@@ -17,7 +17,7 @@ fn is_at(direction: Vec3, angle: f32) -> bool {
 
 /// A state that holds the sun at the angle 0.
 fn held(fade: u32) -> StepState {
-    let mut state = StepState::new(SunSteps::default().with_fade(fade));
+    let mut state = StepState::new(LightSteps::default().with_fade(fade));
     let step = next(&mut state, 0.0);
     assert!(is_at(step.now, 0.0) && step.other.is_none());
     state
@@ -36,7 +36,7 @@ fn a_sun_is_held_until_an_edge_would_be_a_texel_off() {
     }
     let step = next(&mut state, 1.01 * ANGLE);
     assert_eq!((is_at(step.now, 1.01 * ANGLE), step.other, step.begins), (true, None, false), "at once");
-    let two = state.with_settings(SunSteps::default().with_texels(2.0));
+    let two = state.with_settings(LightSteps::default().with_texels(2.0));
     let step = next(&mut two.clone(), 3.0 * ANGLE);
     assert!(is_at(step.now, 1.01 * ANGLE), "two texels allow twice the angle");
 }
@@ -145,6 +145,6 @@ fn a_direction_that_makes_no_sense_is_refused_in_every_stage() {
         assert_eq!(state.stage(), before);
     }
     for texels in [-1.0, f32::NAN, f32::INFINITY] {
-        SunSteps::default().with_texels(texels).check().expect_err("no texels");
+        LightSteps::default().with_texels(texels).check().expect_err("no texels");
     }
 }

@@ -37,7 +37,7 @@ impl<'a> Readers<'a> {
     pub(super) fn tell_apart(&self, index: usize, texel: UVec2, depths: [f32; 2]) -> bool {
         let projection = &self.maps[index].projection;
         let world_from_uv = projection.uv_from_world.as_dmat4().inverse();
-        let reach = f64::from(self.reading.softness.reach(self.reading.filter));
+        let reach = f64::from(self.reading.softness.filter_radius(self.reading.filter));
         let [from, to] = depths.map(f64::from);
         let steps = ((to - from).abs() * f64::from(projection.depth_range) / STEP).ceil() as u32;
         let around = [-reach, 0.0, reach];
@@ -62,8 +62,8 @@ impl<'a> Readers<'a> {
         let MapReading { selection, filter, softness } = self.reading;
         let MapSelection::Coverage { blend } = selection else { panic!("maps that are read by coverage") };
         let order = MapOrder::new(selection, self.maps.iter().map(|map| &map.projection));
-        let free = |map: usize| self.maps[map].projection.free_texels(point);
-        let read = by_coverage(order.iter(), f64::from(softness.reach(filter)), f64::from(blend), free);
+        let free = |map: usize| self.maps[map].projection.texels_to_edge(point);
+        let read = by_coverage(order.iter(), f64::from(softness.filter_radius(filter)), f64::from(blend), free);
         read.is_some_and(|read| read.map == index || read.blend.is_some_and(|blend| blend.map == index))
     }
 }

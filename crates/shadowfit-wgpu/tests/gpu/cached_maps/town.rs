@@ -1,9 +1,10 @@
 //! A town of blocks, a walk through it, and the same maps twice: of one set, the tests keep the static casters, and the other
 //! is drawn anew.
 
+use shadowfit::cache::PassKind;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, PerspectiveCamera, Technique};
-use shadowfit_wgpu::{PassContent, ShadowPass, SunFrame, SunShadows};
+use shadowfit_wgpu::{ShadowPass, SunFrame, SunShadows};
 
 use crate::engine::Engine;
 use crate::engine::casters::{CasterShader, Casters, Shape};
@@ -147,7 +148,8 @@ pub(super) struct Stored {
 impl Stored {
     /// Whether a point of the ground is lit, by one look-up in the finest map that holds it with a border.
     fn is_lit(&self, point: DVec3) -> bool {
-        let holds = |(_, map): &(usize, &FittedMap)| map.projection.free_texels(point).is_some_and(|free| free > 4.0);
+        let holds =
+            |(_, map): &(usize, &FittedMap)| map.projection.texels_to_edge(point).is_some_and(|free| free > 4.0);
         let texel = |map: &FittedMap| map.projection.texel_size.x;
         let maps = self.maps.iter().enumerate().filter(holds);
         let Some((index, map)) = maps.min_by(|a, b| texel(a.1).total_cmp(&texel(b.1))) else { return true };
@@ -226,8 +228,8 @@ impl Pair {
                 cleared: target.passes().filter(ShadowPass::is_cleared).count(),
                 texels: target
                     .passes()
-                    .filter(|pass| pass.content() != PassContent::Moving)
-                    .flat_map(|pass| pass.pieces().map(|piece| u64::from(piece.scissor[2] * piece.scissor[3])))
+                    .filter(|pass| pass.content() != PassKind::Moving)
+                    .flat_map(|pass| pass.regions().map(|region| u64::from(region.scissor[2] * region.scissor[3])))
                     .sum(),
             }
         })

@@ -36,7 +36,7 @@ fn gpu_a_sun_that_is_off_has_no_pass_and_gives_no_light_from_anywhere() {
             assert_eq!((sun.passes().len(), sun.maps().len()), (0, 0));
             assert_eq!(factors(&painter.draw(&device, &[(&sun, &BOXES)])), [0; 5]);
             let elsewhere = MapView::from_eye(EYE + DVec3::X, Vec3::NEG_Z);
-            sun.look_from(&device.queue, &elsewhere).expect("a good view");
+            sun.set_view(&device.queue, &elsewhere).expect("a good view");
             assert_eq!(factors(&painter.draw(&device, &[(&sun, &BOXES)])), [0; 5]);
             assert_eq!(sun.prove(&frame), Err(SunShadowsError::NoFrame));
             let mut encoder = device.encoder();

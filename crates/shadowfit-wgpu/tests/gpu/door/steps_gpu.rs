@@ -3,14 +3,14 @@
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::MapFormat;
 use shadowfit::{Aabb, DepthConvention, Technique, ViewFrustum};
-use shadowfit_wgpu::{Casters, SunFrame, SunShadows, SunSteps, WgslOptions, receiver_wgsl};
+use shadowfit_wgpu::{Casters, LightSteps, SunFrame, SunShadows, WgslOptions, receiver_wgsl};
 
 use super::ground::{BOXES, EYE, Painter, Picture, Quiet, camera, frame_of};
 use super::technique;
 use crate::engine::{ClearedDepth, Engine, cleared};
 
 /// Maps of 256 texels, of whose edges 3 may be off: the sun steps after 0.0234 rad. Less than 0.035 rad is no jump.
-const STEPS: SunSteps = SunSteps { texels: 3.0, fade: FADE };
+const STEPS: LightSteps = LightSteps { texels: 3.0, fade: FADE };
 const FADE: u32 = 6;
 const STEP: f32 = 0.03;
 const LESS: f32 = 0.02;
@@ -32,7 +32,7 @@ struct Day {
 }
 
 impl Day {
-    fn new(device: Engine, technique: &Technique, steps: Option<SunSteps>) -> Self {
+    fn new(device: Engine, technique: &Technique, steps: Option<LightSteps>) -> Self {
         device.require_map(&technique.into());
         let mut sun = SunShadows::new(&device.device, &device.queue, &(*technique).into()).expect("maps");
         sun.set_light_steps(steps).expect("steps");
@@ -41,7 +41,7 @@ impl Day {
     }
 
     /// One with these steps, whose windows have settled.
-    fn settled(technique: &Technique, steps: SunSteps) -> Self {
+    fn settled(technique: &Technique, steps: LightSteps) -> Self {
         let mut day = Self::new(Engine::shared(), technique, Some(steps));
         // For 60 frames after one window was replaced, the next replacement needs a larger gain.
         for _ in 0..120 {
@@ -79,9 +79,10 @@ impl Day {
         self.sun.update(&self.device.queue, &frame).expect("a good frame");
         let proof = self.sun.prove(&frame).expect("a good frame");
         assert!(proof.is_proven(), "{proof:?}");
-        let numbers: Vec<usize> = self.sun.passes().flat_map(|pass| pass.pieces()).map(|piece| piece.number).collect();
-        assert_eq!(numbers, (0..numbers.len()).collect::<Vec<_>>(), "pieces of both sets have numbers of their own");
-        assert_eq!(self.sun.culling_pieces().count(), numbers.len());
+        let numbers: Vec<usize> =
+            self.sun.passes().flat_map(|pass| pass.regions()).map(|region| region.number).collect();
+        assert_eq!(numbers, (0..numbers.len()).collect::<Vec<_>>(), "regions of both sets have numbers of their own");
+        assert_eq!(self.sun.culling_regions().count(), numbers.len());
     }
 
     /// Lets the sun see a wall that fills the view, so many metres ahead.
@@ -100,8 +101,8 @@ impl Day {
 
     /// Texels that the last frame drew.
     fn drawn(&self) -> u32 {
-        let pieces = self.sun.passes().flat_map(|pass| pass.pieces());
-        pieces.map(|piece| piece.scissor[2] * piece.scissor[3]).sum()
+        let regions = self.sun.passes().flat_map(|pass| pass.regions());
+        regions.map(|region| region.scissor[2] * region.scissor[3]).sum()
     }
 
     /// Whether the maps that are read were made for the sun at an angle.
@@ -191,7 +192,7 @@ fn gpu_a_fade_draws_a_map_in_a_frame_then_goes_from_the_old_shadow_to_the_new_on
 fn gpu_windows_follow_what_is_seen_in_the_maps_that_are_not_read_yet_and_fade_in_with_them() {
     const LONG: u32 = 30;
     let mut day = Day::settled(&technique(), STEPS.with_fade(LONG));
-    let places = |day: &Day| day.sun.maps().iter().map(|map| map.anchor).collect::<Vec<_>>();
+    let places = |day: &Day| day.sun.maps().iter().map(|map| map.grid_position).collect::<Vec<_>>();
     for _ in 0..150 {
         day.go_on(0.0);
         day.see_wall(40.0);
@@ -204,7 +205,7 @@ fn gpu_windows_follow_what_is_seen_in_the_maps_that_are_not_read_yet_and_fade_in
             assert_eq!(places(&day), before, "frame {frame}");
         } else {
             assert_eq!(day.drawn(), 0, "frame {frame}");
-            let seen = day.sun.fitter().seen().expect("a picture").demand().space.direction;
+            let seen = day.sun.fitter().visible_demand().expect("a picture").demand().space.direction;
             assert!((seen - sun_at(STEP).normalize()).length() < 1e-6, "frame {frame}");
         }
         day.see_wall(20.0);

@@ -5,8 +5,8 @@ use shadowfit::Technique;
 use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit_testing::TestGpu;
 use shadowfit_wgpu::{
-    Casters, MapTexture, MapTextureError, ShadowMapDescriptor, ShadowMapError, SunFrame, SunShadows,
-    SunShadowsDescriptor, SunShadowsError, SunSteps,
+    Casters, LightSteps, MapTexture, MapTextureError, ShadowMapDescriptor, ShadowMapError, SunFrame, SunShadows,
+    SunShadowsDescriptor, SunShadowsError,
 };
 
 use super::ground::{BOXES, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
@@ -83,7 +83,7 @@ fn gpu_a_sun_that_steps_fades_within_a_texture_of_the_engine_s_if_it_has_room_fo
     let device = Engine::shared();
     let quiet = Quiet::new(&device);
     let technique = technique();
-    let steps = Some(SunSteps { texels: 3.0, fade: 4 });
+    let steps = Some(LightSteps { texels: 3.0, fade: 4 });
     let small = MapTexture { texture: texture(&device, &technique, 6, |_| ()), base_layer: 1 };
     let mut refused = sun_in(&device, &technique, 0, &small);
     let error = refused.set_light_steps(steps).expect_err("there is no room for a second set");

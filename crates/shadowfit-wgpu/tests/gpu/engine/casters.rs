@@ -99,7 +99,7 @@ impl Casters {
         pipeline: &wgpu::RenderPipeline,
         sun: &SunShadows,
     ) {
-        sun.render(encoder, 0, |pass, piece| self.draw(pass, pipeline, piece.casters));
+        sun.render(encoder, 0, |pass, region| self.draw(pass, pipeline, region.casters));
     }
 }
 
@@ -191,8 +191,8 @@ impl Engine {
         let layer = |(index, map): (u32, &FittedMap)| {
             let used = map.projection.resolution;
             let row = |y: u32| {
-                let start = (index * height + (y + map.wrap.y) % used.y) * width;
-                let (end, begin) = depths[start as usize..][..used.x as usize].split_at(map.wrap.x as usize);
+                let start = (index * height + (y + map.texel_offset.y) % used.y) * width;
+                let (end, begin) = depths[start as usize..][..used.x as usize].split_at(map.texel_offset.x as usize);
                 [begin, end].concat()
             };
             (0..used.y).map(row).collect::<Vec<_>>().concat()

@@ -1,8 +1,8 @@
-//! Boxes that stand, handed over once: a hierarchy, so that a frame costs what is in reach and not what there is.
+//! A hierarchy of static boxes. The cost of a frame depends on the boxes nearby, not on the total.
 //!
-//! A list of boxes is looked at from end to end in each frame, which is fastest for hundreds of them. A [`BoxTree`] is
-//! made once and told what comes, goes and moves; a fit then looks at those boxes alone that can matter to it, culling
-//! finds the casters of a map by it, and what keeps maps asks what has changed.
+//! A list is read from end to end in each frame, which is fastest for hundreds of boxes. [`StaticBoxes`] are built once
+//! and then changed box by box. A fit reads only the boxes that can change it, culling finds the casters of a map in the
+//! hierarchy, and the cache asks which boxes have changed.
 
 mod nodes;
 
@@ -14,17 +14,17 @@ use glam::{DVec3, Vec3};
 use crate::base::{Aabb, Boxes, FitError, checks};
 use nodes::{NONE, Nodes};
 
-/// Boxes in world axes that stand, or move now and then, each by a number that it keeps: what receives and casts
-/// shadows beside the lists of a frame ([`FitInput::standing`](crate::FitInput::standing)).
+/// Static boxes in world axes, each with a number that it keeps. They receive and cast shadows beside the lists of a
+/// frame ([`FitInput::static_boxes`](crate::FitInput::static_boxes)).
 ///
-/// Take it from some thousand boxes on, for what stands; what moves in each frame is cheaper in a list. Each change
-/// costs about a microsecond, whatever the number of boxes, and there is never a frame in which the whole is made anew.
+/// Use them for a thousand static boxes or more. Boxes that move in each frame are cheaper in a list. A change takes
+/// about a microsecond for any number of boxes, and no frame rebuilds the hierarchy.
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
-/// use shadowfit::{Aabb, BoxTree, FitInput, PerspectiveCamera, ShadowFitter, Technique};
+/// use shadowfit::{Aabb, StaticBoxes, FitInput, PerspectiveCamera, ShadowFitter, Technique};
 ///
-/// let mut world = BoxTree::new(DVec3::ZERO);
+/// let mut world = StaticBoxes::new(DVec3::ZERO);
 /// for i in 0..100 {
 ///     let corner = Vec3::new((i % 10) as f32 * 4.0, 0.0, (i / 10) as f32 * -4.0);
 ///     world.insert(Aabb::new(corner, corner + 2.0))?;
@@ -37,13 +37,13 @@ use nodes::{NONE, Nodes};
 /// #     eye: DVec3::new(0.0, 1.7, 5.0), forward, up, fov_y: 0.8, aspect: 1.6, near: 0.1, far: 200.0
 /// # };
 /// # let views = [camera.frustum()?];
-/// let input = FitInput { standing: Some(&world), ..FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)) };
+/// let input = FitInput { static_boxes: Some(&world), ..FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)) };
 /// fitter.fit(&input)?;
 /// world.set(fallen, Aabb::new(Vec3::X, Vec3::X + 1.0))?;
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct BoxTree {
+pub struct StaticBoxes {
     origin: DVec3,
     nodes: Nodes,
     /// Whether each number is in use, by a box that may be empty.
@@ -54,7 +54,7 @@ pub struct BoxTree {
     log: VecDeque<(BoxRevision, BoxChange)>,
 }
 
-/// A state of a [`BoxTree`], to ask [what has changed since](BoxTree::changes_since).
+/// A state of a [`StaticBoxes`], to ask [what has changed since](StaticBoxes::changes_since).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoxRevision {
     /// Number of changes since the tree was made.
@@ -63,7 +63,7 @@ pub struct BoxRevision {
     content: u64,
 }
 
-/// A change of one box of a [`BoxTree`].
+/// A change of one box of a [`StaticBoxes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxChange {
     /// Number of the box.
@@ -74,7 +74,7 @@ pub struct BoxChange {
     pub after: Aabb,
 }
 
-impl BoxTree {
+impl StaticBoxes {
     /// Changes that are remembered: with more of them between two frames, all counts as changed.
     pub const MAX_CHANGES: usize = 16_384;
 
@@ -93,7 +93,7 @@ impl BoxTree {
     ///
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for coordinates that are not numbers or beyond 1e18 m, and for
     /// more than `u32::MAX - 1` boxes.
-    pub fn of(boxes: Boxes<'_>) -> Result<Self, FitError> {
+    pub fn from_boxes(boxes: Boxes<'_>) -> Result<Self, FitError> {
         checks::point("the boxes' origin", boxes.origin)?;
         checks::within("the number of boxes of a tree", boxes.boxes.len() as f64, 0.0, MAX_BOXES)?;
         let mut tree = Self::new(boxes.origin);
@@ -140,7 +140,7 @@ impl BoxTree {
     ///
     /// # Errors
     ///
-    /// As [`Self::of`].
+    /// As [`Self::from_boxes`].
     pub fn insert(&mut self, aabb: Aabb) -> Result<u32, FitError> {
         let aabb = checked(&aabb)?;
         let number = self.free.last().copied().unwrap_or(self.used.len() as u32);
@@ -161,7 +161,7 @@ impl BoxTree {
     ///
     /// # Errors
     ///
-    /// As [`Self::of`], and [`FitError::OutOfRange`] for a number that is not in use.
+    /// As [`Self::from_boxes`], and [`FitError::OutOfRange`] for a number that is not in use.
     pub fn set(&mut self, number: u32, aabb: Aabb) -> Result<(), FitError> {
         let after = checked(&aabb)?;
         let Some(before) = self.get(number) else {
@@ -288,14 +288,14 @@ mod tests {
         Aabb::new(Vec3::splat(x), Vec3::splat(x + 1.0))
     }
 
-    fn changes(tree: &BoxTree, since: BoxRevision) -> Option<Vec<(u32, Aabb, Aabb)>> {
+    fn changes(tree: &StaticBoxes, since: BoxRevision) -> Option<Vec<(u32, Aabb, Aabb)>> {
         let changes = tree.changes_since(since)?;
         Some(changes.map(|change| (change.number, change.before, change.after)).collect())
     }
 
     #[test]
     fn numbers_are_kept_and_those_of_removed_boxes_are_given_again() {
-        let mut tree = BoxTree::of(Boxes::world(&[cube(0.0), Aabb::EMPTY, cube(2.0)])).expect("good boxes");
+        let mut tree = StaticBoxes::from_boxes(Boxes::world(&[cube(0.0), Aabb::EMPTY, cube(2.0)])).expect("good boxes");
         assert_eq!((tree.len(), tree.get(1), tree.get(2)), (3, Some(Aabb::EMPTY), Some(cube(2.0))));
         assert_eq!(tree.insert(cube(3.0)), Ok(3));
         assert_eq!(tree.remove(0), Some(cube(0.0)));
@@ -312,7 +312,7 @@ mod tests {
 
     #[test]
     fn what_has_changed_is_told_from_any_state_that_is_remembered() {
-        let mut tree = BoxTree::new(DVec3::ZERO);
+        let mut tree = StaticBoxes::new(DVec3::ZERO);
         let first = tree.revision();
         let a = tree.insert(cube(0.0)).expect("a box");
         let second = tree.revision();
@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(changes(&tree, first), Some([(a, empty, old), (a, old, new), (a, new, empty)].to_vec()));
         assert_eq!(changes(&tree, second), Some([(a, old, new), (a, new, empty)].to_vec()));
         assert_eq!(changes(&tree, tree.revision()), Some(Vec::new()));
-        for i in 0..BoxTree::MAX_CHANGES {
+        for i in 0..StaticBoxes::MAX_CHANGES {
             tree.insert(cube(i as f32)).expect("a box");
         }
         assert_eq!(changes(&tree, second), None, "it is forgotten");
@@ -332,7 +332,7 @@ mod tests {
     #[test]
     fn states_of_another_tree_are_not_taken_for_this_one() {
         let tree = |origin: f64, x: f32| {
-            let mut tree = BoxTree::new(DVec3::splat(origin));
+            let mut tree = StaticBoxes::new(DVec3::splat(origin));
             tree.insert(cube(x)).expect("a box");
             tree
         };
@@ -344,14 +344,14 @@ mod tests {
 
     #[test]
     fn bad_boxes_and_numbers_are_refused_and_change_nothing() {
-        let mut tree = BoxTree::new(DVec3::ZERO);
+        let mut tree = StaticBoxes::new(DVec3::ZERO);
         let number = tree.insert(cube(0.0)).expect("a box");
         let before = tree.clone();
         for bad in [f32::NAN, f32::INFINITY, 2e18] {
             let aabb = Aabb::new(Vec3::ZERO, Vec3::new(1.0, bad, 1.0));
             tree.insert(aabb).expect_err("a bad box");
             tree.set(number, aabb).expect_err("a bad box");
-            BoxTree::of(Boxes::world(&[aabb])).expect_err("a bad box");
+            StaticBoxes::from_boxes(Boxes::world(&[aabb])).expect_err("a bad box");
         }
         let unknown = tree.set(7, cube(0.0));
         assert!(matches!(unknown, Err(FitError::OutOfRange { value: 7.0, max: 0.0, .. })), "{unknown:?}");

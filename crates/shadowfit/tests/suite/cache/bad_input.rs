@@ -3,7 +3,7 @@
 use shadowfit::cache::{CacheFrame, CacheSettings, Casters, InView, MapCache, UpdateSchedule};
 use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, UVec2, Vec3, Vec4};
-use shadowfit::{Aabb, BoxTree, Boxes, CasterVolume, FittedMap};
+use shadowfit::{Aabb, Boxes, CasterVolume, FittedMap, StaticBoxes};
 
 use super::fixtures::fitted;
 
@@ -16,7 +16,7 @@ fn update(schedule: UpdateSchedule, bad: f64, number: usize) {
     let objects =
         [Aabb::new(Vec3::new(-90.0, -1.0, -90.0), Vec3::new(90.0, 2.0, 90.0)), Aabb::new(Vec3::ZERO, Vec3::ONE)];
     let good_maps = fitted(LIGHT, 60.0, &objects);
-    let tree = BoxTree::of(Boxes::world(&objects[..1])).expect("good boxes");
+    let tree = StaticBoxes::from_boxes(Boxes::world(&objects[..1])).expect("good boxes");
     let mut cache = MapCache::new(CacheSettings { schedule, ..CacheSettings::default() });
     let good_volumes = [CasterVolume::everywhere(DVec3::ZERO); 8];
     for is_bad in [false, true, false] {
@@ -36,8 +36,14 @@ fn update(schedule: UpdateSchedule, bad: f64, number: usize) {
             7 => maps[1].projection.texel_size.x = bad as f32,
             8 => maps[1].projection.box_max.y = bad as f32,
             9 => maps[1].projection.uv_from_world.x_axis = Vec4::splat(bad as f32),
-            10 => maps.iter_mut().filter_map(|map| map.anchor.as_mut()).for_each(|anchor| anchor.depth = [bad; 2]),
-            11 => maps.iter_mut().filter_map(|map| map.anchor.as_mut()).for_each(|anchor| anchor.texel.x = bad),
+            10 => maps
+                .iter_mut()
+                .filter_map(|map| map.grid_position.as_mut())
+                .for_each(|grid_position| grid_position.depth = [bad; 2]),
+            11 => maps
+                .iter_mut()
+                .filter_map(|map| map.grid_position.as_mut())
+                .for_each(|grid_position| grid_position.texel.x = bad),
             12 => maps[0].projection.resolution = UVec2::new(0, bad as u32),
             13 => (volumes[0].planes[0], volumes[0].count) = (Vec4::splat(bad as f32), u32::MAX),
             _ => (maps[1], moves) = (FittedMap::default(), [true; 2]),
@@ -47,14 +53,14 @@ fn update(schedule: UpdateSchedule, bad: f64, number: usize) {
         }
         let casters = Casters { moves: &moves, ..Casters::fixed(Boxes { origin, boxes: &boxes }) };
         let in_view = InView::Volumes(&volumes);
-        let frame = CacheFrame { maps: &maps, casters, standing: Some(&tree), direction, reader, in_view };
+        let frame = CacheFrame { maps: &maps, casters, static_boxes: Some(&tree), direction, reader, in_view };
         let plan = cache.update(&frame).expect("volumes are given");
         assert_eq!(plan.maps.len(), maps.len());
-        for piece in &plan.pieces {
-            let end = piece.part.stored.min.saturating_add(piece.part.stored.size);
-            assert!(maps.iter().any(|map| end.cmple(map.projection.resolution).all()), "{piece:?}");
+        for region in &plan.regions {
+            let end = region.part.stored.min.saturating_add(region.part.stored.size);
+            assert!(maps.iter().any(|map| end.cmple(map.projection.resolution).all()), "{region:?}");
         }
-        let _ = (cache.updates(), cache.holders(&casters));
+        let _ = (cache.updates(), cache.maps_by_caster(&casters));
     }
 }
 

@@ -1,7 +1,7 @@
 //! A model of the maps: histories of a small world, drawn into simulated maps.
 //!
 //! A simulated map has a sample every 128 texels of its layer, which holds the set of casters that were drawn there. Each
-//! frame's plan is carried out on it: clears, restored parts, pieces. Maps that are kept must then hold all that stands
+//! frame's plan is carried out on it: clears, restored parts, regions. Maps that are kept must then hold all that stands
 //! still now, and what moves in view; maps that are drawn for one frame what is in view; and maps that wait nothing
 //! static that is gone.
 
@@ -14,7 +14,7 @@ use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3, Vec4};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, BoxTree, Boxes, CasterVolume, FittedMap};
+use shadowfit::{Aabb, Boxes, CasterVolume, FittedMap, StaticBoxes};
 
 use super::fixtures::{SIDE, fitted};
 
@@ -45,21 +45,21 @@ fn placed(map: &FittedMap) -> FittedMap {
     let toward_light = map.projection.light_from_world.transpose().z_axis.truncate().as_dvec3();
     let along = PLACE.dot(toward_light);
     map.projection.origin += toward_light * along;
-    let anchor = map.anchor.as_mut().expect("a map on a grid");
-    anchor.depth = anchor.depth.map(|depth| depth + along);
+    let grid_position = map.grid_position.as_mut().expect("a map on a grid");
+    grid_position.depth = grid_position.depth.map(|depth| depth + along);
     map
 }
 
 /// A map that lies elsewhere on its grid, by metres.
 fn panned(map: &FittedMap, by: DVec3) -> FittedMap {
     let mut map = *map;
-    let anchor = map.anchor.as_mut().expect("a map on a grid");
+    let grid_position = map.grid_position.as_mut().expect("a map on a grid");
     let rows = map.projection.light_from_world.transpose();
     for (axis, row) in [rows.x_axis, rows.y_axis].into_iter().enumerate() {
         let row = row.truncate().as_dvec3();
-        let texels = (by.dot(row) / anchor.texel[axis]).round();
-        anchor.first[axis] += texels as i64;
-        map.projection.origin += row * (texels * anchor.texel[axis]);
+        let texels = (by.dot(row) / grid_position.texel[axis]).round();
+        grid_position.first[axis] += texels as i64;
+        map.projection.origin += row * (texels * grid_position.texel[axis]);
     }
     map
 }
@@ -71,7 +71,7 @@ struct Object {
     half: DVec3,
     key: u64,
     moves: bool,
-    /// Its number in the tree of standing casters; the others are in the list.
+    /// Its number in the tree of static casters; the others are in the list.
     stands: Option<u32>,
     /// Number of the bit that stands for its shape where it is.
     bit: u32,
@@ -128,7 +128,7 @@ type Samples = Vec<Sample>;
 /// A world, its maps, and what they hold.
 pub(crate) struct World {
     objects: Vec<Object>,
-    tree: BoxTree,
+    tree: StaticBoxes,
     bits: u32,
     keys: u64,
     /// Thirds of the casters that have keys.
@@ -151,7 +151,7 @@ impl World {
         let samples = || vec![Sample::default(); (SAMPLES * SAMPLES) as usize];
         let mut world = Self {
             objects: Vec::new(),
-            tree: BoxTree::new(PLACE),
+            tree: StaticBoxes::new(PLACE),
             bits: 0,
             keys: 0,
             keyed: 0,
@@ -266,7 +266,7 @@ impl World {
                 object.moves = false;
             }
             Event::NewTree => {
-                self.tree = BoxTree::new(self.place);
+                self.tree = StaticBoxes::new(self.place);
                 for object in self.objects.iter_mut().rev().filter(|object| object.stands.is_some()) {
                     object.stands = Some(self.tree.insert(Aabb::EMPTY).expect("a box"));
                 }
@@ -335,7 +335,7 @@ impl World {
         let frame = CacheFrame {
             maps: &maps,
             casters,
-            standing: (listed.len() < self.objects.len()).then_some(&self.tree),
+            static_boxes: (listed.len() < self.objects.len()).then_some(&self.tree),
             direction: LIGHTS[self.light],
             reader: Reader::from_eye(self.place, Vec3::NEG_Z),
             in_view: InView::Volumes(&in_view),
@@ -360,8 +360,8 @@ impl World {
         for aabb in &plan.boxes[pass.mended_boxes.clone()] {
             let rect = covered(map, aabb, self.place);
             for part in rect
-                .stored(map.wrap, pass.size)
-                .filter(|part| plan.views[pass.views.clone()].contains(&part.viewport()))
+                .stored(map.texel_offset, pass.size)
+                .filter(|part| plan.viewports[pass.viewports.clone()].contains(&part.viewport()))
             {
                 samples(part.stored).for_each(|index| shown[index] = fixed[index]);
             }
@@ -374,20 +374,21 @@ impl World {
             samples(*rect).for_each(|index| layer[index] = Sample::default());
         }
         let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
-        for piece in plan.pieces_of(pass) {
-            let standing = |number: &u32| self.objects.iter().find(|object| object.stands == Some(*number));
-            let casters = plan.casters_of(piece).iter().map(|number| &listed[*number as usize]);
-            let standing = plan.standing_of(piece).iter().map(|number| standing(number).expect("it stands"));
-            for object in casters.chain(standing) {
+        for region in plan.regions_of(pass) {
+            let static_boxes = |number: &u32| self.objects.iter().find(|object| object.stands == Some(*number));
+            let casters = plan.casters_of(region).iter().map(|number| &listed[*number as usize]);
+            let static_boxes =
+                plan.static_boxes_of(region).iter().map(|number| static_boxes(number).expect("it stands"));
+            for object in casters.chain(static_boxes) {
                 let aabb = object.aabb(self.place);
                 // The GPU clips what lies outside the map, such as beyond its far plane.
                 if self.cache.settings.culling != Culling::Off && !volume.intersects_aabb(aabb.min, aabb.max) {
                     continue;
                 }
-                let (rect, viewport) = (covered(map, &aabb, self.place), piece.part.viewport());
+                let (rect, viewport) = (covered(map, &aabb, self.place), region.part.viewport());
                 let min = rect.min.as_ivec2() + viewport;
                 let [min, end] = [min, min + rect.size.as_ivec2()].map(|corner| corner.max(IVec2::ZERO).as_uvec2());
-                let drawn = TexelRect { min, size: end - min }.intersection(piece.part.stored);
+                let drawn = TexelRect { min, size: end - min }.intersection(region.part.stored);
                 samples(drawn).for_each(|index| layer[index] = layer[index].with(object.sample(self.frame)));
             }
         }
@@ -396,7 +397,7 @@ impl World {
     /// Compares what a map holds with what is there.
     fn compare(&self, index: usize) -> Result<(), String> {
         let (map, waits) = (&self.cache.plan().maps[index], self.cache.plan().reuse[index] == MapReuse::Waits);
-        let (size, wrap) = (map.projection.resolution, map.wrap);
+        let (size, wrap) = (map.projection.resolution, map.texel_offset);
         let volume = CasterVolume::of_map(&map.projection, CasterPolicy::DepthClamp).relative_to(self.place);
         let (in_view, is_kept) = (self.in_view(), self.cache.is_kept(index));
         let mut expected = vec![Sample::default(); self.shown[index].len()];

@@ -1,11 +1,11 @@
 //! What a change of the casters redraws: texels and casters of a plan, in a town of 10,000 boxes.
 
-use shadowfit::cache::{CacheFrame, CacheSettings, Casters, InView, MapCache, PassContent, UpdateSchedule};
+use shadowfit::cache::{CacheFrame, CacheSettings, Casters, InView, MapCache, PassKind, UpdateSchedule};
 use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{Aabb, BoxTree, Boxes, FittedMap, FittedMaps};
+use shadowfit::{Aabb, Boxes, FittedMap, FittedMaps, StaticBoxes};
 
 use super::fixtures::{SIDE, fitted};
 
@@ -54,11 +54,11 @@ impl Drawn {
         self.frame(&Casters { moves, keys, ..Casters::fixed(Boxes::world(boxes)) }, None)
     }
 
-    fn frame(&mut self, casters: &Casters<'_>, standing: Option<&BoxTree>) -> Vec<Redrawn> {
+    fn frame(&mut self, casters: &Casters<'_>, static_boxes: Option<&StaticBoxes>) -> Vec<Redrawn> {
         let frame = CacheFrame {
             maps: &self.maps,
             casters: *casters,
-            standing,
+            static_boxes,
             direction: LIGHT,
             reader: Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z),
             in_view: InView::Volumes(&[]),
@@ -68,9 +68,9 @@ impl Drawn {
         for pass in &plan.passes {
             let map = &mut redrawn[pass.map];
             map.mended += plan.rects[pass.mended.clone()].iter().map(TexelRect::area).sum::<u64>();
-            for piece in plan.pieces_of(pass).iter().filter(|_| pass.content != PassContent::Moving) {
-                map.texels += piece.part.stored.area();
-                map.casters += piece.casters.len() + piece.standing.len();
+            for region in plan.regions_of(pass).iter().filter(|_| pass.content != PassKind::Moving) {
+                map.texels += region.part.stored.area();
+                map.casters += region.casters.len() + region.static_boxes.len();
                 map.rects += 1;
             }
         }
@@ -242,7 +242,7 @@ fn what_is_removed_in_view_is_never_late() {
 #[test]
 fn standing_casters_are_drawn_where_their_tree_changes() {
     let boxes = town();
-    let mut tree = BoxTree::of(Boxes::world(&boxes)).expect("good boxes");
+    let mut tree = StaticBoxes::from_boxes(Boxes::world(&boxes)).expect("good boxes");
     let mut drawn = Drawn::new(&boxes, &[]);
     let none = Casters::default();
     let first = drawn.frame(&none, Some(&tree));
@@ -258,9 +258,9 @@ fn standing_casters_are_drawn_where_their_tree_changes() {
     // Both ways of giving the same casters draw the same number of them.
     let listed = Drawn::new(&boxes, &[]).draw(&raised(&boxes, |_| true), &[], &[]);
     tree.insert(boxes[near as usize]).expect("a box");
-    let other = BoxTree::of(Boxes::world(&raised(&boxes, |_| true))).expect("good boxes");
-    let standing = drawn.frame(&none, Some(&other));
-    assert_eq!(standing, listed);
+    let other = StaticBoxes::from_boxes(Boxes::world(&raised(&boxes, |_| true))).expect("good boxes");
+    let static_boxes = drawn.frame(&none, Some(&other));
+    assert_eq!(static_boxes, listed);
     assert!(nothing(&drawn.frame(&none, Some(&other))));
     assert!(drawn.frame(&none, None).iter().all(|map| map.texels == WHOLE && map.casters == 0));
 }

@@ -1,11 +1,11 @@
 //! What a point reads is complete: depth ranges, culling and the proof of windows.
 
 use proptest::prelude::*;
-use shadowfit::bias::Reach;
+use shadowfit::bias::FilterRadius;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::proof::{CoverageProof, CoverageQuery, prove};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, BoxTree, Boxes, FitInput, FitState, FittedMap, Scratch, ShadowFitter};
+use shadowfit::{Aabb, Boxes, FitInput, FitState, FittedMap, Scratch, ShadowFitter, StaticBoxes};
 
 use super::{World, any_seen, any_windows, windows};
 use crate::read_by_coverage::{Sample, any_samples, check};
@@ -58,7 +58,7 @@ proptest! {
             let maps = run.frame(&view, direction);
             let views = [view.frustum()];
             for (i, map) in maps.iter().enumerate() {
-                let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
+                let query = CoverageQuery::of_map(map, &technique, FilterRadius::HARDWARE_2X2);
                 let input = world.input(&views, direction, &[]);
                 let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
                 prop_assert!(proof.is_proven(), "frame {frame}, map {i}: {proof:?} of {map:?}");
@@ -85,8 +85,8 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
         let technique = technique.with_fit(technique.fit.with_casters(policy));
         let maps = FitState::new().fit(&input, &technique, &mut scratch).unwrap();
         let proof = |map: &FittedMap| {
-            let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
-            let foot = map.projection.free_texels(DVec3::new(0.0, -0.05, -7.0));
+            let query = CoverageQuery::of_map(map, &technique, FilterRadius::HARDWARE_2X2);
+            let foot = map.projection.texels_to_edge(DVec3::new(0.0, -0.05, -7.0));
             (foot.is_some(), prove(&input, &map.projection, &query, &mut scratch).unwrap())
         };
         maps.iter().map(proof).collect()
@@ -101,16 +101,16 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     }
 }
 
-/// The depth ranges of the maps of a ground, in metres: in a list or in a tree of standing boxes.
+/// The depth ranges of the maps of a ground, in metres: in a list or in a tree of static boxes.
 fn depths_over(ground: &[Aabb], stands: bool, direction: Vec3) -> Vec<f32> {
     let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.3, -0.2, -1.0));
     let technique = windows(4, 1024).with_max_distance(300.0);
     let list = Boxes { origin: DVec3::ZERO, boxes: ground };
-    let tree = BoxTree::of(list).unwrap();
+    let tree = StaticBoxes::from_boxes(list).unwrap();
     let views = [view.frustum()];
     let nothing = FitInput::new(&views, direction);
     let input = if stands {
-        FitInput { standing: Some(&tree), ..nothing }
+        FitInput { static_boxes: Some(&tree), ..nothing }
     } else {
         FitInput { receivers: Some(list), casters: Some(list), ..nothing }
     };
@@ -151,7 +151,7 @@ fn a_bias_below_the_rounding_of_depths_is_found_with_the_numbers() {
         for (share, is_enough) in [(1.0, true), (0.0, false)] {
             let mut map = *map;
             map.bias.constant_depth *= share;
-            let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
+            let query = CoverageQuery::of_map(&map, &technique, FilterRadius::HARDWARE_2X2);
             let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
             assert_eq!(proof.is_proven(), is_enough, "{proof:?}");
             let is_told =

@@ -84,8 +84,8 @@ const ROUNDING: f64 = 1e-3;
 /// Fails unless the last window holds a visible point with all that the filter reads, and the point reads a window.
 fn assert_covered(maps: &FittedMaps, technique: &Technique, point: DVec3, view_depth: f64) {
     let last = &maps[maps.len() - 1].projection;
-    let needed = f64::from(technique.reach().min(technique.border())) - ROUNDING;
-    let free = last.free_texels(point).unwrap_or(f64::MIN);
+    let needed = f64::from(technique.filter_radius().min(technique.border())) - ROUNDING;
+    let free = last.texels_to_edge(point).unwrap_or(f64::MIN);
     assert!(free >= needed, "{point} has {free} of {needed} texels to the border of {last:?}");
     // Beyond the shadow distance, if by rounding alone, nothing is read.
     let view_depth = view_depth.min(f64::from(technique.fit.max_distance));

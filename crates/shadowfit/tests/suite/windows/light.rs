@@ -1,7 +1,7 @@
 //! Windows under a light that is rounded, that steps, and that goes through the vertical.
 
 use shadowfit::glam::{DQuat, DVec3, Vec3, Vec4};
-use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepState, LightSteps};
 use shadowfit::{FittedMap, FittedMaps};
 
 use super::{Run, hits, street_view, town, windows};
@@ -23,9 +23,9 @@ fn a_light_that_differs_by_rounding_changes_nothing() {
             let first = if frame == 0 { light } else { rounded };
             let (plain, rounded) = (run.frame(&view, light), other.frame(&view, first));
             let same = |a: &FittedMaps, b: &FittedMaps| {
-                a.iter()
-                    .zip(b.iter())
-                    .all(|(a, b)| a.anchor == b.anchor && a.projection == b.projection && a.bias == b.bias)
+                a.iter().zip(b.iter()).all(|(a, b)| {
+                    a.grid_position == b.grid_position && a.projection == b.projection && a.bias == b.bias
+                })
             };
             assert!(same(&plain, &rounded), "frame {frame} of {light}");
         }
@@ -38,10 +38,10 @@ const MOVED: f64 = 1.0 / 32.0;
 
 #[test]
 fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
-    let settings = LightStepSettings::default().with_texels(1.0).with_extent(1024.0);
+    let settings = LightSteps::default().with_texels(1.0).with_extent(1024.0);
     let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.1, -1.0));
     for begin in [0.2, 0.9] {
-        let (mut run, mut steps) = (Run::new(town(), &windows(4, 1024)), LightSteps::default());
+        let (mut run, mut steps) = (Run::new(town(), &windows(4, 1024)), LightStepState::default());
         let mut before = None;
         let (mut taken, mut moved, mut resized) = (0, Vec::new(), 0);
         for frame in 0..160_u16 {
@@ -86,7 +86,10 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
         for degrees in (-180..180_i16).step_by(if off == 0.0 && up == Vec3::Y { 3 } else { 9 }) {
             let maps = run.frame(&view, sun(f64::from(degrees).to_radians(), off));
             let last = &maps[3].projection;
-            assert!(seen.iter().all(|point| last.free_texels(*point).is_some_and(|free| free > 2.0)), "at {degrees}°");
+            assert!(
+                seen.iter().all(|point| last.texels_to_edge(*point).is_some_and(|free| free > 2.0)),
+                "at {degrees}°"
+            );
         }
     }
 }
@@ -103,7 +106,7 @@ fn nothing_is_uncovered_where_light_and_camera_leap() {
         let view = street_view(eye, (turn * DVec3::new(0.1, -0.5, -1.0)).as_vec3());
         let maps = run.frame(&view, (turn * DVec3::NEG_X).as_vec3());
         for hit in hits(&view, world.origin, &world.boxes, f64::MAX) {
-            let free = maps[5].projection.free_texels(view.eye + hit.point);
+            let free = maps[5].projection.texels_to_edge(view.eye + hit.point);
             assert!(free.is_some_and(|free| free > 2.0), "{free:?} texels in frame {frame}");
         }
     }

@@ -1,8 +1,9 @@
-//! Windows beside the presets of slices: how many pixels a texel covers under high suns and through lenses of all kinds.
+//! Windows beside the presets of cascades: how many pixels a texel covers under high suns and through lenses of all
+//! kinds.
 
 use std::fmt::Write;
 
-use shadowfit::demand::{PIXELS, Seen, SeenSpace, needed_texel};
+use shadowfit::demand::{PIXELS, VisibleDemand, VisibleDemandSpace, needed_texel};
 use shadowfit::glam::{DQuat, DVec3, Vec3};
 use shadowfit::{Aabb, FitInput, PerspectiveCamera, ShadowFitter, Technique};
 
@@ -119,11 +120,11 @@ fn sun(elevation: f32) -> Vec3 {
 }
 
 /// The counts that a depth buffer of the picture gives.
-fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov: f32) -> Seen {
+fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov: f32) -> VisibleDemand {
     let fit = &technique.fit;
-    let space = SeenSpace::new(&view.frustum(), light, fit.up, fit.max_distance).unwrap();
+    let space = VisibleDemandSpace::new(&view.frustum(), light, fit.up, fit.max_distance).unwrap();
     let pixel = 2.0 * (fov.to_radians() * 0.5).tan() / PIXELS;
-    let mut seen = Seen::new(space);
+    let mut seen = VisibleDemand::new(space);
     for hit in hits(view, world.origin, &world.boxes, f64::from(fit.max_distance)) {
         let [point, normal, right, down] = [hit.point, hit.normal, hit.right, hit.down].map(DVec3::as_vec3);
         if let Some(cell) = space.demand.index(point, normal, right, down) {
@@ -151,7 +152,7 @@ fn of_path(preset: &str, scene: &Scene, path: u8, light: Vec3, fov: f32) -> f64 
         if frame >= 2 {
             logs.extend(quantile(maps, &technique, &scene.world, &view, light).map(f64::ln));
         }
-        fitter.see(seen(&view, &scene.world, light, &technique, fov));
+        fitter.set_visible_demand(seen(&view, &scene.world, light, &technique, fov));
     }
     (logs.iter().sum::<f64>() / logs.len() as f64).exp()
 }
@@ -176,7 +177,8 @@ fn greatest(values: &[f64]) -> f64 {
 /// `focused-4` with a depth histogram: what reports call `histogram-4`.
 const HISTOGRAM: [&str; 1] = ["focused-4"];
 
-/// Greatest ratio of pixels per texel to slices that a histogram chooses, under a high sun: the geometric mean of paths.
+/// Greatest ratio of pixels per texel to cascades that a histogram chooses, under a high sun: the geometric mean of
+/// paths.
 const HIGH_SUN_LIMIT: f64 = 1.8;
 
 #[test]

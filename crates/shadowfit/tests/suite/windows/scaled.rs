@@ -30,7 +30,7 @@ fn scaled(view: &SceneView, by: f64) -> SceneView {
 /// Whether one frame's windows are another's in the other unit.
 fn is_scaled(maps: &FittedMaps, other: &FittedMaps, by: f64) -> bool {
     maps.iter().zip(other.iter()).all(|(one, other)| {
-        let (a, b) = (one.anchor.unwrap(), other.anchor.unwrap());
+        let (a, b) = (one.grid_position.unwrap(), other.grid_position.unwrap());
         a.first == b.first && a.texel * by == b.texel && a.depth.map(|z| z * by) == b.depth
     })
 }

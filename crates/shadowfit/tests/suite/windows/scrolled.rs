@@ -101,7 +101,7 @@ fn what_is_not_exposed_need_not_be_drawn_anew() {
             let now: Vec<Drawn> = maps.iter().map(|map| Drawn::new(map, &world, &technique)).collect();
             for (old, now) in before.iter().flatten().zip(&now) {
                 let scroll = Scroll::between(&old.map, &now.map);
-                let (a, b) = (old.map.anchor.unwrap(), now.map.anchor.unwrap());
+                let (a, b) = (old.map.grid_position.unwrap(), now.map.grid_position.unwrap());
                 if a.texel != b.texel {
                     assert!(scroll.is_new);
                     continue;

@@ -56,7 +56,7 @@ fn a_cut_without_a_reset_leaves_nothing_uncovered_and_grows_sharp_again() {
     for _ in 0..30 {
         let maps = run.frame(&there, LIGHT);
         for hit in hits(&there, DVec3::ZERO, &run.world.boxes, f64::MAX) {
-            assert!(maps[3].projection.free_texels(there.eye + hit.point).is_some_and(|free| free > 2.0));
+            assert!(maps[3].projection.texels_to_edge(there.eye + hit.point).is_some_and(|free| free > 2.0));
         }
     }
 }
@@ -156,7 +156,7 @@ fn grids_that_cannot_be_used_are_ignored() {
 
 /// The texels of the finest window that holds a point, by area.
 fn finest(maps: &FittedMaps, point: DVec3) -> f32 {
-    let areas = maps.iter().filter(|map| map.projection.free_texels(point).is_some_and(|free| free > 3.0));
+    let areas = maps.iter().filter(|map| map.projection.texels_to_edge(point).is_some_and(|free| free > 3.0));
     areas.map(|map| map.projection.texel_size.element_product()).fold(f32::MAX, f32::min)
 }
 

@@ -11,7 +11,7 @@ use crate::texel_phase::{apart, grid_position, shader_position};
 
 /// The exact size of a window's texels.
 fn texel(map: &FittedMap) -> DVec2 {
-    map.anchor.expect("a window is on the grid").texel
+    map.grid_position.expect("a window is on the grid").texel
 }
 
 /// Rows of the light's axes.

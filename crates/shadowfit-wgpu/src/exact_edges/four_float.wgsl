@@ -1,0 +1,10 @@
+
+// The depths at the four texels around a corner of the map's texels, from the left one below on, counter-clockwise.
+// corner: from the map's left and top, in texels.
+fn stored_around(corner: vec2<f32>, projected: shadowfit_Projected) -> vec4<f32> {
+    let shifted = corner + projected.texel_offset;
+    let at = select(shifted, shifted - projected.size, shifted >= projected.size);
+    return vec4<f32>(
+        shadowfit_stored_texel(at + vec2<f32>(-1.0, 0.0), projected), shadowfit_stored_texel(at, projected),
+        shadowfit_stored_texel(at + vec2<f32>(0.0, -1.0), projected), shadowfit_stored_texel(at - 1.0, projected));
+}

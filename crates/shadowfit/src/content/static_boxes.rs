@@ -1,0 +1,46 @@
+//! The tree of static boxes, which needs an allocator, and a type without values in its place where there is none.
+
+#[cfg(not(feature = "alloc"))]
+use glam::DVec3;
+
+#[cfg(not(feature = "alloc"))]
+use crate::base::Aabb;
+
+#[cfg(feature = "alloc")]
+pub(crate) use super::tree::StaticBoxes;
+
+/// There are no trees without an allocator.
+#[cfg(not(feature = "alloc"))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum StaticBoxes {}
+
+#[cfg(not(feature = "alloc"))]
+impl StaticBoxes {
+    pub(crate) fn origin(&self) -> DVec3 {
+        match *self {}
+    }
+
+    pub(crate) fn get(&self, _: u32) -> Option<Aabb> {
+        match *self {}
+    }
+
+    pub(crate) fn visit<C: Copy, S>(
+        &self,
+        _: C,
+        _: &mut S,
+        _: impl Fn(&mut S, C, &Aabb) -> Option<C>,
+        _: impl FnMut(&mut S, C, u32, &Aabb),
+    ) {
+        match *self {}
+    }
+
+    pub(crate) fn visit_nearest<S>(
+        &self,
+        _: &mut S,
+        _: impl Fn(&Aabb) -> Option<(f64, f64)>,
+        _: impl Fn(&S, (f64, f64), &Aabb) -> bool,
+        _: impl FnMut(&mut S, (f64, f64), u32, &Aabb),
+    ) {
+        match *self {}
+    }
+}
