@@ -72,11 +72,13 @@ struct SeenDepths<'p> {
 }
 
 impl Visit for SeenDepths<'_> {
+    #[inline(always)]
     fn wants(&self, bounds: &Bounds) -> bool {
         self.near.is_none_or(|near| bounds.depths.near < near)
             || self.far.is_none_or(|far| bounds.depths.far.min(self.part.far) > far)
     }
 
+    #[inline(always)]
     fn take(&mut self, Found { bounds, .. }: &Found) {
         let (view, nearest) = (&self.part.view, &mut self.near);
         let far = bounds.depths.far.min(view.far);
@@ -121,11 +123,13 @@ impl Farthest {
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
 impl Visit for Farthest {
+    #[inline(always)]
     fn wants(&self, bounds: &Bounds) -> bool {
         let may_be_farther = |squared| self.squared_of(bounds) * ROUNDED_UP >= squared;
         self.is_in(bounds) && self.squared.is_none_or(may_be_farther)
     }
 
+    #[inline(always)]
     fn take(&mut self, Found { bounds, .. }: &Found) {
         if self.is_in(bounds) {
             self.squared = Some(self.squared_of(bounds).max(self.squared.unwrap_or(0.0)));
@@ -140,6 +144,7 @@ struct Across<'a> {
 }
 
 impl Across<'_> {
+    #[inline(always)]
     fn of(&self, bounds: &Bounds) -> (DVec2, DVec2) {
         let (centre, half) = self.axes.project_box(bounds.min, bounds.max);
         ((centre - half).truncate(), (centre + half).truncate())
@@ -147,11 +152,13 @@ impl Across<'_> {
 }
 
 impl Visit for Across<'_> {
+    #[inline(always)]
     fn wants(&self, bounds: &Bounds) -> bool {
         let (low, high) = self.of(bounds);
         self.bounds.is_none_or(|(min, max)| !(low.cmpge(min).all() && high.cmple(max).all()))
     }
 
+    #[inline(always)]
     fn take(&mut self, Found { bounds, .. }: &Found) {
         let (low, high) = self.of(bounds);
         self.bounds = Some(self.bounds.map_or((low, high), |(min, max)| (min.min(low), max.max(high))));
@@ -162,10 +169,12 @@ impl Visit for Across<'_> {
 struct Union(Option<(DVec3, DVec3)>);
 
 impl Visit for Union {
+    #[inline(always)]
     fn wants(&self, &Bounds { min, max, .. }: &Bounds) -> bool {
         self.0.is_none_or(|(low, high)| !(min.cmpge(low).all() && max.cmple(high).all()))
     }
 
+    #[inline(always)]
     fn take(&mut self, Found { bounds: Bounds { min, max, .. }, .. }: &Found) {
         self.0 = Some(self.0.map_or((*min, *max), |(low, high)| (low.min(*min), high.max(*max))));
     }

@@ -111,6 +111,7 @@ impl<'a> Rays<'a> {
 
 impl Visit for Rays<'_> {
     /// Returns whether a box may be among the nearest ones along a ray.
+    #[inline(always)]
     fn wants(&self, bounds: &Bounds) -> bool {
         let covered = covered(&self.part.view, &self.picture, self.count, bounds.min, bounds.max);
         let Some((columns, rows)) = covered else { return false };
@@ -120,6 +121,7 @@ impl Visit for Rays<'_> {
     }
 
     /// Intersects all rays with a box.
+    #[inline(always)]
     fn take(&mut self, Found { bounds, index }: &Found) {
         let covered = covered(&self.part.view, &self.picture, self.count, bounds.min, bounds.max);
         let Some((columns, rows)) = covered else { return };

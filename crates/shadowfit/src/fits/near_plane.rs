@@ -154,10 +154,12 @@ impl<'a> Highest<'a> {
 
 impl Visit for Highest<'_> {
     /// Returns whether a part of a box may lie higher than all so far.
+    #[inline(always)]
     fn wants(&self, bounds: &Bounds) -> bool {
         self.over.may_hold(bounds.min, bounds.max, self.floor(bounds.min, bounds.max))
     }
 
+    #[inline(always)]
     fn take(&mut self, Found { bounds, .. }: &Found) {
         self.add(bounds.min, bounds.max);
     }
