@@ -10,7 +10,7 @@ mod path {
     #[expect(dead_code, reason = "reports read files, and this reads their content")]
     pub(crate) mod file;
 
-    use shadowfit::PerspectiveCamera;
+    use shadowfit::Camera;
     use shadowfit_params::tool::LightSettings;
 
     #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ mod path {
 
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) struct PathFrame {
-        pub(crate) camera: PerspectiveCamera,
+        pub(crate) camera: Camera,
         pub(crate) group: String,
     }
 }
