@@ -268,8 +268,7 @@ impl Sun {
         let mut last = 0.0_f32;
         for map in fitted.iter() {
             // The last one has no end, and one without a range ends before all others.
-            let end = map.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32));
-            last = last.max(end).min(self.max_distance());
+            last = last.max(map.shader_end()).min(self.max_distance());
             bounds.push(last);
         }
         bounds[count - 1] = self.max_distance();

@@ -47,6 +47,18 @@ impl FittedMap {
         self
     }
 
+    /// Returns the view depth at which the map ends, in metres, for shaders that compare in f32: `f32::MAX` for no end, and
+    /// `f32::MIN` for a map that no point reads by view depth.
+    pub fn shader_end(&self) -> f32 {
+        self.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
+    }
+
+    /// Returns the view depth from which points are blended from the map in front into this one, in metres, for shaders
+    /// that compare in f32: `f32::MAX` for no blend.
+    pub fn shader_blend_start(&self) -> f32 {
+        self.depths.and_then(|range| range.covered_from).map_or(f32::MAX, |start| start as f32)
+    }
+
     /// Returns this map for shaders that take positions relative to another world position, in metres. f32 rounds
     /// positions more that are farther away, and biases grow by that much unless they are 0.
     #[must_use]

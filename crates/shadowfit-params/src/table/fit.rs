@@ -12,7 +12,7 @@ use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset, Value};
 /// map that the table allows.
 const WIDEST_BORDER: f64 = 32.0;
 
-/// What the options of the kind stand for: the rule of cascades or of one map, or windows.
+/// The meaning of the options of the kind: the rule of cascades or of one map, or windows.
 const KINDS: [Option<FitKind>; 6] = [
     Some(FitKind::Focused),
     None,

@@ -58,5 +58,5 @@ fn change(settings: &mut Settings, parameter: &Parameter) {
     }
 }
 
-/// What makes maps cascades.
+/// A parameter and its value that turn the maps into cascades.
 const SLICES: (&str, &str) = ("fit.kind", "focused");

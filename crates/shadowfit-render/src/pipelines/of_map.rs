@@ -26,7 +26,7 @@ pub(crate) enum Drawn {
     Shaded(Overlay),
     /// A probe.
     Probe,
-    /// The depths and normals that edges are traced from, of so many samples per pixel.
+    /// The depths and normals that edges are traced from, with this number of samples per pixel.
     Surfaces(u32),
 }
 

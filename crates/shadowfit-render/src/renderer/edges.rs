@@ -101,7 +101,7 @@ impl Renderer {
         counts
     }
 
-    /// Traces the edges of a picture of so many pixels and samples, where the shadow map says so and the scene has
+    /// Traces the edges of a picture of the given size, if the shadow map asks for it and the scene has
     /// [rays](GpuScene::make_rays).
     pub(super) fn trace_edges(
         &mut self,

@@ -104,8 +104,7 @@ fn surface_of(in: SceneOut) -> Surface {
     return Surface(base, geometric, shading_normal(in, geometric, texel), -normalize(line_of_sight(in.position)));
 }
 
-// Share of the sun's light that reaches a visible point. What is blended is not among the surfaces whose edges are
-// traced.
+// Share of the sun's light that reaches a visible point. Edges of blended surfaces are not traced.
 fn mapped_factor(in: SceneOut, surface: Surface) -> f32 {
     // No branch on a uniform alone: software rasterisers build a shader for each draw then.
     var factor = select(shadowfit_stored_factor(in.clip.xy), -1.0, material.blended > 0.0);

@@ -10,7 +10,7 @@ fn overlaid(in: SceneOut) -> vec4<f32> {
     let factor = mapped_factor(in, surface);
     let brightness = relief(surface, factor);
     let is_facing = dot(surface.geometric, frame.to_light) > 0.0 && frame.shadows > 0.0;
-    // What is blended is not among the surfaces whose edges are traced.
+    // Edges of blended surfaces are not traced.
     let is_blended = material.blended > 0.0;
     let is_filtered = is_facing && (is_blended || shadowfit_is_filtered(in.clip.xy));
     let is_traced = !is_blended && shadowfit_is_traced(in.clip.xy);

@@ -212,9 +212,7 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
         let is_narrow = case.is_narrow && index < last;
         let shape = case.technique.maps.shape().expect("cascades or one map");
         let settings = FitSettings { shape, map: case.technique.fit };
-        let settings = settings
-            .with_max_distance(map.depths.and_then(|range| range.far).map_or(f32::MAX, |far| far as f32))
-            .with_casters(CasterPolicy::Extend);
+        let settings = settings.with_max_distance(map.shader_end()).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.projection };
         let converted = *map;
         FittedMap { projection: light, bias: (case.bias)(&light, case.filter), ..converted }

@@ -26,8 +26,8 @@ pub struct MeasuredMap {
     /// View depth from which points of the map in front are blended into this one, in metres, up to that one's
     /// `split_far`; by view depth. Infinite for no blend.
     pub blend_near: f64,
-    /// Radius of the filter in this map where it is not that of [all maps](super::PictureMaps::filter_radius), as of soft
-    /// filters: greatest distance per axis, in texels.
+    /// Radius of the filter in this map, if it differs from [the common one](super::PictureMaps::filter_radius), as it does
+    /// for soft filters: greatest distance per axis, in texels.
     pub filter_radius: Option<f32>,
     /// Whether depth 1 is nearest to the light in the matrix; in [`MapPosition::depth`] it is always 0.
     pub is_reversed: bool,

@@ -29,8 +29,8 @@ pub struct PictureMaps<'a> {
     /// Which of them a point reads.
     pub reading: MapReading,
     /// Radius of the filter: greatest distance per axis, in texels, from the sample point to the
-    /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2). The choice by coverage goes by it; the edge
-    /// zone does where a map has no [reach of its own](MeasuredMap::filter_radius).
+    /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2). Selection by coverage uses it, and so
+    /// does the edge zone of a map without [a radius](MeasuredMap::filter_radius).
     pub filter_radius: f32,
     /// Whether the maps were drawn with depth clamp, so that they also hold casters before their
     /// near plane.
@@ -39,8 +39,8 @@ pub struct PictureMaps<'a> {
 
 impl<'a> PictureMaps<'a> {
     /// Width of the edge zone where a point reads a map, in pixels where a texel is no wider than a pixel on screen,
-    /// otherwise in texels: the filter's reach in that map and one more, at least 1.5. Where no map is read (`None`),
-    /// or one of which there is none, it is that of [`Self::filter_radius`].
+    /// otherwise in texels: the filter's reach in that map and one more, at least 1.5. Without a map
+    /// (`None`), or with an index beyond the last one, the reach is [`Self::filter_radius`].
     pub fn edge_width(&self, map: Option<usize>) -> f32 {
         let own = map.and_then(|map| self.maps.get(map)?.filter_radius);
         (own.unwrap_or(self.filter_radius) + 1.0).max(1.5)

@@ -7,7 +7,6 @@ use shadowfit::selection::MapOrder;
 use shadowfit::settings::Softness;
 use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
-use super::view::end_for_shaders;
 use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
 /// Pixels by which the pattern that turns discs moves from frame to frame, and frames after which it begins again
@@ -159,8 +158,8 @@ impl MapUniform {
             size: fit.resolution.as_vec2().to_array(),
             normal_offset: bias.normal_offset,
             receiver_plane: toward_light * bias.receiver_plane,
-            far: end_for_shaders(map),
-            blend_near: map.depths.and_then(|range| range.covered_from).map_or(f32::MAX, |near| near as f32),
+            far: map.shader_end(),
+            blend_near: map.shader_blend_start(),
             texel_offset: map.texel_offset.as_vec2().to_array(),
             disc: softness.texels(*filter, &fit).to_array(),
             penumbra: (Vec2::splat(-toward_light * softness.tangent() * fit.depth_range) / fit.texel_size).to_array(),

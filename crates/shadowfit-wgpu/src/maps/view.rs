@@ -58,7 +58,7 @@ pub(crate) fn check(
         check_layer(descriptor, index, &map.projection)?;
         check_texel_offset(descriptor, index, map)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
-        let far = end_for_shaders(map);
+        let far = map.shader_end();
         // NaN has no order.
         let is_in_order = far >= previous || descriptor.selection.is_by_coverage();
         if !is_in_order {
@@ -67,12 +67,6 @@ pub(crate) fn check(
         previous = far;
     }
     Ok(())
-}
-
-/// The view depth that shaders compare with the end of a map, in metres: no depth is above it where the map has no end,
-/// and none below it where no point reads the map by view depth.
-pub(super) fn end_for_shaders(map: &FittedMap) -> f32 {
-    map.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
 }
 
 /// Refuses a fit that a layer cannot hold.

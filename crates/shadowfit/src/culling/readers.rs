@@ -186,8 +186,7 @@ impl Readers<'_> {
         };
         let first = (0..=index).find(is_read_from)?;
         // Nearer points may be blended into it.
-        let blended = self.maps[index].depths.and_then(|range| range.covered_from);
-        let near = self.slice(first).near.min(blended.map_or(f32::MAX, |near| near as f32));
+        let near = self.slice(first).near.min(self.maps[index].shader_blend_start());
         Some(DepthSpan { near, far: self.end(index) })
     }
 
@@ -199,7 +198,7 @@ impl Readers<'_> {
 
     /// View depth at which a map ends.
     fn end(&self, index: usize) -> f32 {
-        self.maps[index].depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
+        self.maps[index].shader_end()
     }
 
     /// A slice, widened by the depths that rounding or another eye may move into it.
