@@ -1,26 +1,27 @@
-//! Morph targets and linear blend skinning on the CPU, as the glTF 2.0 specification defines them
-//! (sections 3.7.2.2 and 3.7.3): morph first, then skin; a skinned mesh ignores its node's transform.
+//! Morph targets and linear blend skinning on the CPU, after the glTF 2.0 specification (sections 3.7.2.2 and
+//! 3.7.3). Morphing precedes skinning. A skinned mesh ignores its node's transform.
 
 use glam::{DVec3, Mat3, Mat4, Vec3, Vec4};
 
 use crate::{Instance, Pose, Primitive, Scene, Skin};
 
-/// Vertices of an instance after morphing and skinning, in the order of the primitive's own.
+/// Vertices of an instance after morphing and skinning, in the order of the primitive's vertices.
 ///
-/// Skinned vertices are in world space; those that are only morphed are in the mesh's space, as the primitive's are.
+/// Skinned vertices are in world space. Vertices without a skin are in the mesh's space, like the
+/// primitive's.
 #[derive(Clone, Debug, Default)]
 pub struct Deformed {
     /// Positions, in metres.
     pub positions: Vec<Vec3>,
     /// Unit normals.
     pub normals: Vec<Vec3>,
-    /// Unit tangents with the bitangent's sign in w; empty if the primitive has none.
+    /// Unit tangents with the bitangent's sign in w. Empty if the primitive has none.
     pub tangents: Vec<Vec4>,
 }
 
 impl Pose {
-    /// Vertices of a morphed or skinned instance; `None` for rigid ones, whose vertices are the
-    /// primitive's own.
+    /// Returns the vertices of a morphed or skinned instance. Returns `None` for a rigid instance, which has
+    /// the primitive's vertices.
     pub fn deform(&self, scene: &Scene, instance: &Instance) -> Option<Deformed> {
         let primitive = scene.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
         let skin = scene.instance_skin(instance);
@@ -41,8 +42,8 @@ impl Pose {
         Some(deformed)
     }
 
-    /// Corners of every triangle of an instance in their order, as [`Pose::triangles_from`] has them. `deformed` is what
-    /// [`Pose::deform`] gives for it.
+    /// Returns the corners of an instance's triangles, in the order of [`Pose::triangles_from`]. `deformed`
+    /// is the result of [`Pose::deform`] for this instance.
     pub fn corners_from<'a>(
         &self,
         scene: &'a Scene,
@@ -62,7 +63,7 @@ impl Pose {
         })
     }
 
-    /// For each joint of a skin, world from the mesh's space for a vertex that this joint alone moves.
+    /// Returns, for each joint of a skin, the world-from-mesh matrix of a vertex that only this joint moves.
     pub fn world_from_mesh_by_joint(&self, skin: &Skin) -> Vec<Mat4> {
         let joints = skin.joints.iter().zip(&skin.joint_from_mesh);
         joints.map(|(&node, &joint_from_mesh)| self.world_from(node) * joint_from_mesh).collect()
@@ -70,7 +71,8 @@ impl Pose {
 }
 
 impl Scene {
-    /// The skin that deforms the instance; `None` if its node has none, or its primitive has no joints.
+    /// Returns the skin that deforms the instance, or `None` if its node has no skin or its primitive has no
+    /// joints.
     pub fn instance_skin(&self, instance: &Instance) -> Option<&Skin> {
         let primitive = self.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
         let skin = self.skins.get(self.nodes.get(instance.node)?.skin?)?;
@@ -122,8 +124,8 @@ fn blend(matrices: &[Mat4], joints: [u16; 4], weights: Vec4) -> Mat4 {
     sum
 }
 
-/// The inverse transpose up to a positive factor, defined for singular matrices too: the cofactors,
-/// with the sign of the determinant.
+/// Returns the inverse transpose up to a positive factor, also for singular matrices: the cofactors with the
+/// sign of the determinant.
 fn normal_matrix(matrix: Mat4) -> Mat3 {
     let m = Mat3::from_mat4(matrix);
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);

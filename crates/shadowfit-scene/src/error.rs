@@ -1,19 +1,19 @@
-//! Errors of import, each with the file, the element, the reason and what to do.
+//! Import errors. Each states the file, the element, the reason and a remedy.
 
 use std::path::{Path, PathBuf};
 
-/// Why a scene file was refused. No part of the scene is loaded then.
+/// Reason for which import refused a scene file. No part of the scene is loaded then.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// The file itself cannot be read.
+    /// The file cannot be read.
     #[error("{}: cannot be read: {reason}. {hint}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What went wrong.
+        /// Reason.
         reason: String,
-        /// What to do about it.
+        /// Remedy.
         hint: &'static str,
     },
     /// The file is not glTF 2.0: truncated, not JSON, or of another version.
@@ -23,9 +23,9 @@ pub enum SceneError {
         path: PathBuf,
         /// The part of the file, such as `GLB header`.
         element: String,
-        /// What is wrong with it.
+        /// Reason.
         reason: String,
-        /// What to do about it.
+        /// Remedy.
         hint: &'static str,
     },
     /// The file requires an extension that import does not support.
@@ -37,7 +37,7 @@ pub enum SceneError {
         element: String,
         /// Name of the extension.
         name: String,
-        /// What to do about it.
+        /// Remedy.
         hint: &'static str,
     },
     /// One element of the file is invalid.
@@ -47,25 +47,25 @@ pub enum SceneError {
         path: PathBuf,
         /// The element, such as `meshes[3].primitives[0].attributes.POSITION, accessor 7`.
         element: String,
-        /// What is wrong with it.
+        /// Reason.
         reason: String,
-        /// What to do about it.
+        /// Remedy.
         hint: &'static str,
     },
-    /// The file holds nothing that could be drawn.
+    /// The file has no triangles to draw.
     #[error("{}: nothing to draw: {reason}. {hint}", path.display())]
     Empty {
         /// The file.
         path: PathBuf,
-        /// What is missing.
+        /// Reason.
         reason: String,
-        /// What to do about it.
+        /// Remedy.
         hint: &'static str,
     },
 }
 
 impl SceneError {
-    /// The file that was refused.
+    /// Returns the path of the refused file.
     pub fn path(&self) -> &Path {
         match self {
             Self::Unreadable { path, .. }
@@ -85,31 +85,32 @@ pub(crate) struct Problem {
     hint: &'static str,
 }
 
-/// What to do about data that the specification does not allow.
+/// Remedy for data that the specification does not allow.
 const RE_EXPORT: &str = "Export the file again, or look at it with the Khronos glTF validator";
 
-/// The entry of a list that an index in the file names; what names one that does not exist is the problem's element.
+/// Returns an entry of a list by its index in the file. If it does not exist, returns a problem of `element`,
+/// which contains the index.
 pub(crate) fn entry<'a, T>(list: &'a [T], index: usize, kind: &str, element: &str) -> Result<&'a T, Problem> {
     list.get(index).ok_or_else(|| Problem::new(element, format!("there is no {kind} {index}")))
 }
 
 impl Problem {
-    /// A problem that a correct export does not have.
+    /// Creates a problem that a correct export does not have.
     pub(crate) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { element: element.into(), reason: reason.into(), hint: RE_EXPORT }
     }
 
-    /// The same problem with another hint.
+    /// Replaces the hint.
     pub(crate) fn hint(self, hint: &'static str) -> Self {
         Self { hint, ..self }
     }
 
-    /// The reason, for problems that become notes.
+    /// Returns the reason, for problems that become notes.
     pub(crate) fn reason(&self) -> &str {
         &self.reason
     }
 
-    /// The error, with the name of the file.
+    /// Converts the problem to an error of a file.
     pub(crate) fn at(self, path: &Path) -> SceneError {
         let Self { element, reason, hint } = self;
         SceneError::Element { path: path.to_owned(), element, reason, hint }

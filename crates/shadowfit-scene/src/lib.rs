@@ -1,7 +1,8 @@
 //! CPU scenes for the shadowfit viewer: glTF import, built-in scenes, animation and bounds.
 //!
-//! A [`Scene`] is the data, a [`Pose`] where everything is at a time of an animation. Renderers draw both; ray tracers
-//! take [`Pose::triangles`]. Nothing here needs a GPU. Spaces are right-handed with y up, in metres and radians.
+//! A [`Scene`] is the data. A [`Pose`] holds the transforms at a time of an animation. Renderers draw both,
+//! ray tracers take [`Pose::triangles`]. This crate needs no GPU. Spaces are right-handed with y up, in
+//! metres and radians.
 
 mod bounds;
 pub mod builtin;

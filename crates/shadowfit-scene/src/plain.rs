@@ -1,12 +1,12 @@
-//! Scenes of plain triangles, without a file: what measurements of fits start from.
+//! Scenes of plain triangles without a file, for measurements of fits.
 
 use glam::Vec3;
 
 use crate::{Geometry, Material, Mesh, Node, Scene, Transform};
 
 impl Scene {
-    /// A scene of plain triangles (corners in world space, metres): one node and one mesh for each of `objects`. All
-    /// have the same opaque, double-sided material and flat normals.
+    /// Creates a scene of plain triangles (corners in world space, metres), with one node and one mesh for
+    /// each of `objects`. All have the same opaque, double-sided material and flat normals.
     pub fn from_objects(name: &str, objects: &[Vec<[Vec3; 3]>]) -> Self {
         let material = Material { double_sided: true, ..Material::default() };
         Self {
@@ -23,7 +23,7 @@ fn node(index: usize) -> Node {
     Node { name: format!("object {index}"), rest: Transform::default(), mesh: Some(index), ..Node::default() }
 }
 
-/// Every triangle has its own vertices, with its normal.
+/// Builds a mesh in which every triangle has its own vertices, with its normal.
 fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let normal = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).normalize_or(Vec3::Y);
     let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();

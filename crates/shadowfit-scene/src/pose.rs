@@ -1,4 +1,4 @@
-//! A scene at a time: world transforms, morph weights, and the triangles that follow.
+//! A scene at a time: world transforms, morph weights and the resulting triangles.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
@@ -17,33 +17,33 @@ pub struct Instance {
     pub primitive: usize,
 }
 
-/// Where everything in a scene is at a time.
+/// Transforms and morph weights of a scene at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     /// World from node, for each node. World positions are relative to [`Scene::origin`].
     pub world_from_node: Vec<Mat4>,
-    /// For each node, the weight of each morph target of its mesh; empty where it has none.
+    /// For each node, the weight of each morph target of its mesh. Empty if the mesh has none.
     pub morph_weights: Vec<Vec<f32>>,
 }
 
-/// A triangle in world space; its vertices wind counter-clockwise seen from outside.
+/// A triangle in world space. Its vertices are counter-clockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// Corners, in metres.
     pub vertices: [Vec3; 3],
     /// Index into [`Scene::instances`].
     pub instance: u32,
-    /// Index of the triangle within its primitive; its vertex indices there begin at `3 * index`.
+    /// Index of the triangle within its primitive. Its vertex indices there begin at `3 * index`.
     pub index: u32,
 }
 
 impl Scene {
-    /// Everything drawn, ordered by node, then by primitive; the same for every pose.
+    /// Returns everything drawn, ordered by node, then by primitive. It is the same for every pose.
     pub fn instances(&self) -> Vec<Instance> {
         self.each_instance().collect()
     }
 
-    /// Yields [`Scene::instances`] one at a time.
+    /// Iterates over [`Scene::instances`].
     pub(crate) fn each_instance(&self) -> impl Iterator<Item = Instance> {
         let drawn = |node: &Node| node.mesh.and_then(|mesh| Some((mesh, self.meshes.get(mesh)?)));
         self.nodes.iter().enumerate().filter_map(move |(node, data)| Some((node, drawn(data)?))).flat_map(
@@ -53,9 +53,11 @@ impl Scene {
         )
     }
 
-    /// The scene at a time of an animation (an index into [`Scene::animations`]), in seconds, which is wrapped to the
-    /// animation's duration; at rest for `None`, for an animation that does not exist, and while one throws anything
-    /// farther than f32 can compute with. A time that is not finite counts as 0.
+    /// Returns the pose at a time of an animation (an index into [`Scene::animations`]), in seconds, which
+    /// wraps at the animation's duration. A time that is not finite counts as 0.
+    ///
+    /// The pose is at rest for `None`, for an animation that does not exist, and at times when an animation
+    /// moves anything beyond the range of exact f32 computations.
     pub fn pose(&self, animation: Option<usize>, seconds: f32) -> Pose {
         let mut locals: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
         let targets: Vec<usize> = self.meshes.iter().map(Mesh::targets).collect();
@@ -79,8 +81,8 @@ impl Scene {
         if animation.is_none() || self.is_within_reach(&pose) { pose } else { self.pose(None, 0.0) }
     }
 
-    /// Whether matrices and weights are so small that what they move is finite. A file is checked at rest when it is
-    /// loaded; between keys, below moving parents, an animation may reach anything.
+    /// Returns whether matrices and weights are small enough for the moved vertices to be finite. Import
+    /// checks the file at rest. Between keys and below moving parents, an animation may reach any value.
     fn is_within_reach(&self, pose: &Pose) -> bool {
         let is_small = |matrix: &Mat4| matrix.to_cols_array().iter().all(|element| element.abs() <= MAX_COORDINATE);
         pose.world_from_node.iter().all(is_small)
@@ -88,17 +90,17 @@ impl Scene {
             && pose.morph_weights.iter().flatten().all(|weight| weight.abs() <= MAX_MORPH_WEIGHT)
     }
 
-    /// Whether `node` is `root` or a descendant of it; both are indices into [`Scene::nodes`].
+    /// Returns whether `node` is `root` or a descendant of it. Both are indices into [`Scene::nodes`].
     pub fn is_descendant(&self, node: usize, root: usize) -> bool {
         let parent_of = |&index: &usize| self.nodes.get(index).and_then(|n| n.parent);
-        // Parents have smaller indices, so the search ends at or before the root's.
+        // Parents have smaller indices, so the search ends at or before `root`.
         std::iter::successors(Some(node), parent_of)
             .take_while(|&ancestor| ancestor >= root)
             .any(|ancestor| ancestor == root)
     }
 
-    /// Returns one weight for each morph target of the node's mesh: the node's, else the mesh's, else 0. `targets` has
-    /// the number of targets of each mesh.
+    /// Returns one weight for each morph target of the node's mesh: the node's weight, else the mesh's, else
+    /// 0. `targets` has the number of targets of each mesh.
     fn rest_weights(&self, node: &Node, targets: &[usize]) -> Vec<f32> {
         let Some((mesh, &targets)) = node.mesh.and_then(|index| self.meshes.get(index).zip(targets.get(index))) else {
             return Vec::new();
@@ -109,7 +111,8 @@ impl Scene {
         weights
     }
 
-    /// World from each node. Products are f64, and rounded once they are relative to the scene's origin.
+    /// Returns the world-from-node matrices. Products are computed in f64, and rounded after subtraction of
+    /// the scene's origin.
     fn compose(&self, locals: &[Transform]) -> Vec<Mat4> {
         let world_from_file = DMat4::from_translation(-self.origin);
         let mut world_from_node: Vec<DMat4> = Vec::with_capacity(locals.len());
@@ -122,8 +125,8 @@ impl Scene {
 }
 
 impl Pose {
-    /// World from the space of the instance's vertices: the node's matrix, or the identity for skinned instances, whose
-    /// vertices [`Pose::deform`] gives in world space.
+    /// Returns the matrix from the space of the instance's vertices to world space. Skinned instances get the
+    /// identity, since [`Pose::deform`] returns their vertices in world space.
     pub fn world_from_instance(&self, scene: &Scene, instance: &Instance) -> Mat4 {
         match scene.instance_skin(instance) {
             Some(_) => Mat4::IDENTITY,
@@ -131,9 +134,10 @@ impl Pose {
         }
     }
 
-    /// Whether the instance is mirrored, so that its triangles wind clockwise seen from outside: the determinant of the
-    /// node's matrix is negative, or that of the first joint's for skinned instances. Renderers then have to swap front
-    /// and back faces; [`Pose::triangles`] swaps two corners.
+    /// Returns whether the instance is mirrored, so that its triangles are clockwise seen from outside. This
+    /// is the case if the determinant of the node's matrix is negative, or of the first joint's matrix for
+    /// skinned instances. Renderers must then swap front and back faces. [`Pose::triangles`] swaps two
+    /// corners.
     pub fn is_mirrored(&self, scene: &Scene, instance: &Instance) -> bool {
         let matrix = match scene.instance_skin(instance) {
             Some(skin) => match (skin.joints.first(), skin.joint_from_mesh.first()) {
@@ -145,7 +149,7 @@ impl Pose {
         glam::Mat3::from_mat4(matrix).determinant() < 0.0
     }
 
-    /// Every triangle of every instance, in instance order, deformed, in world space and metres.
+    /// Returns every triangle of every instance, in instance order, deformed, in world space and metres.
     ///
     /// Mirrored instances ([`Pose::is_mirrored`]) have their second and third corner swapped, so
     /// that all geometric normals point outward.
@@ -153,8 +157,9 @@ impl Pose {
         self.triangles_from(scene, DVec3::ZERO)
     }
 
-    /// As [`Pose::triangles`], with corners relative to `origin`, a world position in metres. Far from the world's own
-    /// origin, where world positions in f32 are coarse, this keeps the precision of vertices that lie near their node.
+    /// Returns triangles like [`Pose::triangles`], with corners relative to `origin`, a world position in
+    /// metres. Far from the world's origin, where world positions in f32 are coarse, this keeps the precision
+    /// of vertices near their node.
     pub fn triangles_from(&self, scene: &Scene, origin: DVec3) -> Vec<Triangle> {
         let instances = scene.instances();
         let count = |i: &Instance| scene.meshes[i.mesh].primitives[i.primitive].indices.len() / 3;
@@ -168,18 +173,19 @@ impl Pose {
         triangles
     }
 
-    /// World from a node, or the identity for one that does not exist.
+    /// Returns the world-from-node matrix, or the identity for a node that does not exist.
     pub(crate) fn world_from(&self, node: usize) -> Mat4 {
         self.world_from_node.get(node).copied().unwrap_or(Mat4::IDENTITY)
     }
 }
 
-/// `seconds` wrapped to 0..`duration`; 0 for times and durations that are not finite or positive.
+/// Wraps `seconds` to 0..`duration`. Returns 0 for times that are not finite and durations that are not
+/// positive and finite.
 fn looped(seconds: f32, duration: f32) -> f32 {
     if seconds.is_finite() && duration.is_finite() && duration > 0.0 { seconds.rem_euclid(duration) } else { 0.0 }
 }
 
-/// Copies as many values as both have.
+/// Copies values up to the shorter length.
 fn overwrite(target: &mut [f32], source: &[f32]) {
     for (to, &from) in target.iter_mut().zip(source) {
         *to = from;

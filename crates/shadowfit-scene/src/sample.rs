@@ -1,7 +1,6 @@
 //! Values of animation channels between keyframes.
 //!
-//! The formulas are those of the glTF 2.0 specification, appendix C "Animation Sampler
-//! Interpolation Modes".
+//! The formulas are from the glTF 2.0 specification, appendix C "Animation Sampler Interpolation Modes".
 
 use std::ops::{Add, Mul};
 
@@ -21,8 +20,8 @@ pub(crate) enum Sample {
     MorphWeights(Vec<f32>),
 }
 
-/// Value of `channel` at `seconds`, clamped to its first and last key; `None` for a channel without
-/// keys or with too few values.
+/// Returns the value of `channel` at `seconds`, clamped to its first and last key. Returns `None` for a
+/// channel without keys or with too few values.
 pub(crate) fn sample(channel: &Channel, seconds: f32) -> Option<Sample> {
     let at = Segment::find(&channel.times, seconds)?;
     let mode = channel.interpolation;
@@ -46,17 +45,18 @@ fn lerp(a: f32, b: f32, fraction: f32) -> f32 {
     a + (b - a) * fraction
 }
 
-/// The rotation as a unit quaternion. Cubic splines may pass through zero, which counts as no rotation.
+/// Returns the rotation as a unit quaternion. Cubic splines may pass through zero, which counts as no
+/// rotation.
 fn normalized(rotation: Quat) -> Quat {
     let length = rotation.length();
     if length > 1e-12 && length.is_finite() { rotation * (1.0 / length) } else { Quat::IDENTITY }
 }
 
-/// Where a time lies between two keys.
+/// Position of a time between two keys.
 struct Segment {
     /// Key at or before the time.
     from: usize,
-    /// Key after it, or the same at the ends.
+    /// Key after the time. Equals `from` at the ends.
     to: usize,
     /// Position between them, 0..1.
     fraction: f32,
@@ -77,7 +77,7 @@ impl Segment {
         Some(Self { from: after - 1, to: after, fraction, length })
     }
 
-    /// Value `element` of the `count` that each key holds.
+    /// Interpolates value `element` of the `count` values of each key.
     fn value<T>(
         &self,
         values: &[T],
@@ -111,7 +111,8 @@ struct Key<T> {
     tangent: T,
 }
 
-/// Cubic Hermite spline between two keys that are `length` seconds apart, at `s` of the way, 0..1.
+/// Evaluates a cubic Hermite spline between two keys that are `length` seconds apart, at a share `s` of the
+/// way, 0..1.
 fn hermite<T>(start: Key<T>, end: Key<T>, s: f32, length: f32) -> T
 where
     T: Add<Output = T> + Mul<f32, Output = T>,

@@ -1,4 +1,4 @@
-//! The data of a scene: what import and the built-in scene produce, and what renderers and ray tracers read.
+//! The data of a scene. Import and the built-in scenes create it, renderers and ray tracers read it.
 //! Right-handed, y up, metres, radians, column vectors.
 
 use std::ops::{Deref, DerefMut};
@@ -16,7 +16,7 @@ pub struct Scene {
     pub nodes: Vec<Node>,
     /// Meshes.
     pub meshes: Vec<Mesh>,
-    /// Materials; never empty, index 0 is the default material.
+    /// Materials. Never empty: index 0 is the default material.
     pub materials: Vec<Material>,
     /// Images that the materials' textures use.
     pub images: Vec<Image>,
@@ -26,24 +26,25 @@ pub struct Scene {
     pub animations: Vec<Animation>,
     /// Cameras, in the order of their nodes.
     pub cameras: Vec<SceneCamera>,
-    /// Directional lights of the file, in the order of their nodes; empty for built-in scenes.
+    /// Directional lights of the file, in the order of their nodes. Empty for built-in scenes.
     pub suns: Vec<SceneSun>,
-    /// Position in the file's coordinates that the scene's world coordinates are relative to, in metres. It is zero,
-    /// unless most of the file's triangles lie far from its origin, where `f32` positions are coarse.
+    /// Origin of the scene's world coordinates in the file's coordinates, in metres. It is zero unless most
+    /// of the file's triangles lie far from the file's origin, where `f32` positions are coarse.
     pub origin: DVec3,
     /// Whether blended surfaces cast shadows.
     pub blended_casters: BlendedCasters,
-    /// The strongest of [`Scene::suns`] at rest, or the built-in scene's own sun; `None` if no directional light shines.
+    /// Strongest of [`Scene::suns`] at rest, or the built-in scene's own sun. `None` if no directional light
+    /// shines.
     pub sun: Option<Sun>,
-    /// Index of the node that, with its descendants, cameras should look at, if the scene has one.
+    /// Index of the node that cameras should look at, with its descendants, if the scene has one.
     pub subject: Option<usize>,
-    /// What import skipped, replaced or repaired, as readable sentences.
+    /// Readable sentences about elements that import skipped, replaced or repaired.
     pub notes: Vec<String>,
 }
 
 impl Scene {
-    /// The notes as lines for a terminal, `warning: FILE: NOTE`, each a single line. `file` is the one that the scene
-    /// was loaded from.
+    /// Returns the notes as lines for a terminal, `warning: FILE: NOTE`. Each is a single line. `file` is the
+    /// file that the scene was loaded from.
     pub fn warnings(&self, file: &Path) -> impl Iterator<Item = String> {
         self.notes
             .iter()
@@ -64,21 +65,22 @@ pub struct Node {
     pub mesh: Option<usize>,
     /// Index into [`Scene::skins`] of the skin that deforms the mesh.
     pub skin: Option<usize>,
-    /// Morph weights at rest; where empty, those of the mesh are used.
+    /// Morph weights at rest. If empty, the mesh's weights are used.
     pub morph_weights: Vec<f32>,
 }
 
-/// A transform from a node's space to its parent's: translation, rotation and scale, or a matrix. It is `f64`, so that
-/// nested transforms of georeferenced files, millions of metres long, are exact to less than a millimetre.
+/// A transform from a node's space to its parent's: translation, rotation and scale, or a matrix. It is
+/// `f64`, so that nested transforms of georeferenced files, with translations of millions of metres, are
+/// exact to less than a millimetre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// Translation, in metres.
     pub translation: DVec3,
     /// Rotation.
     pub rotation: DQuat,
-    /// Scale; negative values mirror.
+    /// Scale. Negative values mirror.
     pub scale: DVec3,
-    /// Used instead of the other three where the file gives a matrix.
+    /// Matrix that replaces the other three, if the file contains one.
     pub matrix: Option<DMat4>,
 }
 
@@ -89,13 +91,13 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// A transform without a matrix from `f32` values.
+    /// Creates a transform without a matrix from `f32` values.
     pub fn new(translation: Vec3, rotation: Quat, scale: Vec3) -> Self {
         let (translation, rotation, scale) = (translation.as_dvec3(), rotation.as_dquat(), scale.as_dvec3());
         Self { translation, rotation, scale, matrix: None }
     }
 
-    /// Parent space from this node's space.
+    /// Returns the matrix from this node's space to its parent's.
     pub fn matrix(&self) -> DMat4 {
         self.matrix
             .unwrap_or_else(|| DMat4::from_scale_rotation_translation(self.scale, self.rotation, self.translation))
@@ -114,18 +116,19 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Returns the number of morph targets that its nodes have weights for.
+    /// Returns the number of morph weights of nodes with this mesh.
     pub(crate) fn targets(&self) -> usize {
         self.primitives.iter().map(|primitive| primitive.morphs.len()).max().unwrap_or(0)
     }
 }
 
-/// Triangles with one material. It reads and writes like its [`Geometry`].
+/// Triangles with one material. It dereferences to its [`Geometry`].
 #[derive(Clone, Debug, Default)]
 pub struct Primitive {
     /// Index into [`Scene::materials`].
     pub material: usize,
-    /// Vertices and indices. Primitives that differ in their materials alone share them; a write copies them first.
+    /// Vertices and indices. Primitives that differ only in their materials share them. A write copies them
+    /// first.
     pub geometry: Arc<Geometry>,
 }
 
@@ -144,30 +147,31 @@ impl DerefMut for Primitive {
 }
 
 impl From<Geometry> for Primitive {
-    /// A primitive with the default material.
+    /// Creates a primitive with the default material.
     fn from(geometry: Geometry) -> Self {
         Self { material: 0, geometry: Arc::new(geometry) }
     }
 }
 
-/// Indexed triangles. Each vertex array has the length of `positions`, or is empty where its field says so.
+/// Indexed triangles. Each vertex array has the length of `positions`, or is empty if its field allows that.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
     /// Positions, in metres in the mesh's space.
     pub positions: Vec<Vec3>,
-    /// Unit normals; computed flat where the file has none.
+    /// Unit normals. Import computes flat ones if the file has none.
     pub normals: Vec<Vec3>,
-    /// Unit tangents with the bitangent's sign in w; empty unless the material has a normal map.
+    /// Unit tangents with the bitangent's sign in w. Empty unless the material has a normal map.
     pub tangents: Vec<Vec4>,
-    /// Texture coordinates (set 0), before the material's `uv_from_texcoord`; empty where absent, which stands for (0, 0).
+    /// Texture coordinates (set 0), before the material's `uv_from_texcoord`. Empty means (0, 0) everywhere.
     pub uvs: Vec<Vec2>,
-    /// Linear vertex colours; empty where absent.
+    /// Linear vertex colours. Empty if absent.
     pub colors: Vec<Vec4>,
     /// Vertex indices, three for each triangle, counter-clockwise seen from outside, all less than `positions.len()`.
     pub indices: Vec<u32>,
-    /// Indices into [`Skin::joints`], the four joints with the greatest weights for each vertex; empty if unskinned.
+    /// Indices into [`Skin::joints`]: the four joints with the greatest weights at each vertex. Empty if
+    /// unskinned.
     pub joints: Vec<[u16; 4]>,
-    /// Weights of `joints`, with the sum 1 at each vertex; empty if unskinned.
+    /// Weights of `joints`, with the sum 1 at each vertex. Empty if unskinned.
     pub weights: Vec<Vec4>,
     /// Morph targets.
     pub morphs: Vec<MorphTarget>,
@@ -176,13 +180,13 @@ pub struct Geometry {
 /// Displacements of one morph target, one for each vertex of the primitive.
 #[derive(Clone, Debug, Default)]
 pub struct MorphTarget {
-    /// Added to the positions, multiplied by the weight; in metres.
+    /// Displacements of the positions at weight 1, in metres.
     pub positions: Vec<Vec3>,
-    /// Added to the normals, multiplied by the weight; empty where absent.
+    /// Changes of the normals at weight 1. Empty if absent.
     pub normals: Vec<Vec3>,
 }
 
-/// What a material's alpha means.
+/// Use of a material's alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
@@ -193,14 +197,15 @@ pub enum AlphaMode {
         /// Cutoff, 0..=1.
         cutoff: f32,
     },
-    /// Blended over the surfaces behind it. Casts as [`Scene::blended_casters`] says.
+    /// The surface is blended over the surfaces behind it. [`Scene::blended_casters`] decides whether it
+    /// casts.
     Blend,
 }
 
 /// Whether blended surfaces cast shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BlendedCasters {
-    /// They cast where their alpha, of material, texture and vertex colour, is at least 0.5, as cut-outs do.
+    /// They cast where their alpha (material, texture and vertex colour) is at least 0.5, like cut-outs.
     #[default]
     WhereOpaque,
     /// They cast nothing.
@@ -214,25 +219,27 @@ pub enum Casting {
     Nothing,
     /// All of it casts.
     Whole,
-    /// It casts where its alpha, of material, texture and vertex colour, is at least this.
+    /// It casts where its alpha (material, texture and vertex colour) is at least this.
     CutOut(f32),
 }
 
-/// Alpha of blended surfaces from which on they cast.
+/// Least alpha at which blended surfaces cast.
 const BLENDED_CUTOFF: f32 = 0.5;
 
-/// Shortfall of alpha that still counts as equal to a cutoff: half of the distance between a cutoff of 0.5 and the
-/// nearest 8-bit alpha below it. Rounding in texture filters, interpolation and products is smaller on every device, so
-/// that a surface of uniform alpha gets no stripes, and pictures, shadow maps and rays agree.
+/// Shortfall of alpha that still counts as equal to a cutoff: half of the distance between a cutoff of 0.5
+/// and the nearest 8-bit alpha below it. On every device, rounding in texture filters, interpolation and
+/// products is smaller. So a surface of uniform alpha gets no stripes, and pictures, shadow maps and rays
+/// agree.
 const ALPHA_TOLERANCE: f32 = 0.25 / 255.0;
 
 impl AlphaMode {
-    /// Least alpha that is opaque where a surface is cut out, in pictures and shadows of masked materials and in shadows
-    /// of blended ones. It is the cutoff less a tolerance for rounding, at most half of the cutoff. `None` for opaque materials.
+    /// Returns the least alpha that is opaque where a surface is cut out: in pictures and shadows of masked
+    /// materials, and in shadows of blended ones. It is the cutoff minus a tolerance for rounding, at most
+    /// half of the cutoff. Returns `None` for opaque materials.
     pub fn least_opaque(self) -> Option<f32> {
         match self {
             Self::Opaque => None,
-            // Alpha 0 stays below every cutoff but 0.
+            // Alpha 0 stays below every cutoff except 0.
             Self::Mask { cutoff } => Some((cutoff - ALPHA_TOLERANCE).max(cutoff * 0.5)),
             Self::Blend => Some(BLENDED_CUTOFF - ALPHA_TOLERANCE),
         }
@@ -240,7 +247,7 @@ impl AlphaMode {
 }
 
 impl Scene {
-    /// How a primitive of this scene casts shadows: the same in shadow maps, rays and boxes.
+    /// Returns how a primitive of this scene casts shadows. Shadow maps, rays and boxes all use this.
     pub fn casting(&self, primitive: &Primitive) -> Casting {
         let material = &self.materials[primitive.material];
         let Some(least) = material.alpha.least_opaque() else { return Casting::Whole };
@@ -264,9 +271,9 @@ pub struct Material {
     pub name: String,
     /// Linear base colour and alpha.
     pub base_color: Vec4,
-    /// Image that is multiplied with `base_color`; its colours are sRGB encoded.
+    /// Image that is multiplied with `base_color`. Its colours are sRGB encoded.
     pub base_color_texture: Option<Texture>,
-    /// Tangent-space normal map; its values are linear.
+    /// Tangent-space normal map. Its values are linear.
     pub normal_texture: Option<Texture>,
     /// Factor on the x and y of the normal map.
     pub normal_scale: f32,
@@ -276,7 +283,7 @@ pub struct Material {
     pub roughness: f32,
     /// Emitted radiance, linear colour.
     pub emissive: Vec3,
-    /// What alpha means.
+    /// Use of alpha.
     pub alpha: AlphaMode,
     /// Whether back faces are drawn.
     pub double_sided: bool,
@@ -299,7 +306,7 @@ impl Default for Material {
     }
 }
 
-/// An image and how it is sampled.
+/// An image and its sampling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texture {
     /// Index into [`Scene::images`].
@@ -308,12 +315,13 @@ pub struct Texture {
     pub wrap: [Wrap; 2],
     /// Whether magnification takes the nearest texel instead of interpolating.
     pub nearest: bool,
-    /// Rows of a 2×3 matrix, that of `KHR_texture_transform`: image coordinates from (u, v, 1) of the vertex.
+    /// Rows of the 2×3 matrix of `KHR_texture_transform`, which computes image coordinates from (u, v, 1) of
+    /// the vertex.
     pub uv_from_texcoord: [Vec3; 2],
 }
 
 impl Texture {
-    /// Where texture coordinates of a mesh lie in the image.
+    /// Returns the image coordinates of a mesh's texture coordinates.
     pub fn in_image(&self, uv: Vec2) -> Vec2 {
         let at = uv.extend(1.0);
         Vec2::new(self.uv_from_texcoord[0].dot(at), self.uv_from_texcoord[1].dot(at))
@@ -350,7 +358,7 @@ pub struct Image {
 pub struct Skin {
     /// Indices into [`Scene::nodes`].
     pub joints: Vec<usize>,
-    /// For each joint, joint space from mesh space in the pose that the mesh was modelled in.
+    /// For each joint, the matrix from mesh space to joint space in the pose in which the mesh was modelled.
     pub joint_from_mesh: Vec<Mat4>,
 }
 
@@ -359,7 +367,7 @@ pub struct Skin {
 pub struct SceneCamera {
     /// Name, possibly empty.
     pub name: String,
-    /// Index of the node that carries it; it looks along the node's -z, with +y up.
+    /// Index of its node. The camera looks along the node's -z, with +y up.
     pub node: usize,
     /// Lens.
     pub lens: Lens,
@@ -374,7 +382,7 @@ pub enum Lens {
         fov_y: f32,
         /// Near distance, in metres.
         near: f32,
-        /// Far distance, in metres; `None` is infinite.
+        /// Far distance, in metres. `None` is infinite.
         far: Option<f32>,
     },
     /// Orthographic.
@@ -393,7 +401,7 @@ pub enum Lens {
 pub struct SceneSun {
     /// Name, possibly empty.
     pub name: String,
-    /// Index of the node that carries it; its light travels along the node's -z.
+    /// Index of its node. The light travels along the node's -z.
     pub node: usize,
     /// Linear colour, each component at least 0.
     pub color: Vec3,
@@ -401,7 +409,7 @@ pub struct SceneSun {
     pub intensity: f32,
 }
 
-/// The sun of a picture.
+/// The sun that lights a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// Unit direction of travel of the light, in world space at rest.
@@ -457,6 +465,6 @@ pub enum ChannelValues {
     Rotation(Vec<Quat>),
     /// Scales.
     Scale(Vec<Vec3>),
-    /// Morph weights, those of a key one after the other.
+    /// Morph weights, key after key.
     MorphWeights(Vec<f32>),
 }

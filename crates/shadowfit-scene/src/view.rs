@@ -1,10 +1,10 @@
-//! Cameras and suns of a scene in a pose: an animation moves them with their nodes.
+//! Cameras and suns of a scene in a pose. An animation moves them with their nodes.
 
 use glam::{DVec3, Vec3};
 
 use crate::{Pose, Scene, SceneCamera, SceneSun, Sun};
 
-/// Share of each colour in the brightness of light (ITU-R BT.709).
+/// Weight of each colour in luminance (ITU-R BT.709).
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// Position and axes of a camera, in world space.
@@ -14,18 +14,18 @@ pub struct Placement {
     pub eye: DVec3,
     /// Unit direction of view.
     pub forward: Vec3,
-    /// Unit direction that appears upward, perpendicular to `forward`.
+    /// Unit direction that points up in the picture, perpendicular to `forward`.
     pub up: Vec3,
 }
 
 impl SceneCamera {
-    /// Returns the camera's placement in a pose, without the scale and shear of its node. `None` if the node scales the
-    /// direction of view to nothing.
+    /// Returns the camera's placement in a pose, without the scale and shear of its node. Returns `None` if
+    /// the node scales the view direction to zero.
     pub fn placement(&self, pose: &Pose) -> Option<Placement> {
         let world = pose.world_from_node.get(self.node)?;
         let eye = world.w_axis.truncate();
         let forward = (-world.z_axis.truncate()).try_normalize()?;
-        // Where the node scales its y axis to nothing, or shears it into the direction of view, any roll serves.
+        // If the node scales its y axis to zero, or shears it into the view direction, any roll is valid.
         let up = world.y_axis.truncate();
         let up = up.normalize_or(Vec3::Y).reject_from_normalized(forward).try_normalize();
         let up = up.unwrap_or_else(|| forward.any_orthonormal_vector());
@@ -34,8 +34,8 @@ impl SceneCamera {
 }
 
 impl SceneSun {
-    /// Returns the unit direction of travel of the light in a pose, in world space. `None` if the node scales it to
-    /// nothing.
+    /// Returns the unit direction of travel of the light in a pose, in world space. Returns `None` if the
+    /// node scales it to zero.
     pub fn direction(&self, pose: &Pose) -> Option<Vec3> {
         pose.world_from_node.get(self.node)?.transform_vector3(Vec3::NEG_Z).try_normalize()
     }
@@ -47,12 +47,12 @@ impl SceneSun {
 }
 
 impl SceneSun {
-    /// Returns why the light does not shine in a pose. `None` if it shines.
+    /// Returns why the light does not shine in a pose, or `None` if it shines.
     pub(crate) fn fault(&self, pose: &Pose) -> Option<&'static str> {
         if self.strength() <= 0.0 {
-            Some("it is without intensity")
+            Some("it emits no light")
         } else if !(self.color * self.intensity).is_finite() {
-            Some("it is brighter than a number holds")
+            Some("its brightness is not finite")
         } else if self.direction(pose).is_none() {
             Some("its node has no size")
         } else {
@@ -62,8 +62,9 @@ impl SceneSun {
 }
 
 impl Scene {
-    /// Returns the index of the strongest of [`Self::suns`] at rest, the first of equals. `None` if none of them shines:
-    /// each has no intensity, an infinite one, or a node that scales its direction to nothing.
+    /// Returns the index of the strongest of [`Self::suns`] at rest, the first of equals. Returns `None` if
+    /// none shines, because each has no intensity, an infinite one, or a node that scales its direction to
+    /// zero.
     pub fn strongest_sun(&self) -> Option<usize> {
         self.strongest_sun_in(&self.pose(None, 0.0))
     }

@@ -13,20 +13,20 @@ use super::extensions::{COMPRESSED, DECOMPRESS};
 use super::uri::{Folder, MAX_FILE_BYTES, read_uri};
 use crate::error::Problem;
 
-/// Elements that one import may decode. Accessors may overlap, so that the size of a file alone does not bound the memory;
-/// this many 16-byte elements fit in 2 GiB. Data that several primitives share counts once.
+/// Elements that one import may decode. Accessors may overlap, so the size of the file does not bound the
+/// memory. 2^27 16-byte elements fit in 2 GiB. Data that several primitives share counts once.
 const MAX_ELEMENTS: u64 = 1 << 27;
 
-/// Elements of an accessor that has no data of its own (all zero, or sparse over zero): its count is
-/// not bounded by the size of any buffer.
+/// Elements of an accessor without data of its own (all zero, or sparse over zero). No buffer size bounds its
+/// count.
 const MAX_UNBACKED_ELEMENTS: usize = 1 << 20;
 
-/// How integer components become floats.
+/// Conversion of integer components to floats.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Integers {
-    /// As the accessor's `normalized` says.
+    /// By the accessor's `normalized`.
     AsDeclared,
-    /// Always normalised: the attribute allows nothing else.
+    /// Always normalised, for attributes that must be.
     Normalized,
 }
 
@@ -35,24 +35,24 @@ pub(crate) struct Reader<'a> {
     root: &'a Root,
     buffers: Vec<Result<Vec<u8>, Problem>>,
     elements_left: Cell<u64>,
-    /// Whether primitives refer to an accessor more than once.
+    /// For each accessor, whether primitives refer to it more than once.
     shared: Vec<bool>,
-    /// Data of the shared sparse accessors that were read, by their index, with the elements that they replace.
+    /// Data of the shared sparse accessors read so far, by accessor index, with replaced elements applied.
     dense: RefCell<HashMap<usize, Rc<[u8]>>>,
 }
 
-/// Elements of an accessor that are read.
+/// Selection of an accessor's elements.
 #[derive(Clone, Copy)]
 pub(crate) enum Elements<'a> {
-    /// All of them, in their order.
+    /// All elements, in their order.
     All,
-    /// Those with these indices, all less than the accessor's count, in the order of the list.
+    /// Elements by index, in the order of the list. Each index is less than the accessor's count.
     Listed(&'a [u32]),
 }
 
-/// Where an accessor's data is and how it is laid out, checked.
+/// Checked location and layout of an accessor's data.
 struct Layout<'a> {
-    /// From the first element on; `None` where all elements are zero.
+    /// Bytes from the first element on, or `None` if all elements are zero.
     bytes: Option<&'a [u8]>,
     stride: usize,
     count: usize,
@@ -62,9 +62,9 @@ struct Layout<'a> {
 
 /// The bytes of an accessor's elements.
 enum Bytes<'a> {
-    /// In their buffer.
+    /// Bytes in their buffer.
     Plain(&'a [u8]),
-    /// Those of a sparse accessor, put together.
+    /// Assembled bytes of a sparse accessor.
     Dense(Rc<[u8]>),
 }
 
@@ -80,7 +80,7 @@ impl Deref for Bytes<'_> {
 }
 
 impl<'a> Reader<'a> {
-    /// Loads the buffers. One that cannot be loaded is a problem only for what reads it.
+    /// Loads the buffers. If one cannot be loaded, only reads from it fail.
     pub(crate) fn new(root: &'a Root, mut binary: Option<Vec<u8>>, folder: Folder<'_>) -> Self {
         let mut bytes_left = MAX_FILE_BYTES;
         let mut buffers = Vec::with_capacity(root.buffers.len());
@@ -93,7 +93,8 @@ impl<'a> Reader<'a> {
         Self { root, buffers, elements_left, shared: shared(root), dense: RefCell::default() }
     }
 
-    /// Number of elements of an accessor of `components` each, whose data is there.
+    /// Returns the number of elements of an accessor with `components` components each. Fails if its data is
+    /// missing.
     pub(crate) fn checked_count(
         &self,
         index: Index<Accessor>,
@@ -103,14 +104,14 @@ impl<'a> Reader<'a> {
         Ok(self.layout(self.accessor(index, element)?, components, &named(element, index))?.count)
     }
 
-    /// Number of elements that an accessor declares.
+    /// Returns the number of elements that an accessor declares.
     pub(crate) fn count(&self, index: Index<Accessor>, element: &str) -> Result<usize, Problem> {
         let accessor = self.accessor(index, element)?;
         let too_many = |_| Problem::new(named(element, index), "its count is too large");
         usize::try_from(accessor.count.0).map_err(too_many)
     }
 
-    /// Checks that an accessor has an element for each of `count` positions, before any is read.
+    /// Checks that an accessor has an element for each of `count` positions, without reading any.
     pub(crate) fn check_count(&self, index: Index<Accessor>, element: &str, count: usize) -> Result<(), Problem> {
         let has = self.count(index, element)?;
         if has == count {
@@ -119,13 +120,13 @@ impl<'a> Reader<'a> {
         Err(Problem::new(named(element, index), format!("it has {has} elements for {count} positions")))
     }
 
-    /// Whether an accessor has data of its own.
+    /// Returns whether an accessor has data of its own.
     pub(crate) fn has_data(&self, index: Index<Accessor>) -> bool {
         let accessor = self.root.accessors.get(index.value());
         accessor.is_some_and(|accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some())
     }
 
-    /// Number of components of an accessor's elements, 1 to 16; 0 where its type is invalid.
+    /// Returns the number of components of an accessor's elements, 1 to 16, or 0 if its type is invalid.
     pub(crate) fn components(&self, index: Index<Accessor>) -> usize {
         match self.root.accessors.get(index.value()).map(|accessor| accessor.type_) {
             Some(Checked::Valid(kind)) => kind.multiplicity(),
@@ -133,7 +134,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// All elements as floats.
+    /// Returns all elements as floats.
     pub(crate) fn floats<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -143,7 +144,7 @@ impl<'a> Reader<'a> {
         self.some_floats(index, element, integers, Elements::All)
     }
 
-    /// Some elements as floats.
+    /// Returns some elements as floats.
     pub(crate) fn some_floats<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -156,7 +157,7 @@ impl<'a> Reader<'a> {
         self.read(index, element, elements, convert)
     }
 
-    /// Some elements as unsigned integers.
+    /// Returns some elements as unsigned integers.
     pub(crate) fn integers<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -171,7 +172,7 @@ impl<'a> Reader<'a> {
         self.read(index, element, elements, |bytes, component, _| unsigned(bytes, component))
     }
 
-    /// The bytes of a buffer view.
+    /// Returns the bytes of a buffer view.
     pub(crate) fn view(&self, index: Index<buffer::View>, element: &str) -> Result<&[u8], Problem> {
         let name = format!("{element}, bufferView {index}");
         let view = self.root.buffer_views.get(index.value());
@@ -210,7 +211,7 @@ impl<'a> Reader<'a> {
             Elements::All => layout.count,
             Elements::Listed(list) => list.len(),
         };
-        // A sparse accessor is put together as a whole, also where few of its elements are read.
+        // A sparse accessor is assembled as a whole, even to read a few of its elements.
         let is_made = accessor.sparse.is_some() && !self.dense.borrow().contains_key(&index.value());
         self.spend(if is_made { layout.count.max(count) } else { count }, &name)?;
         let size = layout.component.size();
@@ -226,8 +227,8 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The bytes of all elements, each of `size`, and the distance from one to the next; `None` where all are zero. The
-    /// elements of a sparse accessor that primitives share are put together once, however often it is read.
+    /// Returns the bytes of all elements, each of `size`, and the distance from one to the next. Returns
+    /// `None` if all are zero. A sparse accessor that several primitives share is assembled once.
     fn data<'b>(
         &self,
         accessor: &Accessor,
@@ -298,7 +299,7 @@ impl<'a> Reader<'a> {
         Ok(Layout { bytes: Some(bytes), stride, count, component, normalized })
     }
 
-    /// Replaces the elements, each of `size` bytes, that a sparse accessor lists.
+    /// Applies the replacements of a sparse accessor to elements of `size` bytes.
     fn overlay(&self, sparse: &Sparse, dense: &mut [u8], size: usize, name: &str) -> Result<(), Problem> {
         let name = format!("{name}, sparse");
         let wrong = |reason: &str| Problem::new(name.clone(), reason);
@@ -325,7 +326,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Counts elements that are decoded or copied, and refuses more than an import may have.
+    /// Counts elements that are decoded or copied. Fails if an import exceeds [`MAX_ELEMENTS`].
     pub(crate) fn spend(&self, count: usize, name: &str) -> Result<(), Problem> {
         let left = self.elements_left.get().checked_sub(count as u64).ok_or_else(|| {
             Problem::new(name, format!("the file decodes to more than {MAX_ELEMENTS} elements"))
@@ -376,7 +377,7 @@ fn load_buffer(
     Ok(bytes)
 }
 
-/// `bytes[offset..offset + length]`, if that exists.
+/// Returns `bytes[offset..offset + length]`, or `None` if out of range.
 fn range(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     let start = usize::try_from(offset).ok()?;
     let end = usize::try_from(offset.checked_add(length)?).ok()?;
@@ -399,7 +400,7 @@ fn float(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
     if normalized { (value / greatest).max(-1.0) } else { value }
 }
 
-/// The caller has made sure that the component is unsigned.
+/// Returns a component as an unsigned integer. The caller has checked that its type is unsigned.
 fn unsigned(bytes: &[u8], component: ComponentType) -> u32 {
     match component.size() {
         1 => u32::from(bytes[0]),

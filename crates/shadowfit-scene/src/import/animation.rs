@@ -17,14 +17,14 @@ pub(crate) struct Animations<'a> {
     pub(crate) root: &'a Root,
     pub(crate) reader: &'a Reader<'a>,
     pub(crate) tree: &'a Tree,
-    /// Nodes with their meshes filled in.
+    /// Nodes with their mesh indices set.
     pub(crate) nodes: &'a [Node],
     /// Number of morph targets of each mesh.
     pub(crate) targets: &'a [usize],
 }
 
 impl Animations<'_> {
-    /// All animations that move a node of the scene.
+    /// Returns all animations that move a node of the scene.
     pub(crate) fn load(&self, notes: &mut Notes) -> Result<Vec<Animation>, Problem> {
         let mut animations = Vec::new();
         for (index, json) in self.root.animations.iter().enumerate() {
@@ -49,7 +49,7 @@ impl Animations<'_> {
         Ok(Animation { name: json.name.clone().unwrap_or_default(), duration, channels })
     }
 
-    /// The node and property that a channel moves; `None` where it moves nothing here.
+    /// Returns the node and property that a channel moves, or `None` if it moves nothing in this scene.
     fn target(
         &self,
         json: &json::Target,
@@ -74,7 +74,7 @@ impl Animations<'_> {
         Ok(Some((node, property)))
     }
 
-    /// Number of morph targets of a node's mesh.
+    /// Returns the number of morph targets of a node's mesh.
     fn targets(&self, node: usize) -> usize {
         self.nodes[node].mesh.map_or(0, |mesh| self.targets[mesh])
     }
@@ -137,7 +137,7 @@ impl Animations<'_> {
         let values = self.finite(index, element, Integers::Normalized)?;
         let rotations = values.into_iter().map(Quat::from_array);
         if mode == Interpolation::CubicSpline {
-            // Two of three are tangents, whose length matters.
+            // Two of three values are tangents, whose length matters.
             return Ok(rotations.collect());
         }
         let unit = |q: Quat| if q.length() > 0.0 { q * (1.0 / q.length()) } else { Quat::IDENTITY };

@@ -10,7 +10,7 @@ use gltf::json::{Root, Value, deserialize, serialize};
 use super::{extensions, material, repair, transforms};
 use crate::{SceneError, Transform};
 
-/// What some editors write before UTF-8 text.
+/// Byte order mark that some editors write before UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// A parsed file.
@@ -25,7 +25,8 @@ pub(crate) struct Source {
     pub(crate) notes: Vec<String>,
 }
 
-/// Parses the content of the file `path`. Before that, `tell_json` is called with the length of the JSON, in bytes.
+/// Parses the content of the file `path`. Calls `tell_json` with the length of the JSON, in bytes, before
+/// parsing it.
 pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> Result<Source, SceneError> {
     let malformed = |(element, reason)| malformed(path, element, reason);
     let (json, binary) = split(bytes).map_err(malformed)?;
@@ -38,10 +39,10 @@ pub(crate) fn parse(path: &Path, bytes: &[u8], tell_json: impl FnOnce(u64)) -> R
     Ok(Source { root, binary: binary.map(<[u8]>::to_vec), transforms, notes })
 }
 
-/// The JSON in a form that the gltf crate reads, and its content. Where the crate cannot read it, other versions of glTF
-/// and required extensions are refused first, since their own layout may be the reason.
+/// Returns the JSON in a form that the gltf crate reads, and its parsed content. If the crate cannot read it,
+/// first refuses other versions of glTF and required extensions, whose layout may be the reason.
 fn readable<'a>(path: &Path, json: &'a [u8]) -> Result<(Cow<'a, [u8]>, Root), SceneError> {
-    // The crate reads animation pointers beside a node, and leaves them out.
+    // The crate ignores animation pointers, which are extensions beside `node`.
     let has_pointers = |root: &Root| root.extensions_used.iter().any(|name| name == "KHR_animation_pointer");
     let unread = match deserialize::from_slice(json) {
         Ok(root) if !has_pointers(&root) => return Ok((Cow::Borrowed(json), root)),
@@ -55,15 +56,15 @@ fn readable<'a>(path: &Path, json: &'a [u8]) -> Result<(Cow<'a, [u8]>, Root), Sc
     extensions::check(path, required.filter_map(Value::as_str), true)?;
     repair::complete(&mut loose);
     let repaired = serialize::to_vec(&loose).and_then(|json| Ok((deserialize::from_slice(&json)?, json)));
-    // The first error has the line and column of the file.
+    // Only the first error has the line and column in the original file.
     let (root, json) = repaired.map_err(|error| malformed(("JSON", unread.unwrap_or(error).to_string())))?;
     Ok((Cow::Owned(json), root))
 }
 
-/// Whether each texture that import reads has an image that needs no extension.
+/// Returns whether each texture that import reads has an image that needs no extension.
 fn has_plain_textures(root: &Root) -> bool {
     let textures = root.materials.iter().flat_map(material::textures);
-    // The material's loader refuses a texture that is not there.
+    // The material's loader refuses a missing texture.
     textures
         .filter_map(|index| root.textures.get(index.value()))
         .all(|texture| material::has_plain_image(root, texture))
@@ -110,13 +111,13 @@ fn chunks(bytes: &[u8]) -> Result<Split<'_>, (&'static str, String)> {
         return Ok((json, None));
     }
     let (kind, binary, _) = chunk(rest, "GLB chunk 1")?;
-    // Chunks of other kinds are to be ignored, says the specification.
+    // The specification requires readers to ignore chunks of other kinds.
     Ok((json, (kind == b"BIN\0").then_some(binary)))
 }
 
 type Chunk<'a> = (&'a [u8], &'a [u8], &'a [u8]);
 
-/// Kind and content of the first chunk, and what follows it.
+/// Returns the kind and content of the first chunk, and the bytes after it.
 fn chunk<'a>(bytes: &'a [u8], name: &'static str) -> Result<Chunk<'a>, (&'static str, String)> {
     let short = || (name, "it is cut short".to_owned());
     let length = u32_at(bytes, 0).ok_or_else(short)? as usize;

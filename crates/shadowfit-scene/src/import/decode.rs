@@ -1,4 +1,4 @@
-//! Decodes PNG, JPEG and WebP; browsers have decoders of their own.
+//! Decodes PNG, JPEG and WebP. Web pages use the browser's decoders instead.
 
 use std::io::Cursor;
 
@@ -9,12 +9,12 @@ use super::image::{DecodedImage, MAX_SIDE};
 /// Greatest size of one decoded image, in bytes: `MAX_SIDE` squared with four 16-bit channels.
 const MAX_DECODED_BYTES: u64 = 1 << 29;
 
-/// Decodes a PNG, JPEG or WebP image, whose first bytes tell which it is. Dimensions are checked before pixels are
-/// allocated.
+/// Decodes a PNG, JPEG or WebP image. Its first bytes determine the format. Dimensions are checked before
+/// pixels are allocated.
 ///
 /// # Errors
 ///
-/// A readable reason, for an image of another format, a broken one, and one of more than 8192 pixels a side.
+/// A readable reason if the image has another format, is broken, or is larger than 8192 pixels a side.
 pub fn decode_image(bytes: &[u8]) -> Result<DecodedImage, String> {
     let format = match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,

@@ -1,4 +1,5 @@
-//! Limits on the amount that a scene draws. Nodes and rows of tables share meshes, so a small file can ask for any amount.
+//! Limits on the amount that a scene draws. Nodes and rows of instance tables share meshes, so a small file
+//! can request any amount.
 
 use super::accessor::Reader;
 use crate::Mesh;
@@ -10,10 +11,10 @@ const TRIANGLES: Limit = Limit { max: 1 << 26, kind: "triangles" };
 /// Primitives that a scene may draw, counted at each node. Each takes a few hundred bytes in memory and on the GPU.
 const PRIMITIVES: Limit = Limit { max: 1 << 21, kind: "primitives" };
 
-/// Rows that tables of instances may have in all. Each becomes a node.
+/// Rows of all instance tables together. Each becomes a node.
 const ROWS: Limit = Limit { max: 1 << 20, kind: "rows of tables" };
 
-/// Primitives with morph targets that rows may draw. Each has its own vertices, in its own GPU buffers.
+/// Primitives with morph targets drawn by table rows. Each has its own vertices, in its own GPU buffers.
 const MORPHED: Limit = Limit { max: 1 << 14, kind: "primitives with morph targets by tables" };
 
 /// The greatest amount of a kind that a scene may draw.
@@ -32,15 +33,15 @@ pub(super) struct Drawn<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    /// Counts nothing yet.
+    /// Starts with zero counts.
     pub(super) fn new(reader: &'a Reader<'a>) -> Self {
         Self { reader, triangles: 0, primitives: 0, rows: 0, morphed: 0 }
     }
 
-    /// Counts a mesh that `element` draws `times` times. Refuses the mesh if the scene draws too much with it.
+    /// Counts a mesh that `element` draws `times` times. Fails if the scene then draws too much.
     pub(super) fn add(&mut self, mesh: &Mesh, times: usize, element: &str) -> Result<(), Problem> {
         let triangles = mesh.primitives.iter().map(|primitive| primitive.indices.len() as u64 / 3).sum();
-        // A mesh without primitives still takes a node each time.
+        // A mesh without primitives still needs a node each time.
         let primitives = mesh.primitives.len().max(1) as u64;
         TRIANGLES.count(&mut self.triangles, triangles, times, element)?;
         PRIMITIVES.count(&mut self.primitives, primitives, times, element)?;
@@ -60,13 +61,13 @@ impl<'a> Drawn<'a> {
 }
 
 impl Limit {
-    /// Adds an amount, drawn `times` times, to a sum. Refuses a sum above the limit.
+    /// Adds an amount, drawn `times` times, to a sum. Fails if the sum exceeds the limit.
     fn count(&self, sum: &mut u64, amount: u64, times: usize, element: &str) -> Result<(), Problem> {
         *sum = sum.saturating_add(amount.saturating_mul(times as u64));
         if *sum <= self.max {
             return Ok(());
         }
-        let reason = format!("with it the scene draws more than {} {}", self.max, self.kind);
+        let reason = format!("the scene then draws more than {} {}", self.max, self.kind);
         Err(Problem::new(element, reason).hint("Split or simplify the scene"))
     }
 }

@@ -1,11 +1,11 @@
-//! Extensions of glTF: which of them import reads, what the picture lacks where one is ignored, and which a file may
-//! require.
+//! Extensions of glTF: the ones that import reads, the effect of ignoring others on the picture, and the ones
+//! that a file may require.
 
 use std::path::Path;
 
 use crate::SceneError;
 
-/// Extensions that import reads, as far as shadows and their receivers need them.
+/// Extensions that import reads, to the extent that shadows and their receivers need them.
 const READ: [&str; 10] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
@@ -20,10 +20,11 @@ const READ: [&str; 10] = [
     "KHR_xmp",
 ];
 
-/// Extensions that leave triangles where they are, each with what the picture lacks without it. A file may require them.
+/// Ignored extensions that do not change triangles, each with the effect of ignoring it. A file may require
+/// them.
 const HARMLESS: [(&str, &str); 35] = [
     ("ADOBE_materials_clearcoat_specular", "clear coats have no specular colour"),
-    ("ADOBE_materials_thin_transparency", "thin glass is drawn as its alpha says"),
+    ("ADOBE_materials_thin_transparency", "thin glass is drawn by its alpha alone"),
     ("AGI_articulations", "articulations stay at rest"),
     ("AGI_stk_metadata", "its metadata has no effect"),
     ("CESIUM_RTC", "the scene stays at its own origin instead of its place on the globe"),
@@ -37,10 +38,10 @@ const HARMLESS: [(&str, &str); 35] = [
     ("EXT_texture_avif", "textures show their PNG, JPEG or WebP image, or none"),
     (
         "KHR_animation_pointer",
-        "animations of materials, lights, cameras, visibility, weights of meshes and single weights stand still, while nodes \
-         move",
+        "animations of materials, lights, cameras, visibility, weights of meshes and single weights are not played, \
+         only those of nodes",
     ),
-    ("KHR_audio_emitter", "nothing is heard"),
+    ("KHR_audio_emitter", "audio is not played"),
     ("KHR_interactivity", "the scene does not react"),
     ("KHR_materials_anisotropy", "brushed surfaces are drawn with round highlights"),
     ("KHR_materials_clearcoat", "surfaces are drawn without clear coat"),
@@ -63,19 +64,19 @@ const HARMLESS: [(&str, &str); 35] = [
     ("MSFT_texture_dds", "textures show their PNG, JPEG or WebP image, or none"),
 ];
 
-/// Compressions of meshes. Files that do not require them have a plain copy, which is read.
+/// Compressions of meshes. Files that do not require them contain an uncompressed copy, which import reads.
 pub(super) const COMPRESSED: [&str; 3] =
     ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_meshopt_compression"];
 
-/// How to convert a file whose meshes are compressed.
+/// Command that converts a file with compressed meshes.
 pub(super) const DECOMPRESS: &str =
     "Decompress its meshes with glTF-Transform: gltf-transform cp compressed.glb plain.glb";
 
-/// How to convert a file whose textures are compressed for GPUs.
+/// Command that converts a file with textures compressed for GPUs.
 const DECODE_TEXTURES: &str =
     "Convert its textures to PNG with glTF-Transform: gltf-transform ktxdecompress compressed.glb plain.glb";
 
-/// Sentence about an extension that a file uses; `None` for one that import reads.
+/// Returns a sentence about an extension that a file uses, or `None` if import reads it.
 pub(super) fn note(name: &str) -> Option<String> {
     if READ.contains(&name) {
         return None;
@@ -86,8 +87,8 @@ pub(super) fn note(name: &str) -> Option<String> {
     Some(format!("{name} is ignored: {lacking}"))
 }
 
-/// Refuses a file that requires an extension without which its triangles or their holes would be wrong or missing.
-/// `has_plain_textures` says that no texture needs an extension.
+/// Refuses a file that requires an extension without which its triangles or their holes would be wrong or
+/// missing. `has_plain_textures` states that no texture needs an extension.
 pub(super) fn check<'a>(
     path: &Path,
     required: impl Iterator<Item = &'a str>,
@@ -111,7 +112,7 @@ fn harmless(name: &str) -> Option<&'static (&'static str, &'static str)> {
     HARMLESS.iter().find(|(known, _)| *known == name)
 }
 
-/// Whether the extension is a format of textures that import cannot read.
+/// Returns whether the extension is a format of textures that import cannot read.
 fn is_texture_format(name: &str) -> bool {
     matches!(name, "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds")
 }

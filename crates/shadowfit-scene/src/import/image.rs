@@ -1,5 +1,5 @@
-//! Images: external, embedded or in a data URI. An image that cannot be used is not
-//! an error: the texture gets another image, and a note says why.
+//! Images: external, embedded or in a data URI. An unusable image is not an error. The texture gets another
+//! image, and a note gives the reason.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -10,18 +10,19 @@ use super::accessor::Reader;
 use super::uri::{Folder, MAX_FILE_BYTES, read_uri};
 use crate::Image;
 
-/// Greatest width and height, in pixels: the texture size that every GPU of the last decade has.
+/// Greatest width and height, in pixels: every GPU of the last decade supports textures of this size.
 pub(super) const MAX_SIDE: u32 = 8192;
 
 /// Greatest size of all images together, in bytes.
 const MAX_TOTAL_BYTES: u64 = 1 << 30;
 
-/// Loads each image at most once, and only those that a material uses.
+/// Loads each image that a material uses, once.
 pub(crate) struct Images<'a> {
     root: &'a Root,
     folder: Folder<'a>,
     decode: DecodeImage<'a>,
-    /// By index in the file: index in the scene, or why it cannot be used.
+    /// For each image of the file that was loaded: its index in the scene, or the reason why it cannot be
+    /// used.
     loaded: HashMap<usize, Result<usize, String>>,
     decoded: Vec<Image>,
     placeholder: Option<usize>,
@@ -29,13 +30,13 @@ pub(crate) struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    /// Loads nothing yet.
+    /// Starts without images.
     pub(crate) fn new(root: &'a Root, folder: Folder<'a>, decode: DecodeImage<'a>) -> Self {
         let (loaded, decoded) = (HashMap::new(), Vec::new());
         Self { root, folder, decode, loaded, decoded, placeholder: None, bytes_left: MAX_TOTAL_BYTES }
     }
 
-    /// Index of an image in the scene, or why it cannot be used.
+    /// Returns the index of an image in the scene, or the reason why it cannot be used.
     pub(crate) fn load(&mut self, index: usize, reader: &Reader) -> Result<usize, String> {
         if let Some(loaded) = self.loaded.get(&index) {
             return loaded.clone();
@@ -49,7 +50,7 @@ impl<'a> Images<'a> {
         loaded
     }
 
-    /// Index of a white image of one pixel: the base colour factor alone remains.
+    /// Returns the index of a white image of one pixel, which leaves only the base colour factor.
     pub(crate) fn placeholder(&mut self) -> usize {
         *self.placeholder.get_or_insert_with(|| {
             let name = "placeholder".to_owned();
@@ -58,7 +59,7 @@ impl<'a> Images<'a> {
         })
     }
 
-    /// The images for the scene.
+    /// Returns the images for the scene.
     pub(crate) fn finish(self) -> Vec<Image> {
         self.decoded
     }
@@ -80,7 +81,7 @@ impl<'a> Images<'a> {
     }
 }
 
-/// The encoded bytes of an image.
+/// Returns the encoded bytes of an image.
 pub(super) fn encoded<'a>(
     json: &json::Image,
     index: usize,
@@ -109,9 +110,9 @@ pub struct DecodedImage {
     pub width: u32,
     /// Height, in pixels.
     pub height: u32,
-    /// sRGB and opacity, not multiplied, four bytes each pixel, rows from the top.
+    /// sRGB colour and opacity, not premultiplied, four bytes per pixel, rows from the top.
     pub rgba: Vec<u8>,
 }
 
-/// Decodes an image from its encoded bytes; the error is a readable reason.
+/// Decoder of an image from its encoded bytes. The error is a readable reason.
 pub type DecodeImage<'a> = &'a dyn Fn(&[u8]) -> Result<DecodedImage, String>;

@@ -7,7 +7,7 @@ use gltf::json::validation::Checked;
 use super::accessor::{Elements, Integers, Reader};
 use crate::error::Problem;
 
-/// Sets of four influences read at most; files in the wild have one or two.
+/// Sets of four influences read at most. Typical files have one or two.
 const MAX_SETS: u32 = 8;
 
 type Influences = (Vec<[u16; 4]>, Vec<Vec4>);
@@ -47,19 +47,19 @@ pub(crate) fn load(
     Ok(strongest.into_iter().map(normalized).unzip())
 }
 
-/// Keeps the four greatest weights in descending order; what is not positive and finite is no
-/// influence, and its joint is ignored.
+/// Keeps the four greatest weights in descending order. Ignores weights that are not positive and finite,
+/// with their joints.
 fn insert(slots: &mut [(u16, f32); 4], joint: u32, weight: f32) {
     if !(weight > 0.0 && weight.is_finite()) {
         return;
     }
     let Some(slot) = slots.iter().position(|&(_, other)| weight > other) else { return };
     slots[slot..].rotate_right(1);
-    // Joints are u8 or u16 by the specification; a greater one is out of range in every skin.
+    // The specification allows u8 and u16 joints. A greater one is out of range in every skin.
     slots[slot] = (u16::try_from(joint).unwrap_or(u16::MAX), weight);
 }
 
-/// A vertex without influences moves with the first joint.
+/// Normalises the weights of a vertex. A vertex without influences moves with the first joint.
 fn normalized(slots: [(u16, f32); 4]) -> ([u16; 4], Vec4) {
     let weights = Vec4::from_array(slots.map(|(_, weight)| weight));
     let sum = weights.element_sum();

@@ -1,6 +1,6 @@
 //! `EXT_mesh_gpu_instancing`: a node draws its mesh once for each transform of a table.
 //!
-//! Each instance becomes a child of the node, so that all follow its animation. The children stand behind all other
+//! Each instance becomes a child of the node and so follows its animation. The children come after all other
 //! nodes.
 
 use std::collections::HashMap;
@@ -22,22 +22,23 @@ use crate::{Animation, Channel, ChannelValues, Mesh, Node, Scene, Transform};
 /// Attributes of a table that place its instances.
 const TRANSFORMS: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
 
-/// Elements of the budget that a channel takes beside its keys.
+/// Share of the element budget of a channel, in addition to its keys.
 const CHANNEL_ELEMENTS: usize = 8;
 
-/// Number of instances that a node's table declares; 1 where it has none, and where it is broken.
+/// Returns the number of instances that a node's table declares, or 1 if it has no valid table.
 pub(super) fn declared(root: &Root, json: &JsonNode) -> u64 {
     let first = table(json).and_then(Value::as_object).and_then(|table| table.values().next());
     let accessor = first.and_then(Value::as_u64).and_then(|index| root.accessors.get(usize::try_from(index).ok()?));
     accessor.map_or(1, |accessor| accessor.count.0)
 }
 
-/// The attributes of a node's table.
+/// Returns the attributes of a node's table.
 fn table(json: &JsonNode) -> Option<&Value> {
     json.extensions.as_ref()?.others.get("EXT_mesh_gpu_instancing")?.get("attributes")
 }
 
-/// Adds the instances of all nodes with a table and a mesh. Animated morph weights of such a node move its instances.
+/// Adds the instances of all nodes with a table and a mesh. Channels that animate the morph weights of such a
+/// node then animate its instances.
 pub(super) fn expand(
     root: &Root,
     reader: &Reader,
@@ -61,13 +62,13 @@ pub(super) fn expand(
         }
         let table = Table { reader, json: table, element: &element };
         let transforms = table.read(|rows| drawn.add_rows(&scene.meshes[mesh], rows, &element))?;
-        // Without transforms, all instances coincide.
+        // Without transforms, all instances coincide, so the node draws its mesh once.
         let Some(transforms) = transforms else { continue };
         let mut morph_weights = nodes[node].morph_weights.clone();
         morph_weights.truncate(scene.meshes[mesh].targets());
         let first = nodes.len();
         nodes[node].mesh = None;
-        // Rows have no name, so that a long one is not copied a million times. Their parent has it.
+        // Rows have no name, so that a long name is not copied a million times. Their parent keeps it.
         let instance = Node { mesh: Some(mesh), parent: Some(node), morph_weights, ..Node::default() };
         tree.file_index.extend(transforms.iter().map(|_| index));
         nodes.extend(transforms.into_iter().map(|rest| Node { rest, ..instance.clone() }));
@@ -80,7 +81,7 @@ fn has_joints(mesh: &Mesh) -> bool {
     mesh.primitives.iter().any(|primitive| !primitive.joints.is_empty())
 }
 
-/// Notes a table that is ignored. Joints place a skinned mesh, so that all instances would coincide.
+/// Notes an ignored table. Joints place a skinned mesh, so all instances would coincide.
 fn note_joints(element: &str, rows: u64, notes: &mut Notes) {
     notes.add(format!(
         "{element}: ignored: joints place the mesh, which is drawn once instead of {rows} times, also its parts without \
@@ -88,8 +89,8 @@ fn note_joints(element: &str, rows: u64, notes: &mut Notes) {
     ));
 }
 
-/// Replaces the channels that animate the morph weights of nodes with tables by one for each of their rows. `rows` has,
-/// for each such node, the nodes of its rows and the element that is refused if they are too many.
+/// Replaces each channel that animates the morph weights of a node with a table by one channel for each row.
+/// `rows` has, for each such node, the nodes of its rows and the element that a failure names.
 fn move_weights(
     reader: &Reader,
     animation: &mut Animation,
@@ -118,7 +119,8 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Reads its transforms once `accept` accepts their number. `None` if no attribute is a transform.
+    /// Reads its transforms after `accept` accepted their number. Returns `None` if no attribute is a
+    /// transform.
     fn read(&self, accept: impl FnOnce(usize) -> Result<(), Problem>) -> Result<Option<Vec<Transform>>, Problem> {
         let [translation, rotations, scale] = TRANSFORMS.map(|name| self.find(name));
         let [translation, rotations, scale] = [translation?, rotations?, scale?];
@@ -137,7 +139,7 @@ impl Table<'_> {
         Ok(Some((0..count).map(at).collect()))
     }
 
-    /// The accessor of an attribute, with the attribute's name.
+    /// Returns the accessor of an attribute, with the attribute's name.
     fn find(&self, name: &'static str) -> Result<Option<Attribute>, Problem> {
         let Some(value) = self.json.get(name) else { return Ok(None) };
         let index = value.as_u64().and_then(|index| u32::try_from(index).ok());
@@ -146,7 +148,7 @@ impl Table<'_> {
         Ok(Some(Attribute { name, index: Index::new(index.ok_or_else(wrong)?) }))
     }
 
-    /// Number of elements, the same in all attributes.
+    /// Returns the number of elements, which must be equal in all attributes.
     fn count(&self, attributes: impl Iterator<Item = Attribute>) -> Result<Option<usize>, Problem> {
         let mut first: Option<(usize, &str)> = None;
         for attribute in attributes {

@@ -15,30 +15,30 @@ use super::notes::Notes;
 use crate::error::{Problem, entry};
 use crate::{AlphaMode, Image, Material, Texture, Wrap};
 
-/// Greatest emitted radiance kept; beyond it, sums of light would overflow half floats.
+/// Greatest emitted radiance. Sums of greater values would overflow half floats.
 const MAX_EMISSIVE: f32 = 65_504.0;
 
-/// What a primitive needs to know of its material.
+/// Properties of a material that its primitives need.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Look {
     /// Index into the scene's materials.
     pub(crate) material: usize,
     /// Set of texture coordinates that the textures read.
     pub(crate) uv_set: u32,
-    /// Texture transform of the normal map, if there is one.
+    /// Texture transform of the normal map, if the material has one.
     pub(crate) uv_from_texcoord: Option<[Vec3; 2]>,
     /// Whether the material cuts out all of its surface.
     pub(crate) is_hidden: bool,
 }
 
-/// Loads each material at most once, and only those that a primitive uses.
+/// Loads each material that a primitive uses, once.
 pub(crate) struct Materials<'a> {
     root: &'a Root,
     reader: &'a Reader<'a>,
     images: Images<'a>,
     looks: HashMap<usize, Look>,
     loaded: Vec<Material>,
-    /// Number of blended ones.
+    /// Number of blended materials.
     blended: usize,
 }
 
@@ -51,12 +51,12 @@ struct Use<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// Holds the default material only.
+    /// Starts with the default material only.
     pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, images: Images<'a>) -> Self {
         Self { root, reader, images, looks: HashMap::new(), loaded: vec![Material::default()], blended: 0 }
     }
 
-    /// The look of a primitive's material, loaded if need be.
+    /// Returns the look of a primitive's material. Loads the material on first use.
     pub(crate) fn look(
         &mut self,
         material: Option<Index<json::Material>>,
@@ -73,7 +73,7 @@ impl<'a> Materials<'a> {
         Ok(look)
     }
 
-    /// The materials and images for the scene.
+    /// Returns the materials and images for the scene.
     pub(crate) fn finish(self, notes: &mut Notes) -> (Vec<Material>, Vec<Image>) {
         if self.blended > 0 {
             notes.add(format!(
@@ -124,7 +124,7 @@ impl<'a> Materials<'a> {
         Ok(Look { material: self.loaded.len() - 1, uv_set, uv_from_texcoord, is_hidden: is_hidden(json) })
     }
 
-    /// A texture; `None` where its image cannot be used.
+    /// Returns a texture, or `None` if it has no usable image.
     fn texture(&mut self, used: &Use, notes: &mut Notes) -> Result<Option<Texture>, Problem> {
         let texture = entry(&self.root.textures, used.texture.value(), "texture", &used.element)?;
         let element = format!("textures[{}]", used.texture);
@@ -143,7 +143,7 @@ impl<'a> Materials<'a> {
         Ok(Some(loaded))
     }
 
-    /// The first of a texture's images that can be used; notes say why those before it cannot.
+    /// Returns the first usable image of a texture. Adds notes about the unusable images before it.
     fn image(&mut self, sources: &[usize], element: &str, notes: &mut Notes) -> Option<usize> {
         if sources.is_empty() {
             notes.add(format!("{element}: replaced by a placeholder: it has no PNG, JPEG or WebP image"));
@@ -175,7 +175,7 @@ pub(super) fn textures(json: &json::Material) -> impl Iterator<Item = Index<text
     base.into_iter().chain(json.normal_texture.as_ref().map(|info| info.index))
 }
 
-/// Whether one of a texture's images is not declared as a format that import cannot decode.
+/// Returns whether at least one of a texture's images does not declare a format that import cannot decode.
 pub(super) fn has_plain_image(root: &Root, texture: &texture::Texture) -> bool {
     // Names of the types in `mimeType` and data URIs, and ends of file names.
     const UNREAD: [&str; 3] = ["ktx2", "avif", "dds"];
@@ -188,10 +188,10 @@ pub(super) fn has_plain_image(root: &Root, texture: &texture::Texture) -> bool {
     sources(texture, root.images.len(), "").is_ok_and(|all| all.iter().any(|&source| is_plain(&root.images[source])))
 }
 
-/// Images of a texture, the preferred one first: that of `EXT_texture_webp`, then the one for readers without it. All
-/// are below `count`, the number of images in the file.
+/// Returns the images of a texture by preference: first the image of `EXT_texture_webp`, then the image for
+/// readers without it. All indices are below `count`, the number of images in the file.
 fn sources(texture: &texture::Texture, count: usize, element: &str) -> Result<Vec<usize>, Problem> {
-    // What the gltf crate gives for a texture without an image of its own.
+    // The gltf crate's value for a texture without an image of its own.
     let absent = u32::MAX as usize;
     let mut sources = Vec::new();
     sources.extend(webp_source(texture, element)?);
@@ -202,7 +202,7 @@ fn sources(texture: &texture::Texture, count: usize, element: &str) -> Result<Ve
     }
 }
 
-/// The image that `EXT_texture_webp` names; the gltf crate leaves this extension unparsed.
+/// Returns the image that `EXT_texture_webp` names. The gltf crate leaves this extension unparsed.
 fn webp_source(texture: &texture::Texture, element: &str) -> Result<Option<usize>, Problem> {
     let extension = texture.extensions.as_ref().and_then(|extensions| extensions.others.get("EXT_texture_webp"));
     let Some(source) = extension.and_then(|extension| extension.get("source")) else { return Ok(None) };
@@ -225,7 +225,7 @@ fn texture_use(info: &texture::Info, element: String) -> Use<'_> {
     Use { element, texture: info.index, uv_set, transform }
 }
 
-/// Whether a mask cuts out all of a surface: no alpha reaches a cutoff above 1.
+/// Returns whether a mask cuts out all of a surface, because its cutoff is above 1.
 fn is_hidden(json: &json::Material) -> bool {
     let is_masked = matches!(json.alpha_mode, Checked::Valid(JsonAlpha::Mask));
     is_masked && json.alpha_cutoff.is_some_and(|cutoff| cutoff.0 > 1.0)
@@ -237,8 +237,8 @@ const BLACK_DIFFUSE: f32 = 0.04;
 /// Least component of a specular colour that makes a black surface a metal. Gems, the brightest non-metals, reflect 0.17.
 const METAL_SPECULAR: f32 = 0.25;
 
-/// `KHR_materials_pbrSpecularGlossiness`: base colour and alpha of materials from before metallic-roughness. It reflects
-/// like a metal where it is black with a bright specular colour, and like a non-metal elsewhere.
+/// `KHR_materials_pbrSpecularGlossiness`: base colour and alpha of materials from before metallic-roughness.
+/// A black material with a bright specular colour is read as a metal, any other one as a non-metal.
 #[derive(serde::Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 struct SpecularGlossiness {
@@ -284,7 +284,7 @@ impl SpecularGlossiness {
         material.roughness = 1.0 - unit(self.glossiness_factor);
         if self.reflection_texture.is_some() {
             notes.add(format!(
-                "{name}: specularGlossinessTexture is not read: glossiness is uniform, and no surface a metal"
+                "{name}: specularGlossinessTexture is not read: glossiness is uniform, and no surface is a metal"
             ));
         } else if let Some(metal) = self.metal() {
             material.base_color = metal.extend(material.base_color.w);
@@ -306,18 +306,18 @@ impl SpecularGlossiness {
     }
 }
 
-/// The gltf crate leaves this extension of normal textures unparsed.
+/// Returns the texture transform of a normal texture, which the gltf crate leaves unparsed.
 fn normal_transform(info: &json::NormalTexture) -> Option<TextureTransform> {
     let value = info.extensions.as_ref()?.others.get("KHR_texture_transform")?;
     deserialize::from_value(value.clone()).ok()
 }
 
-/// The material without its textures.
+/// Returns the material without its textures.
 fn plain(json: &json::Material, element: &str, notes: &mut Notes) -> Material {
     let pbr = &json.pbr_metallic_roughness;
     let mut metallic = unit(pbr.metallic_factor.0);
     if pbr.metallic_roughness_texture.is_some() {
-        // The factors only scale that texture; 1, their default, would make everything a mirror.
+        // The factors only scale that texture. 1, their default, would turn everything into a mirror.
         notes.add("metallic-roughness textures are not read: their materials count as not metallic");
         metallic = 0.0;
     }
@@ -352,17 +352,17 @@ fn alpha(json: &json::Material, element: &str, notes: &mut Notes) -> AlphaMode {
     }
 }
 
-/// Clamped to 0..=1, NaN to 0.
+/// Clamps to 0..=1. NaN becomes 0.
 pub(crate) fn unit(value: f32) -> f32 {
     clamped(value, 1.0)
 }
 
-/// Clamped to 0..=`max`, NaN to 0.
+/// Clamps to 0..=`max`. NaN becomes 0.
 fn clamped(value: f32, max: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value.clamp(0.0, max) }
 }
 
-/// Repeats, is filtered and not transformed.
+/// Returns a texture that repeats, is filtered and has no transform.
 fn blank() -> Texture {
     Texture { image: 0, wrap: [Wrap::Repeat; 2], nearest: false, uv_from_texcoord: [Vec3::X, Vec3::Y] }
 }
@@ -375,8 +375,8 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
     }
 }
 
-/// Translation * rotation * scale of `KHR_texture_transform`. Positive angles turn texture coordinates
-/// counter-clockwise as seen in the image, whose v points down.
+/// Returns the matrix translation * rotation * scale of `KHR_texture_transform`. Positive angles rotate
+/// texture coordinates counter-clockwise in the image, whose v points down.
 fn rows(transform: &TextureTransform) -> [Vec3; 2] {
     let ([x, y], [scale_u, scale_v]) = (transform.offset.0, transform.scale.0);
     let (sin, cos) = transform.rotation.0.sin_cos();

@@ -20,17 +20,18 @@ use crate::error::Problem;
 use crate::limits::MAX_COORDINATE;
 use crate::{Geometry, MorphTarget, Primitive};
 
-/// Indices in the memory of one element of the budget.
+/// Indices that count as one element of the budget, by their memory.
 const INDICES_PER_ELEMENT: usize = 4;
 
-/// Loads geometry once, however many primitives share it.
+/// Loads each geometry once. Primitives share it.
 pub(crate) struct Geometries<'a> {
     reader: &'a Reader<'a>,
     known: HashMap<Key, Arc<Geometry>>,
     used: UsedVertices,
 }
 
-/// All that decides the geometry of a primitive: its accessors, and the textures' coordinates.
+/// Key of a primitive's geometry: its accessors, its set of texture coordinates and the transform of its
+/// normal map.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     mode: u32,
@@ -59,12 +60,12 @@ impl Key {
 }
 
 impl<'a> Geometries<'a> {
-    /// Loads nothing yet.
+    /// Starts without geometries.
     pub(crate) fn new(reader: &'a Reader<'a>) -> Self {
         Self { reader, known: HashMap::new(), used: UsedVertices::default() }
     }
 
-    /// Loads a primitive with the look of its material; `None` where it has no triangles to draw.
+    /// Loads a primitive with the look of its material. Returns `None` if it has no triangles to draw.
     pub(crate) fn load(
         &mut self,
         json: &mesh::Primitive,
@@ -132,7 +133,7 @@ impl<'a> Geometries<'a> {
     }
 }
 
-/// Refuses a primitive whose vertices are there in compressed form only.
+/// Refuses a primitive whose vertices exist in compressed form only.
 fn check_plain(
     reader: &Reader,
     json: &mesh::Primitive,
@@ -146,7 +147,7 @@ fn check_plain(
     Err(Problem::new(element, format!("it is compressed by {name} and has no plain copy")).hint(DECOMPRESS))
 }
 
-/// Indices of a triangle list, all below `count`.
+/// Returns the indices of a triangle list, all below `count`.
 fn indices(
     reader: &Reader,
     json: &mesh::Primitive,
@@ -182,17 +183,17 @@ struct Attributes<'a> {
     reader: &'a Reader<'a>,
     json: &'a mesh::Primitive,
     element: &'a str,
-    /// Number of vertices in the file; all attributes must agree.
+    /// Number of vertices in the file. All attributes must have this length.
     count: usize,
-    /// The vertices that its triangles use.
+    /// Vertices that the primitive's triangles use.
     vertices: Elements<'a>,
 }
 
-/// Repairs and computes what the file leaves open.
+/// Repairs the geometry and computes missing parts.
 fn complete(geometry: &mut Geometry, mode: Mode, look: &Look, notes: &mut Notes) {
     if geometry.morphs.is_empty() && geometry.joints.is_empty() {
         let dropped = surface::drop_zero_area(geometry);
-        // Strips join their parts by such triangles on purpose.
+        // Strips use such triangles to join their parts.
         if mode != Mode::TriangleStrip {
             notes.count(Tally::ZeroAreaTriangles, dropped);
         }
@@ -222,8 +223,8 @@ impl Attributes<'_> {
         Some((index, format!("{}.attributes.{}", self.element, semantic.to_string())))
     }
 
-    /// Elements of the used vertices, from an accessor that must have one for each vertex. The count is checked before any
-    /// is read.
+    /// Reads the used vertices from an accessor. Before reading, checks that the accessor has an element for
+    /// each vertex.
     fn elements<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -234,7 +235,7 @@ impl Attributes<'_> {
         self.reader.some_floats(index, element, integers, self.vertices)
     }
 
-    /// Positions or displacements: finite and not beyond what f32 can compute with.
+    /// Returns positions or displacements. Fails if one is not finite or exceeds [`MAX_COORDINATE`].
     fn positions(&self, index: Index<Accessor>, element: &str) -> Result<Vec<Vec3>, Problem> {
         let values = self.elements(index, element, Integers::AsDeclared)?;
         let values: Vec<Vec3> = values.into_iter().map(Vec3::from_array).collect();
@@ -261,7 +262,7 @@ impl Attributes<'_> {
         Ok(values.into_iter().map(from).collect())
     }
 
-    /// Texture coordinates of a set, none where it is absent.
+    /// Returns the texture coordinates of a set. Empty if the set is absent.
     fn uvs(&self, set: u32, notes: &mut Notes) -> Result<Vec<Vec2>, Problem> {
         let mut uvs = self.vectors(&Semantic::TexCoords(set), Vec2::from_array)?;
         let broken = uvs.iter_mut().filter(|uv| !uv.is_finite());
@@ -285,7 +286,7 @@ impl Attributes<'_> {
         Ok(colors)
     }
 
-    /// Number of vertices that its triangles use.
+    /// Returns the number of vertices that the primitive's triangles use.
     fn used(&self) -> usize {
         match self.vertices {
             Elements::All => self.count,

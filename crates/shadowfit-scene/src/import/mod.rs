@@ -1,8 +1,8 @@
 //! Import of glTF 2.0 scenes from files that may be broken or malicious.
 //!
-//! The gltf crate parses the JSON; everything behind it (GLB chunks, URIs, accessors, indices of any
-//! kind) is checked here before it is used, because the crate's own readers may panic on bad data.
-//! A file loads completely or is refused with a [`SceneError`]; repairs end up in [`Scene::notes`].
+//! The gltf crate parses the JSON. This module checks everything else (GLB chunks, URIs, accessors, all
+//! indices) before use, because the crate's own readers may panic on bad data. A file either loads completely
+//! or is refused with a [`SceneError`]. [`Scene::notes`] lists repairs.
 
 mod accessor;
 mod animation;
@@ -53,7 +53,7 @@ use self::uri::{MAX_FILE_BYTES, file_size, read_file};
 use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Scene, SceneError, Skin};
 
-/// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
+/// Loads the default scene of a `.gltf` or `.glb` file, or its first scene if there is no default.
 ///
 /// # Errors
 /// If the file cannot be read, is not valid glTF 2.0, requires an extension that is not supported, or draws nothing;
@@ -63,16 +63,16 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     load_gltf_scene(path, None)
 }
 
-/// Loads scene number `scene` of a file, counted from 0; `None` is the default one.
+/// Loads scene number `scene` of a file, counted from 0. `None` loads the default scene.
 ///
 /// # Errors
-/// As [`load_gltf`], and if the file has no such scene.
+/// As [`load_gltf`]. Also fails if the file does not have the scene.
 #[cfg(not(target_family = "wasm"))]
 pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
     load_gltf_with_progress(path, scene, &|_, _| ())
 }
 
-/// A step of loading a file, in their order.
+/// A step of loading a file, in the order of execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LoadStep {
     /// The file is read.
@@ -83,7 +83,8 @@ pub enum LoadStep {
     Decode,
 }
 
-/// The same, and tells each step before it begins, with what is known of the scene's size by then.
+/// Loads a scene like [`load_gltf_scene`]. Calls `progress` before each step, with the scene's size as known
+/// so far.
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
@@ -105,10 +106,11 @@ pub fn load_gltf_with_progress(
     load(path, &source, scene, size, progress)
 }
 
-/// Loads scene number `scene` of the file `name` (`None`: its default one) without a file system, such as in a browser:
-/// `files` is the content of that file and of those that it refers to, by their paths relative to it. Files that were
-/// chosen one by one have no folders, so one of the same name alone is taken, too. `decode` decodes the images: `decode_image`
-/// of this crate, or in a browser what it decoded of [`gltf_images`].
+/// Loads scene number `scene` of the file `name` without a file system, such as in a browser. `None` loads
+/// the default scene. `files` holds the contents of that file and the files that it refers to, by their paths
+/// relative to it. Files that were chosen one by one have no folders, so a file with only the right name is
+/// accepted, too. `decode` decodes the images: `decode_image` of this crate, or in a browser a function that
+/// returns the decoded results of [`gltf_images`].
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
@@ -122,7 +124,7 @@ pub fn load_gltf_from_memory(
     let path = Path::new(name);
     let bytes = files.get(name).ok_or_else(|| SceneError::Unreadable {
         path: path.to_owned(),
-        reason: "it is not there".to_owned(),
+        reason: "the file is missing".to_owned(),
         hint: "Open the file again",
     })?;
     let size = SceneSize::of_file(bytes.len() as u64);
@@ -131,8 +133,8 @@ pub fn load_gltf_from_memory(
     load(path, &source, scene, size, progress)
 }
 
-/// The encoded images of a file that [`load_gltf_from_memory`] would load, to be decoded before that: what is missing or
-/// broken is left out.
+/// Returns the encoded images of a file, to be decoded before [`load_gltf_from_memory`]. Skips missing and
+/// broken images.
 pub fn gltf_images(name: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<Vec<u8>> {
     let parsed = files.get(name).and_then(|bytes| container::parse(Path::new(name), bytes, |_| ()).ok());
     let Some(mut source) = parsed else { return Vec::new() };
@@ -142,7 +144,7 @@ pub fn gltf_images(name: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<Vec<u8>
     images.filter_map(|(index, json)| Some(image::encoded(json, index, folder, &reader).ok()?.into_owned())).collect()
 }
 
-/// The content of a file, and the way to the files and images that it refers to.
+/// The content of a file, and access to the files and images that it refers to.
 struct File<'a> {
     bytes: &'a [u8],
     folder: Folder<'a>,
@@ -225,7 +227,7 @@ fn import<'a>(
     Ok(scene)
 }
 
-/// Loads the meshes that nodes draw, and enters them at the nodes.
+/// Loads the meshes that nodes draw, and stores their indices in the nodes.
 fn meshes<'a>(
     root: &'a Root,
     reader: &'a Reader<'a>,
@@ -274,7 +276,7 @@ fn load_mesh(
     Ok(Mesh { name: json.name.clone().unwrap_or_default(), primitives, morph_weights })
 }
 
-/// Loads the skins that deform a mesh, and enters them at the nodes.
+/// Loads the skins that deform a mesh, and stores their indices in the nodes.
 fn skins(root: &Root, reader: &Reader, tree: &Tree, nodes: &mut [Node], meshes: &[Mesh]) -> Result<Vec<Skin>, Problem> {
     let mut skins: Vec<Skin> = Vec::new();
     let mut loaded = HashMap::new();

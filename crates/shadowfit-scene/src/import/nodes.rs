@@ -8,18 +8,19 @@ use crate::{Node, Transform};
 
 /// Nodes that belong to the chosen scene.
 pub(crate) struct Tree {
-    /// The nodes, every parent before its children, meshes and skins not yet filled in.
+    /// Nodes, every parent before its children. Their meshes and skins are set later.
     pub(crate) nodes: Vec<Node>,
     /// Index in the file of each node.
     pub(crate) file_index: Vec<usize>,
-    /// Index into `nodes` of each node of the file; `None` where it is not part of the scene.
+    /// For each node of the file, its index in `nodes`, or `None` if it is not part of the scene.
     pub(crate) scene_index: Vec<Option<usize>>,
-    /// Whether each node of `nodes` is hidden by `KHR_node_visibility`, its own or that of an ancestor.
+    /// For each node of `nodes`, whether `KHR_node_visibility` of the node or of an ancestor hides it.
     pub(crate) hidden: Vec<bool>,
 }
 
-/// Collects the nodes of a scene: the given one, else the default one, else the first; in a file
-/// without scenes all nodes without a parent. `transforms` has the transform of each node of the file.
+/// Collects the nodes of a scene: the given scene, else the default scene, else the first. In a file without
+/// scenes, collects all nodes without a parent and their descendants. `transforms` has the transform of each
+/// node of the file.
 pub(crate) fn collect(root: &Root, transforms: &[Transform], scene: Option<usize>) -> Result<Tree, Problem> {
     let (element, roots) = roots(root, scene)?;
     let scene_index = vec![None; root.nodes.len()];
@@ -49,7 +50,7 @@ pub(crate) fn collect(root: &Root, transforms: &[Transform], scene: Option<usize
 
 type Roots = (String, Vec<Index<scene::Node>>);
 
-/// The element that lists the root nodes, and those.
+/// Returns the root nodes and the name of the element that lists them.
 fn roots(root: &Root, scene: Option<usize>) -> Result<Roots, Problem> {
     let default = root.scene.map(|index| index.value());
     if let Some(index) = scene.or(default).or((!root.scenes.is_empty()).then_some(0)) {
@@ -57,7 +58,7 @@ fn roots(root: &Root, scene: Option<usize>) -> Result<Roots, Problem> {
         return match root.scenes.get(index) {
             Some(scene) => Ok((format!("{element}.nodes"), scene.nodes.clone())),
             None => Err(Problem::new(element, format!("the file has {} scenes", root.scenes.len()))
-                .hint("Ask for a scene that the file has, counted from 0")),
+                .hint("Choose one of the file's scenes, counted from 0")),
         };
     }
     let mut is_child = vec![false; root.nodes.len()];
@@ -70,7 +71,7 @@ fn roots(root: &Root, scene: Option<usize>) -> Result<Roots, Problem> {
     Ok(("nodes".to_owned(), all.filter(|index| !is_child[index.value()]).collect()))
 }
 
-/// Whether the node itself is visible, which is the default of `KHR_node_visibility`.
+/// Returns whether the node itself is visible. `KHR_node_visibility` defaults to visible.
 fn is_visible(json: &scene::Node) -> bool {
     let extension = json.extensions.as_ref().and_then(|own| own.others.get("KHR_node_visibility"));
     extension.and_then(|own| own.get("visible")).and_then(Value::as_bool).unwrap_or(true)
@@ -86,7 +87,7 @@ fn node(index: usize, json: &scene::Node, parent: Option<usize>, rest: Transform
     Ok(Node { name, parent, rest, mesh: None, skin: None, morph_weights: weights })
 }
 
-/// Refuses weights of morph targets that f32 cannot compute with.
+/// Refuses morph weights above [`MAX_MORPH_WEIGHT`] and weights that are not finite.
 pub(super) fn check_weights(weights: &[f32], element: &str) -> Result<(), Problem> {
     let wrong = weights.iter().find(|weight| !weight.is_finite() || weight.abs() > MAX_MORPH_WEIGHT);
     let Some(weight) = wrong else { return Ok(()) };

@@ -1,11 +1,11 @@
-//! Readable notes about what import skipped, replaced or repaired.
+//! Readable notes about elements that import skipped, replaced or repaired.
 
 use std::collections::BTreeMap;
 
-/// Notes kept one by one; more are only counted, so that a broken file cannot fill the memory.
+/// Notes stored as text. Further notes are only counted, so that a broken file cannot fill the memory.
 const MAX_NOTES: usize = 64;
 
-/// What can happen to many elements and has one note with their number.
+/// Kinds of repair that can affect many elements. Each gets one note with the number of elements.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Tally {
     /// Triangles without area.
@@ -22,7 +22,7 @@ impl Tally {
     fn sentence(self, count: usize) -> String {
         let what = match self {
             Self::ZeroAreaTriangles => "triangles without area dropped",
-            Self::RepairedNormals => "unusable normals computed anew",
+            Self::RepairedNormals => "unusable normals recomputed",
             Self::RepairedUvs => "texture coordinates that are not finite set to 0",
             Self::ComputedNormals => "primitives without normals given flat ones",
         };
@@ -39,7 +39,7 @@ pub(crate) struct Notes {
 }
 
 impl Notes {
-    /// Adds a note once.
+    /// Adds a note, unless it was added before.
     pub(crate) fn add(&mut self, note: impl Into<String>) {
         let note = note.into();
         if self.lines.len() >= MAX_NOTES {
@@ -56,7 +56,7 @@ impl Notes {
         }
     }
 
-    /// All notes, sums last.
+    /// Returns all notes, sums last.
     pub(crate) fn finish(self) -> Vec<String> {
         let mut lines = self.lines;
         if self.left_out > 0 {

@@ -1,5 +1,5 @@
-//! The origin of a scene. Positions in f32 are coarse far from it, so a scene that lies far from the origin of its file
-//! gets another one.
+//! The origin of a scene. Positions in f32 are coarse far from it, so a scene that lies far from the file's
+//! origin gets another one.
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -14,22 +14,22 @@ use crate::error::Problem;
 use crate::limits::MAX_COORDINATE;
 use crate::{Geometry, Scene};
 
-/// Greatest coordinate of the middle of a scene that keeps the origin of its file, in metres. Up to twice as far, f32
-/// positions are exact to half a millimetre.
+/// Greatest coordinate of a scene's middle at which the scene keeps the file's origin, in metres. Up to twice
+/// this distance, f32 positions are exact to half a millimetre.
 const NEAR_ORIGIN: f64 = 4096.0;
 
-/// Least ratio of the distances of most triangles from the old and the new origin. A smaller ratio saves less than two
-/// bits of precision, and a large scene would move that begins at its origin.
+/// Least factor by which a new origin must reduce the median distance of the triangles. A smaller factor
+/// would gain less than two bits of precision, and would move a large scene that starts at its origin.
 const NEARER: f64 = 4.0;
 
 /// Least distance at which neighbouring f32 positions are more than a millimetre apart, in metres.
 const COARSE: f64 = 16_384.0;
 
-/// Share of a scene's triangles near the origin of its file with which it keeps that origin.
+/// Share of a scene's triangles near the file's origin from which the scene keeps that origin.
 const MANY: f64 = 0.4;
 
-/// Sets the origin of a scene to the middle of most of its triangles if these lie far from the origin of the file. Notes
-/// the new origin, and parts that are placed coarsely all the same.
+/// Moves the scene's origin to the median of its triangles if these lie far from the file's origin. Notes the
+/// new origin, and parts whose positions remain coarse.
 pub(super) fn place(scene: &mut Scene, tree: &Tree, reader: &Reader, notes: &mut Notes) -> Result<(), Problem> {
     let parts = parts(scene, tree, reader)?;
     let middle = DVec3::from_array([0, 1, 2].map(|axis| median(&parts, |part| part.middle[axis])));
@@ -54,8 +54,8 @@ pub(super) fn place(scene: &mut Scene, tree: &Tree, reader: &Reader, notes: &mut
     Ok(())
 }
 
-/// Whether many triangles lie near the origin of the file, and would be placed coarsely from another one: a place with a
-/// detailed backdrop far away.
+/// Returns whether many triangles lie near the file's origin and would be coarse relative to `origin`. This
+/// is the case for a place with a detailed backdrop far away.
 fn has_place_here(parts: &[Part], origin: DVec3) -> bool {
     let all: u64 = parts.iter().map(|part| part.triangles).sum();
     let here = parts.iter().filter(|part| part.farthest(DVec3::ZERO) <= NEAR_ORIGIN && part.nearest(origin) >= COARSE);
@@ -81,7 +81,8 @@ impl Part {
     }
 }
 
-/// Returns the median over the triangles of a scene, the upper one of two. 0 for a scene without parts.
+/// Returns the median over the triangles of a scene, the upper one of two. Returns 0 for a scene without
+/// parts.
 fn median(parts: &[Part], of: impl Fn(&Part) -> f64) -> f64 {
     let half = parts.iter().map(|part| part.triangles).sum::<u64>() / 2;
     let mut values: Vec<(f64, u64)> = parts.iter().map(|part| (of(part), part.triangles)).collect();
@@ -94,7 +95,7 @@ fn median(parts: &[Part], of: impl Fn(&Part) -> f64) -> f64 {
     at_half.map_or(0.0, |(value, _)| value)
 }
 
-/// Bounds of a geometry in its mesh, and the joints that move it.
+/// Bounds of a geometry in mesh space, and the joints that move it.
 struct Shape {
     bounds: Option<Aabb>,
     joints: Vec<u16>,
@@ -109,8 +110,8 @@ impl Shape {
     }
 }
 
-/// Bounds all instances of the scene by the corners of their geometry's box: no vertex is visited per node, so that
-/// sharing a mesh stays cheap. Refuses positions that f32 cannot compute with.
+/// Computes the bounds of all instances from the corners of their geometry's box. Visits no vertex per node,
+/// so sharing a mesh stays cheap. Fails if positions exceed [`MAX_COORDINATE`].
 fn parts(scene: &Scene, tree: &Tree, reader: &Reader) -> Result<Vec<Part>, Problem> {
     let rest = scene.pose(None, 0.0);
     let skins: Vec<Vec<Mat4>> = scene.skins.iter().map(|skin| rest.world_from_mesh_by_joint(skin)).collect();
@@ -143,7 +144,7 @@ fn parts(scene: &Scene, tree: &Tree, reader: &Reader) -> Result<Vec<Part>, Probl
     Ok(parts)
 }
 
-/// World bounds of a box; `None` where they reach beyond what f32 can compute with.
+/// Returns the world bounds of a box, or `None` if they exceed [`MAX_COORDINATE`].
 fn world_bounds(bounds: Aabb, world_from_local: Mat4) -> Option<Aabb> {
     let corners = bounds.corners().map(|corner| world_from_local.transform_point3(corner));
     let is_near = |corner: &Vec3| corner.is_finite() && corner.abs().max_element() <= MAX_COORDINATE;

@@ -1,15 +1,16 @@
-//! Repairs of JSON that is valid glTF 2.0, but not as the gltf crate reads it.
+//! Repairs of JSON that is valid glTF 2.0 but that the gltf crate rejects.
 
 use gltf::json::Value;
 
-/// Whole numbers up to here are exact in f64.
+/// Greatest whole number up to which all whole numbers are exact in f64.
 const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Completes the JSON of a file:
 ///
-/// - whole numbers that are written with a fraction, such as `24.0`, become integers,
-/// - scenes without nodes get an empty list of them,
-/// - animation channels that `KHR_animation_pointer` points at a node's transform or morph weights name that node instead,
+/// - whole numbers with a fraction, such as `24.0`, become integers,
+/// - scenes without nodes get an empty list of nodes,
+/// - animation channels whose `KHR_animation_pointer` points at a node's transform or morph weights get that
+///   node as target,
 /// - other animation channels without a target node, which extensions define, are removed.
 pub(super) fn complete(json: &mut Value) {
     make_whole(json);
@@ -32,8 +33,8 @@ pub(super) fn complete(json: &mut Value) {
     }
 }
 
-/// Returns the node and property that a channel points at, such as 3 and `scale` for `/nodes/3/scale`. `None` for pointers
-/// to anything else.
+/// Returns the node and property that a channel points at, such as 3 and `scale` for `/nodes/3/scale`.
+/// Returns `None` for any other pointer.
 fn pointed_at(channel: &Value) -> Option<(usize, &'static str)> {
     let pointer = channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"].as_str()?;
     let (node, property) = pointer.strip_prefix("/nodes/")?.split_once('/')?;
@@ -45,7 +46,7 @@ fn items<'a>(json: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Va
     json.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten()
 }
 
-/// JSON that was parsed is not nested deeper than its parser allows, so recursion is safe.
+/// Converts whole numbers to integers. Recursion is safe, because the parser limits the nesting depth.
 fn make_whole(json: &mut Value) {
     match json {
         Value::Array(values) => values.iter_mut().for_each(make_whole),

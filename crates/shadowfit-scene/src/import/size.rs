@@ -1,4 +1,4 @@
-//! How much there is to load: what a file says about itself before its content is decoded.
+//! Size of a scene, read from the file before its content is decoded.
 
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
@@ -8,36 +8,36 @@ use super::instancing;
 use super::nodes::Tree;
 use super::uri::{Folder, uri_size};
 
-/// The amounts that decide how long a file takes to be loaded and its scene to be made ready. They are what the file
-/// claims, and may be wrong where it cannot be loaded.
+/// Amounts that decide how long it takes to load a file and to prepare its scene. The file declares them, so
+/// they may be wrong if it is broken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneSize {
     /// Bytes of the file.
     pub file: u64,
-    /// Bytes of JSON in it; 0 until it has been read.
+    /// Bytes of JSON in the file. 0 until it has been read.
     pub json: u64,
-    /// Nodes of the scene; 0 until the JSON has been parsed, as all that follows.
+    /// Nodes of the scene. This and the following fields are 0 until the JSON has been parsed.
     pub nodes: u64,
-    /// Triangles of the meshes that it draws, each mesh once.
+    /// Triangles of the meshes that the scene draws, each mesh counted once.
     pub triangles: u64,
-    /// Triangles that it draws, every node counted.
+    /// Triangles that the scene draws, counted at every node.
     pub drawn: u64,
-    /// Bytes of its images, as they are encoded.
+    /// Bytes of the encoded images.
     pub images: u64,
 }
 
 impl SceneSize {
-    /// That of a file of so many bytes which has not been read.
+    /// Returns the size of a file of `bytes` bytes that has not been read.
     pub(super) fn of_file(bytes: u64) -> Self {
         Self { file: bytes, ..Self::default() }
     }
 
-    /// The same with what the JSON says about a scene.
+    /// Adds the numbers that the JSON declares for a scene.
     pub(super) fn with_content(self, root: &Root, tree: &Tree, folder: Folder<'_>) -> Self {
-        // The counts are claims, so that their sums may be too large for a number.
+        // The counts are unchecked, so their sums may overflow.
         let sum = u64::saturating_add;
         let triangles = |mesh: &Mesh| mesh.primitives.iter().map(|primitive| triangles(root, primitive)).fold(0, sum);
-        // Each with whether a node before drew it.
+        // For each mesh: its triangles, and whether an earlier node drew it.
         let mut meshes: Vec<(u64, bool)> = root.meshes.iter().map(|mesh| (triangles(mesh), false)).collect();
         let (mut all, mut drawn) = (0_u64, 0_u64);
         for (node, _) in tree.file_index.iter().zip(&tree.hidden).filter(|(_, hidden)| !**hidden) {
@@ -54,14 +54,14 @@ impl SceneSize {
     }
 }
 
-/// Triangles of a primitive, as if they were in a list.
+/// Returns the number of triangles of a primitive, counted as a triangle list.
 fn triangles(root: &Root, primitive: &mesh::Primitive) -> u64 {
     let positions = || primitive.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
     let accessor = primitive.indices.or_else(positions).and_then(|index| root.accessors.get(Index::value(&index)));
     accessor.map_or(0, |accessor| accessor.count.0 / 3)
 }
 
-/// Bytes of an image; 0 where they are unknown.
+/// Returns the bytes of an encoded image, or 0 if unknown.
 fn encoded(root: &Root, image: &image::Image, folder: Folder<'_>) -> u64 {
     match (&image.uri, image.buffer_view) {
         (Some(uri), _) => uri_size(folder, uri),

@@ -46,7 +46,7 @@ fn bind_matrices(reader: &Reader, json: &skin::Skin, element: &str) -> Result<Ve
     }
 }
 
-/// Checks that a mesh uses only joints that the skin has.
+/// Checks that the skin has all joints that a mesh uses.
 pub(crate) fn check_joints(mesh: &Mesh, skin: &Skin, element: &str) -> Result<(), Problem> {
     let count = skin.joints.len();
     for (index, primitive) in mesh.primitives.iter().enumerate() {

@@ -1,14 +1,14 @@
 //! Repairs and completes the surface of a geometry: triangles without area, normals, tangents.
 //!
-//! Areas and face normals are computed in f64: products of f32 coordinates neither overflow nor
-//! vanish there.
+//! Areas and face normals are computed in f64, where products of f32 coordinates neither overflow nor
+//! underflow.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::Geometry;
 
-/// Drops triangles without area and says how many. Only for rigid ones: morphs and joints may
-/// open what is closed at rest.
+/// Drops triangles without area and returns their number. Only valid for rigid geometry: morphs and joints
+/// may open a triangle that is closed at rest.
 pub(crate) fn drop_zero_area(geometry: &mut Geometry) -> usize {
     let before = geometry.indices.len() / 3;
     let positions = &geometry.positions;
@@ -22,8 +22,8 @@ pub(crate) fn drop_zero_area(geometry: &mut Geometry) -> usize {
     before - geometry.indices.len() / 3
 }
 
-/// Gives every triangle vertices of its own and its face's normal, and every morph target the change
-/// of that normal, exact at weights 0 and 1.
+/// Gives every triangle its own vertices with its face's normal. Gives every morph target the change of that
+/// normal, which is exact at weights 0 and 1.
 pub(crate) fn flatten(geometry: &mut Geometry) {
     unweld(geometry);
     geometry.normals = face_normals(&geometry.positions);
@@ -36,7 +36,8 @@ pub(crate) fn flatten(geometry: &mut Geometry) {
     }
 }
 
-/// Normalises the normals, computes unusable ones from the faces around, and says how many.
+/// Normalises the normals and returns the number of unusable ones, which it computes from the surrounding
+/// faces.
 pub(crate) fn repair_normals(geometry: &mut Geometry) -> usize {
     let usable = |normal: &Vec3| normal.is_finite() && normal.length_squared() > f32::MIN_POSITIVE;
     let broken = geometry.normals.iter().filter(|&normal| !usable(normal)).count();
@@ -57,8 +58,8 @@ pub(crate) fn repair_normals(geometry: &mut Geometry) -> usize {
 
 /// Computes tangents for texture coordinates `uvs`, weighted by area.
 ///
-/// After Eric Lengyel, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh", 2001; but w is
-/// the sign for a bitangent that points up in the image, against v, as glTF has it.
+/// After Eric Lengyel, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh", 2001. As glTF requires,
+/// w is instead the sign for a bitangent that points up in the image, against v.
 pub(crate) fn compute_tangents(geometry: &mut Geometry, uvs: &[Vec2]) {
     let count = geometry.positions.len();
     let (mut tangents, mut bitangents) = (vec![DVec3::ZERO; count], vec![DVec3::ZERO; count]);
@@ -67,8 +68,8 @@ pub(crate) fn compute_tangents(geometry: &mut Geometry, uvs: &[Vec2]) {
         let position = |i: usize| geometry.positions[i].as_dvec3();
         let (e1, e2) = (position(b) - position(a), position(c) - position(a));
         let (d1, d2) = ((uvs[b] - uvs[a]).as_dvec2(), (uvs[c] - uvs[a]).as_dvec2());
-        // Not divided by the determinant: its magnitude is twice the area in texture space, and
-        // the edges carry the area in space.
+        // Not divided by the determinant: its magnitude is twice the area in texture space, and the edges
+        // already contain the area in space.
         let sign = d1.perp_dot(d2).signum();
         let tangent = (e1 * d2.y - e2 * d1.y) * sign;
         let bitangent = (e2 * d1.x - e1 * d2.x) * sign;
@@ -88,13 +89,13 @@ fn orthogonal(normal: Vec3, tangent: DVec3, bitangent: DVec3) -> Vec4 {
     tangent.as_vec3().extend(up)
 }
 
-/// Normal of a face, as long as twice its area.
+/// Returns the normal of a face. Its length is twice the area.
 fn face(positions: &[Vec3], corners: &[u32]) -> DVec3 {
     let [a, b, c] = [0, 1, 2].map(|i| positions[corners[i] as usize].as_dvec3());
     (b - a).cross(c - a)
 }
 
-/// Unit normals of unwelded faces, each three times.
+/// Returns unit normals of unwelded faces, each three times.
 fn face_normals(positions: &[Vec3]) -> Vec<Vec3> {
     let mut normals = Vec::with_capacity(positions.len());
     for corners in positions.chunks_exact(3) {
@@ -104,7 +105,7 @@ fn face_normals(positions: &[Vec3]) -> Vec<Vec3> {
     normals
 }
 
-/// Area-weighted normals of the faces around each vertex.
+/// Returns the area-weighted normals of the faces around each vertex.
 fn smooth_normals(geometry: &Geometry) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; geometry.positions.len()];
     for corners in geometry.indices.chunks_exact(3) {
@@ -140,7 +141,7 @@ fn spread<T: Copy>(values: &mut Vec<T>, indices: &[u32]) {
 mod tests {
     use super::*;
 
-    /// A quad in the xy plane that faces +z, with the image upright on it.
+    /// Returns a quad in the xy plane that faces +z, with the image upright on it.
     fn quad() -> Geometry {
         Geometry {
             positions: [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[x, y]| Vec3::new(x as f32, y as f32, 0.0)).to_vec(),

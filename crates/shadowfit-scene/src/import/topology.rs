@@ -2,8 +2,8 @@
 
 use gltf::json::mesh::Mode;
 
-/// Vertex indices, three a triangle, with the winding of a triangle list. Empty for points and lines.
-/// Vertices left over at the end make no triangle.
+/// Returns the vertex indices of a triangle list, three per triangle. Empty for points and lines. Leftover
+/// vertices at the end are ignored.
 pub(crate) fn triangle_list(mode: Mode, corners: &[u32]) -> Vec<u32> {
     match mode {
         Mode::Triangles => corners[..corners.len() / 3 * 3].to_vec(),
@@ -18,13 +18,13 @@ pub(crate) fn triangle_list(mode: Mode, corners: &[u32]) -> Vec<u32> {
     }
 }
 
-/// Every second triangle of a strip is turned round: (i, i + 1 + i % 2, i + 2 - i % 2).
+/// Returns a triangle of a strip. Every second one has reversed winding: (i, i + 1 + i % 2, i + 2 - i % 2).
 fn strip_triangle(number: usize, corners: &[u32]) -> [u32; 3] {
     let odd = number % 2;
     [corners[0], corners[1 + odd], corners[2 - odd]]
 }
 
-/// The usual name of a mode that has no triangles; `None` for the others.
+/// Returns the usual name of a mode without triangles, or `None` for the other modes.
 pub(crate) fn without_triangles(mode: Mode) -> Option<&'static str> {
     match mode {
         Mode::Points => Some("points"),
@@ -33,19 +33,20 @@ pub(crate) fn without_triangles(mode: Mode) -> Option<&'static str> {
     }
 }
 
-/// Finds the vertices that triangles use. It is kept from one primitive to the next, so that primitives which share a
-/// large accessor take time for their own triangles alone.
+/// Finds the vertices that triangles use. Reused from one primitive to the next, so that primitives which
+/// share a large accessor only take time for their own triangles.
 #[derive(Default)]
 pub(crate) struct UsedVertices {
-    /// By vertex: its place in the list of used ones; between two calls all are [`UNUSED`].
+    /// For each vertex, its index in the list of used vertices. All are [`UNUSED`] between two calls.
     places: Vec<u32>,
 }
 
 const UNUSED: u32 = u32::MAX;
 
 impl UsedVertices {
-    /// Lists the vertices that indices use, in the order of their first use, and renumbers the indices by this list.
-    /// Returns `None`, and leaves the indices, if all of `count` vertices are used. Indices are below `count`.
+    /// Lists the vertices that indices use, in the order of their first use, and renumbers the indices by
+    /// this list. If all of `count` vertices are used, leaves the indices unchanged and returns `None`.
+    /// Indices must be below `count`.
     pub(crate) fn compact(&mut self, indices: &mut [u32], count: usize) -> Option<Vec<u32>> {
         if self.places.len() < count {
             self.places.resize(count, UNUSED);

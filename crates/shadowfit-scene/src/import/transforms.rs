@@ -1,5 +1,5 @@
-//! Transforms of nodes in f64. The gltf crate reads them as f32, which is half a metre coarse where georeferenced files
-//! have them.
+//! Transforms of nodes in f64. The gltf crate reads them as f32, which has steps of half a metre at the
+//! coordinates of georeferenced files.
 
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::{Error, deserialize};
@@ -38,7 +38,7 @@ fn transform(json: &Node) -> Transform {
     }
 }
 
-/// The rotation as a unit quaternion; zero counts as no rotation.
+/// Returns the rotation as a unit quaternion. Zero counts as no rotation.
 pub(super) fn rotation(rotation: DQuat) -> DQuat {
     let length = rotation.length();
     if length > 0.0 { rotation * (1.0 / length) } else { DQuat::IDENTITY }

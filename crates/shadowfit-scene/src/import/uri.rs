@@ -1,5 +1,5 @@
-//! Bytes behind a URI: data URIs, and files inside the folder of the glTF file, or those that came with it where there
-//! is no file system. Nothing else is ever opened, whatever the file asks for.
+//! Bytes behind a URI: data URIs, and files inside the folder of the glTF file. Without a file system, the
+//! files that were passed with the glTF file. No other file is ever opened.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 
-/// Size of the largest file that is read, in bytes: the limit of a GLB, and the same for buffers.
+/// Size of the largest file that is read, in bytes: the limit of a GLB, also used for buffers.
 pub(crate) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
 
 /// Padding is optional: exporters disagree about it.
@@ -23,17 +23,17 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// Where the files are that a glTF file refers to.
+/// Location of the files that a glTF file refers to.
 #[derive(Clone, Copy)]
 pub(crate) enum Folder<'a> {
-    /// A folder of the file system, which pages do not have.
+    /// A folder of the file system. Web pages have none.
     #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "only files in memory are loaded there"))]
     Disk(&'a Path),
-    /// Contents by their paths.
+    /// Contents of files by their paths.
     Memory(&'a BTreeMap<String, Vec<u8>>),
 }
 
-/// Reads what `uri` refers to from `folder`; the error is a readable reason.
+/// Reads the bytes behind `uri` from `folder`. The error is a readable reason.
 pub(crate) fn read_uri(folder: Folder<'_>, uri: &str, max_bytes: u64) -> Result<Vec<u8>, String> {
     if let Some(data) = data_of(uri) {
         return decode_data(data);
@@ -53,7 +53,7 @@ pub(crate) fn read_uri(folder: Folder<'_>, uri: &str, max_bytes: u64) -> Result<
     }
 }
 
-/// Reads a regular file of at most `max_bytes`; the error is a readable reason.
+/// Reads a regular file of at most `max_bytes`. The error is a readable reason.
 pub(crate) fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> {
     let metadata = std::fs::metadata(path).map_err(|error| error.to_string())?;
     if !metadata.is_file() {
@@ -73,7 +73,7 @@ fn check_length(bytes: u64, max_bytes: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The content of the file that a relative URI names: that of its path, or of its name alone.
+/// Returns the content of the file with the path of a relative URI, or else with its name alone.
 fn find<'a>(files: &'a BTreeMap<String, Vec<u8>>, uri: &str) -> Option<&'a Vec<u8>> {
     let decoded = percent_decode_str(uri).decode_utf8().ok()?;
     let decoded = decoded.replace('\\', "/");
@@ -82,12 +82,12 @@ fn find<'a>(files: &'a BTreeMap<String, Vec<u8>>, uri: &str) -> Option<&'a Vec<u
     files.get(path).or_else(|| files.get(uri)).or_else(|| files.get(name))
 }
 
-/// Bytes of a file; 0 where that is unknown.
+/// Returns the bytes of a file, or 0 if unknown.
 pub(crate) fn file_size(path: &Path) -> u64 {
     std::fs::metadata(path).map_or(0, |metadata| metadata.len())
 }
 
-/// About as many bytes as `uri` refers to; 0 where that is unknown.
+/// Returns the approximate number of bytes behind `uri`, or 0 if unknown.
 pub(crate) fn uri_size(folder: Folder<'_>, uri: &str) -> u64 {
     match (data_of(uri), folder) {
         (Some(data), _) => data.len() as u64 / 4 * 3,
@@ -96,7 +96,7 @@ pub(crate) fn uri_size(folder: Folder<'_>, uri: &str) -> u64 {
     }
 }
 
-/// What follows the scheme of a data URI; schemes have no case.
+/// Returns the part of a data URI after its scheme, which is not case-sensitive.
 fn data_of(uri: &str) -> Option<&str> {
     let (scheme, data) = uri.split_at_checked("data:".len())?;
     scheme.eq_ignore_ascii_case("data:").then_some(data)
@@ -113,19 +113,19 @@ fn decode_data(data: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-/// Whether the URI starts with a scheme (RFC 3986); this covers Windows drive letters.
+/// Returns whether the URI starts with a scheme (RFC 3986), including Windows drive letters.
 fn has_scheme(uri: &str) -> bool {
     let Some((scheme, _)) = uri.split_once(':') else { return false };
     let allowed = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
     scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(allowed)
 }
 
-/// The file that a relative URI names: percent-decoded, or as written, or with the separators of Windows, where only that
-/// exists.
+/// Returns the file that a relative URI names. The URI is percent-decoded. If that file does not exist, also
+/// tries the URI as written, then Windows separators.
 fn locate(folder: &Path, uri: &str) -> Result<PathBuf, String> {
     let decoded = percent_decode_str(uri).decode_utf8();
     let decoded = decoded.map_err(|_| format!("the URI {} is not UTF-8", quoted(uri)))?;
-    // Exporters of Windows write its separators.
+    // Exporters on Windows write its separators.
     let others = [uri.to_owned(), decoded.replace('\\', "/")];
     let found = inside(folder, uri, &decoded);
     others
@@ -134,7 +134,7 @@ fn locate(folder: &Path, uri: &str) -> Result<PathBuf, String> {
         .fold(found, |found, other| found.or_else(|error| inside(folder, uri, other).map_err(|_| error)))
 }
 
-/// Joins and resolves, and refuses whatever is not below `folder` afterwards, links included.
+/// Joins and resolves a path. Fails if the result is outside `folder`, links included.
 fn inside(folder: &Path, uri: &str, relative: &str) -> Result<PathBuf, String> {
     let outside = || format!("the URI {} leads out of the file's folder", quoted(uri));
     let relative = Path::new(relative);
@@ -147,7 +147,7 @@ fn inside(folder: &Path, uri: &str, relative: &str) -> Result<PathBuf, String> {
     if file.starts_with(&folder) { Ok(file) } else { Err(outside()) }
 }
 
-/// The URI in quotes, shortened for messages.
+/// Returns the URI in quotes, shortened for messages.
 fn quoted(uri: &str) -> String {
     const LONGEST: usize = 80;
     if uri.chars().count() <= LONGEST {

@@ -12,7 +12,7 @@ use super::notes::Notes;
 use crate::error::{Problem, entry};
 use crate::{Lens, Pose, Scene, SceneCamera, SceneSun};
 
-/// Loads the cameras in node order, except those whose lens makes no image.
+/// Loads the cameras in node order, except cameras whose lens forms no image.
 pub(crate) fn cameras(root: &Root, tree: &Tree, notes: &mut Notes) -> Result<Vec<SceneCamera>, Problem> {
     let mut cameras = Vec::new();
     for (node, &index) in tree.file_index.iter().enumerate() {
@@ -31,7 +31,7 @@ fn name(own: Option<&String>, tree: &Tree, node: usize) -> String {
     own.filter(|name| !name.is_empty()).unwrap_or(&tree.nodes[node].name).clone()
 }
 
-/// Reads the lens of a camera, or returns why it makes no image.
+/// Reads the lens of a camera, or returns the reason why it forms no image.
 fn lens(json: &camera::Camera) -> Result<Lens, String> {
     match json.type_ {
         Checked::Valid(camera::Type::Perspective) => {
@@ -56,13 +56,13 @@ fn lens(json: &camera::Camera) -> Result<Lens, String> {
     }
 }
 
-/// Refuses planes between which nothing lies.
+/// Checks that the near and far planes bound a volume.
 fn check_planes(near: f32, far: f32, in_range: bool) -> Result<(), String> {
     let is_sound = in_range && near.is_finite() && far > near;
     is_sound.then_some(()).ok_or_else(|| format!("its znear is {near} and its zfar {far}"))
 }
 
-/// Loads the directional lights in node order, and notes the lights that give no light here.
+/// Loads the directional lights in node order. Notes the other lights, which are ignored.
 pub(crate) fn suns(root: &Root, tree: &Tree, notes: &mut Notes) -> Result<Vec<SceneSun>, Problem> {
     let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     let lights = lights.map_or(&[][..], |extension| &extension.lights);
@@ -90,7 +90,7 @@ fn sun(light: &Light, name: String, node: usize) -> SceneSun {
     SceneSun { name, node, color, intensity: light.intensity.max(0.0) }
 }
 
-/// Notes the sun that is taken of several, and cameras and suns that cannot be.
+/// Adds a note about the chosen sun if there are several, and about unusable cameras and suns.
 pub(crate) fn note_views(scene: &Scene, rest: &Pose, notes: &mut Notes) {
     for (camera, number) in scene.cameras.iter().zip(1..) {
         if camera.placement(rest).is_none() {

@@ -5,22 +5,22 @@ use glam::{Mat3, Quat, Vec3};
 use super::solid::Solid;
 use crate::{Image, Lens, Material, Mesh, Node, Primitive, Scene, SceneCamera, Sun, Transform};
 
-/// Crease angle of round bodies, in radians: everything but right-angled edges is smooth.
+/// Crease angle of round bodies, in radians. Everything but right-angled edges is smooth.
 pub const SMOOTH: f32 = 1.2;
 /// Crease angle of cut stone and carpentry, in radians.
 pub const CRISP: f32 = 0.6;
 
-/// Distance of the near plane of every start view, in metres: nearer than anything one can walk up to.
+/// Distance of the near plane of every start view, in metres: closer than any object that one can walk up to.
 const NEAR: f32 = 0.1;
 
 /// A scene under construction.
 pub struct Builder {
-    /// What is built so far.
+    /// Scene built so far.
     pub scene: Scene,
 }
 
 impl Builder {
-    /// A scene of materials and images alone.
+    /// Creates a scene of materials and images alone.
     pub fn new(name: &str, materials: Vec<Material>, images: Vec<Image>) -> Self {
         let scene = Scene { name: name.to_owned(), materials, images, ..Scene::default() };
         Self { scene }
@@ -33,7 +33,7 @@ impl Builder {
         self.scene.meshes.len() - 1
     }
 
-    /// Adds a mesh of one solid.
+    /// Adds a mesh of one solid and returns its index.
     pub fn solid(&mut self, name: &str, solid: &Solid, paint: impl Into<usize>, crease: f32) -> usize {
         self.mesh(name, vec![solid.primitive(paint.into(), crease)])
     }
@@ -51,7 +51,7 @@ impl Builder {
         self.scene.nodes.len() - 1
     }
 
-    /// Places a mesh under `parent`, turned by `yaw` radians about the vertical.
+    /// Places a mesh under `parent`, turned by `yaw` radians about the vertical. Returns the node.
     pub fn place(&mut self, parent: usize, mesh: usize, at: impl Into<Vec3>, yaw: f32) -> usize {
         self.pose(parent, mesh, turned(at, yaw))
     }
@@ -68,19 +68,19 @@ impl Builder {
         self.pose(parent, mesh, Transform::new(at.into(), Quat::from_rotation_y(yaw), scale.into()))
     }
 
-    /// Places a mesh under `parent` by a whole transform.
+    /// Places a mesh under `parent` with a full transform. Returns the node.
     pub fn pose(&mut self, parent: usize, mesh: usize, rest: Transform) -> usize {
         let name = self.scene.meshes[mesh].name.clone();
         self.node(&name, Some(parent), rest, Some(mesh))
     }
 
-    /// Adds a mesh of one solid under `parent`, where it is modelled.
+    /// Adds a mesh of one solid under `parent` without a transform. Returns the node.
     pub fn fix(&mut self, parent: usize, name: &str, solid: &Solid, paint: impl Into<usize>, crease: f32) -> usize {
         let mesh = self.solid(name, solid, paint, crease);
         self.place(parent, mesh, Vec3::ZERO, 0.0)
     }
 
-    /// Adds a mesh of one primitive under no parent, where it is modelled.
+    /// Adds a mesh of one primitive without a parent or transform. Returns the node.
     pub fn lay(&mut self, name: &str, primitive: Primitive) -> usize {
         let mesh = self.mesh(name, vec![primitive]);
         self.node(name, None, Transform::default(), Some(mesh))
@@ -108,12 +108,12 @@ impl Builder {
     }
 }
 
-/// A transform to a place, with a turn by `yaw` radians about the vertical.
+/// Returns a transform to a place, with a turn by `yaw` radians about the vertical.
 pub fn turned(at: impl Into<Vec3>, yaw: f32) -> Transform {
     Transform::new(at.into(), Quat::from_rotation_y(yaw), Vec3::ONE)
 }
 
-/// Sunlight from `azimuth` (from +z toward +x) and `elevation` above the horizon, in radians.
+/// Returns sunlight from `azimuth` (from +z toward +x) and `elevation` above the horizon, in radians.
 pub fn sunlight(azimuth: f32, elevation: f32) -> Sun {
     let (sin, cos) = azimuth.sin_cos();
     let flat = elevation.cos();

@@ -1,12 +1,12 @@
-//! Fixed pseudo-random numbers, for what should look as if nobody had placed it.
+//! Fixed pseudo-random numbers, for irregular placement.
 
 use super::pixels::hash;
 
-/// Turn from one leaf or branch to the next that spreads any number of them evenly around: the golden angle, rounded,
-/// in radians.
+/// Turn from one leaf or branch to the next that distributes any number of them evenly around an axis: the
+/// golden angle, rounded, in radians.
 pub const GOLDEN_ANGLE: f32 = 2.4;
 
-/// Fixed pseudo-random numbers, one after the other.
+/// A sequence of fixed pseudo-random numbers.
 #[derive(Clone, Debug)]
 pub struct Dice {
     seed: u32,
@@ -14,18 +14,18 @@ pub struct Dice {
 }
 
 impl Dice {
-    /// The sequence of a seed.
+    /// Creates the sequence of a seed.
     pub fn new(seed: u32) -> Self {
         Self { seed, next: 0 }
     }
 
-    /// The next number, in 0..1.
+    /// Returns the next number, in 0..1.
     pub fn roll(&mut self) -> f32 {
         self.next += 1;
         hash(self.next, self.seed)
     }
 
-    /// The next number, in `low`..`high`.
+    /// Returns the next number, in `low`..`high`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.roll()
     }

@@ -1,8 +1,8 @@
-//! What scenes made by code are built of: solids and sheets, materials and pictures, plants, a figure, loops, and the
-//! [`Builder`] that collects them.
+//! Building blocks of generated scenes: solids and sheets, materials and pictures, plants, a figure, loops,
+//! and the [`Builder`] that collects them.
 //!
-//! The built-in scenes are made of these alone, and others can be. Everything is generated from fixed numbers, so that
-//! a scene is the same every time. Right-handed, y up, metres and radians.
+//! The built-in scenes consist of these alone, and other scenes can use them, too. Everything is generated
+//! from fixed numbers, so a scene is the same every time. Right-handed, y up, metres and radians.
 
 mod build;
 mod dice;

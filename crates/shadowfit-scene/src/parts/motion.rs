@@ -1,4 +1,4 @@
-//! Loops: what turns and sways, as keyframes that end where they begin.
+//! Loops of rotating and swaying objects, as keyframes that end where they begin.
 
 use std::f32::consts::TAU;
 
@@ -6,12 +6,13 @@ use glam::Quat;
 
 use crate::{Animation, Channel, ChannelValues, Interpolation};
 
-/// A loop of `duration` seconds.
+/// Creates a loop of `duration` seconds.
 pub fn looped(name: &str, duration: f32, channels: Vec<Channel>) -> Animation {
     Animation { name: name.to_owned(), duration, channels }
 }
 
-/// A rotation has two signs: each takes the one that is nearer to the rotation before it.
+/// Chooses the sign of each rotation that is nearer to the previous rotation. A quaternion and its negative
+/// are one rotation.
 pub(crate) fn take_nearer_signs(turns: &mut [Quat]) {
     for key in 1..turns.len() {
         if turns[key].dot(turns[key - 1]) < 0.0 {
@@ -26,8 +27,8 @@ pub fn ease(x: f32, from: f32, to: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Rotations of a node at `keys` even times of a loop of `duration` seconds: `turn` gives that of a phase of 0..2π,
-/// and must give the same rotation for both ends.
+/// Returns the rotations of a node at `keys` even times of a loop of `duration` seconds. `turn` returns the
+/// rotation at a phase of 0..2π, and must return the same rotation for both ends.
 pub fn rotations(node: usize, duration: f32, keys: usize, turn: impl Fn(f32) -> Quat) -> Channel {
     let share = |key: usize| key as f32 / keys as f32;
     let mut values: Vec<Quat> = (0..keys).map(|key| turn(share(key) * TAU)).collect();

@@ -1,7 +1,8 @@
-//! Enums that number what a scene lists, so that a list and the names of its entries cannot disagree.
+//! Enums that number the entries of a scene's lists, so that a list and the names of its entries cannot
+//! disagree.
 
-/// Declares an enum beside what its values stand for: `Name: Type { Value = what it stands for, … }`. `Name::all()` is
-/// the list of all, and a value as a `usize` is its index there.
+/// Declares an enum with a value for each entry of a list: `Name: Type { Variant = value, … }`. `Name::all()`
+/// returns the list of values. A variant as a `usize` is its index there.
 #[macro_export]
 macro_rules! numbered {
     ($(#[$doc:meta])* $name:ident: $of:ty { $($value:ident = $meant:expr),+ $(,)? }) => {
@@ -12,7 +13,7 @@ macro_rules! numbered {
         }
 
         impl $name {
-            /// What the values stand for, in their order.
+            /// Returns the values of all variants, in their order.
             pub(crate) fn all() -> Vec<$of> {
                 vec![$($meant),+]
             }

@@ -1,11 +1,11 @@
-//! What the scenes' images are drawn with: fixed pseudo-random values, tileable noise, a loop over pixels.
+//! Drawing of the scenes' images: fixed pseudo-random values, tileable noise, a loop over pixels.
 
 use crate::Image;
 
 /// Cells along a side of the noise, a power of two.
 pub const NOISE_CELLS: u32 = 64;
 
-/// A fixed pseudo-random value in 0..1 for a lattice point.
+/// Returns a fixed pseudo-random value in 0..1 for a lattice point.
 pub fn hash(x: u32, y: u32) -> f32 {
     let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
     h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
@@ -29,7 +29,7 @@ impl Noise {
         Self::default()
     }
 
-    /// Values along x at a height `y` in cells.
+    /// Returns the values along x at a height `y` in cells.
     pub fn row(&self, y: f32) -> NoiseRow {
         let top = y as u32;
         let values = |row: u32| {
@@ -45,7 +45,7 @@ impl Noise {
 pub struct NoiseRow(Vec<f32>);
 
 impl NoiseRow {
-    /// Value at a position in cells.
+    /// Returns the value at a position in cells.
     pub fn at(&self, x: f32) -> f32 {
         let column = x as u32;
         let left = self.0[(column % NOISE_CELLS) as usize];
@@ -54,13 +54,13 @@ impl NoiseRow {
     }
 }
 
-/// Draws a square image of `size` pixels; `row` gives for each y what gives for each x a colour in
-/// sRGB and an alpha, 0..255.
+/// Draws a square image of `size` pixels. `row(y)` returns a function from x to an sRGB colour and an alpha,
+/// 0..255.
 pub fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn(u32) -> Row) -> Image {
     draw_oblong(name, [size; 2], row)
 }
 
-/// As [`draw`], of a width and a height in pixels.
+/// Draws like [`draw`], with a width and a height in pixels.
 pub fn draw_oblong<Row: Fn(u32) -> [f32; 4]>(name: &str, [width, height]: [u32; 2], row: impl Fn(u32) -> Row) -> Image {
     let mut rgba = Vec::with_capacity((width * height * 4) as usize);
     for y in 0..height {
@@ -72,8 +72,8 @@ pub fn draw_oblong<Row: Fn(u32) -> [f32; 4]>(name: &str, [width, height]: [u32; 
     Image { name: name.to_owned(), width, height, rgba }
 }
 
-/// As [`draw`], with noise: `color` gives for each x and y a colour, of values of the noise at the pixel, one for each of
-/// `scales`. At a scale of 1 the image spans [`NOISE_CELLS`].
+/// Draws like [`draw`], with noise. `color` receives x, y and the noise values at the pixel, one for each of
+/// `scales`, and returns a colour. At a scale of 1 the image spans [`NOISE_CELLS`].
 pub fn draw_noisy<const N: usize>(
     name: &str,
     size: u32,
@@ -89,7 +89,7 @@ pub fn draw_noisy<const N: usize>(
     })
 }
 
-/// `color` made lighter or darker by `light` of 0..255.
+/// Makes `color` lighter or darker by `light` of 0..255.
 pub fn shade([r, g, b]: [f32; 3], light: f32) -> [f32; 4] {
     [r + light, g + light * 0.97, b + light * 0.9, 255.0]
 }

@@ -1,6 +1,6 @@
 //! Generators of closed shapes: surfaces of revolution, lofts, capsules, rounded boxes, arches.
 //!
-//! All are built from rings of vertices around an axis, so that they are closed by construction.
+//! All consist of rings of vertices around an axis, so they are closed by construction.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -23,13 +23,13 @@ pub struct Section {
     pub cz: f32,
 }
 
-/// A section centred on x = 0.
+/// Returns a section centred on x = 0.
 pub const fn section(y: f32, rx: f32, rz: f32, cz: f32) -> Section {
     Section { y, rx, rz, cx: 0.0, cz }
 }
 
-/// Joins rings of equal length, listed upwards and each counter-clockwise from above, into a tube
-/// that ends in two poles.
+/// Joins rings of equal length into a tube that ends in two poles. Rings are listed upwards, each
+/// counter-clockwise from above.
 pub fn tube(rings: &[Vec<Vec3>], bottom: Vec3, top: Vec3) -> Solid {
     let around = rings[0].len();
     let mut solid = Solid { positions: rings.concat(), triangles: Vec::new() };
@@ -51,7 +51,8 @@ pub fn tube(rings: &[Vec<Vec3>], bottom: Vec3, top: Vec3) -> Solid {
     solid
 }
 
-/// Point of a superellipse: `power` 2 is an ellipse, more is squarer. Turn 0 is +z, then toward +x.
+/// Returns a point of a superellipse. A `power` of 2 is an ellipse, more is squarer. The turn starts at +z,
+/// toward +x.
 pub fn superellipse(turn: f32, power: f32) -> (f32, f32) {
     let (sin, cos) = turn.sin_cos();
     if power == 2.0 {
@@ -61,13 +62,13 @@ pub fn superellipse(turn: f32, power: f32) -> (f32, f32) {
     (sin * scale, cos * scale)
 }
 
-/// A surface of revolution about y through `(radius, height)` points, listed upwards along the
-/// outline; ends that are not on the axis are closed by discs.
+/// Builds a surface of revolution about y through `(radius, height)` points, listed upwards along the
+/// outline. Ends that are not on the axis are closed by discs.
 pub fn lathe(profile: &[(f32, f32)], segments: usize) -> Solid {
     modulated_lathe(profile, segments, |_, _| 1.0)
 }
 
-/// A [`lathe`] whose radius is multiplied by `shape(turn, height)`.
+/// Builds a [`lathe`] whose radius is multiplied by `shape(turn, height)`.
 pub fn modulated_lathe(profile: &[(f32, f32)], segments: usize, shape: impl Fn(f32, f32) -> f32) -> Solid {
     let ring = |&(radius, height): &(f32, f32)| {
         let point = |index: usize| {
@@ -82,7 +83,7 @@ pub fn modulated_lathe(profile: &[(f32, f32)], segments: usize, shape: impl Fn(f
     tube(&rings, pole(profile.first()), pole(profile.last()))
 }
 
-/// A ball stretched to the given radii.
+/// Builds a ball stretched to the given radii.
 pub fn ellipsoid(radii: impl Into<Vec3>, segments: usize, rings: usize) -> Solid {
     let point = |ring: usize| {
         let (sin, cos) = (ring as f32 / rings as f32 * PI).sin_cos();
@@ -92,14 +93,14 @@ pub fn ellipsoid(radii: impl Into<Vec3>, segments: usize, rings: usize) -> Solid
     lathe(&profile, segments).transformed(Affine3A::from_scale(radii.into()))
 }
 
-/// Catmull-Rom value between `b` and `c`.
+/// Returns the Catmull-Rom value between `b` and `c`.
 pub fn catmull_rom([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     let cubic = -a + 3.0 * b - 3.0 * c + d;
     let square = 2.0 * a - 5.0 * b + 4.0 * c - d;
     0.5 * (2.0 * b + (c - a) * t + square * t * t + cubic * t * t * t)
 }
 
-/// Points on a smooth curve through all of `points`, `steps` from each to the next, and the last one.
+/// Returns points on a smooth curve through all of `points`: `steps` from each to the next, and the last one.
 pub fn curve<const N: usize>(points: &[[f32; N]], steps: usize) -> Vec<[f32; N]> {
     let last = points.len() - 1;
     let between = |index: usize, t: f32| {
@@ -110,8 +111,8 @@ pub fn curve<const N: usize>(points: &[[f32; N]], steps: usize) -> Vec<[f32; N]>
     starts.map(|(index, t)| between(index, t)).chain([points[last]]).collect()
 }
 
-/// A smooth body through `sections` (listed upwards), closed by domes; `power` 2 makes them
-/// ellipses, more makes them squarer.
+/// Builds a smooth body through `sections` (listed upwards), closed by domes. A `power` of 2 makes the
+/// sections ellipses, more makes them squarer.
 pub fn loft(sections: &[Section], power: f32, steps: usize, segments: usize) -> Solid {
     let stations: Vec<_> = sections.iter().map(|s| [s.y, s.rx, s.rz, s.cx, s.cz]).collect();
     let smooth = |[y, rx, rz, cx, cz]: [f32; 5]| Section { y, rx: rx.max(1e-3), rz: rz.max(1e-3), cx, cz };
@@ -135,12 +136,12 @@ pub fn loft(sections: &[Section], power: f32, steps: usize, segments: usize) -> 
 /// Rings of the dome that closes a loft, with its pole.
 const DOME: usize = 3;
 
-/// Height of the dome that closes a loft.
+/// Returns the height of the dome that closes a loft.
 fn dome_height(end: Section) -> f32 {
     0.6 * end.rx.min(end.rz)
 }
 
-/// Sections of a dome on `end`, outwards, without its pole.
+/// Returns the sections of a dome on `end`, outwards, without its pole.
 fn dome(end: Section, up: f32) -> Vec<Section> {
     let at = |step: usize| {
         let (sin, cos) = (step as f32 / DOME as f32 * FRAC_PI_2).sin_cos();
@@ -150,7 +151,7 @@ fn dome(end: Section, up: f32) -> Vec<Section> {
     (1..DOME).map(at).collect()
 }
 
-/// A limb hanging from the origin along -y: radii at even distances, top first.
+/// Builds a limb that hangs from the origin along -y. `radii` are at even distances, top first.
 pub fn limb(length: f32, radii: &[f32], segments: usize) -> Solid {
     let last = radii.len() - 1;
     let at = |index: usize| {
@@ -161,7 +162,7 @@ pub fn limb(length: f32, radii: &[f32], segments: usize) -> Solid {
     loft(&sections, 2.0, 2, segments)
 }
 
-/// A tapered capsule from `a` (radius `ra`) to `b` (radius `rb`).
+/// Builds a tapered capsule from `a` (radius `ra`) to `b` (radius `rb`).
 pub fn capsule(a: impl Into<Vec3>, ra: f32, b: impl Into<Vec3>, rb: f32, segments: usize) -> Solid {
     let (a, b) = (a.into(), b.into());
     let length = a.distance(b);
@@ -176,7 +177,7 @@ pub fn capsule(a: impl Into<Vec3>, ra: f32, b: impl Into<Vec3>, rb: f32, segment
     lathe(&profile, segments).transformed(Affine3A::from_rotation_translation(turn, a))
 }
 
-/// A ring of elliptical tube about y: `radius` to the tube's centre, `thick` across, `tall` along y.
+/// Builds a ring of elliptical tube about y: `radius` to the tube's centre, `thick` across, `tall` along y.
 pub fn torus(radius: f32, thick: f32, tall: f32, around: usize, across: usize) -> Solid {
     let mut solid = Solid::default();
     let id = |i: usize, j: usize| ((i % around) * across + j % across) as u32;
@@ -194,7 +195,7 @@ pub fn torus(radius: f32, thick: f32, tall: f32, around: usize, across: usize) -
     solid
 }
 
-/// A box about the origin whose edges are rounded with `radius` in `steps` steps.
+/// Builds a box about the origin whose edges are rounded with `radius` in `steps` steps.
 pub fn rounded_box(half: impl Into<Vec3>, radius: f32, steps: usize) -> Solid {
     let inner = half.into() - radius;
     // Positions along an axis of a face: the rounded end, the flat middle, the other rounded end.
@@ -214,13 +215,13 @@ pub fn rounded_box(half: impl Into<Vec3>, radius: f32, steps: usize) -> Solid {
     weld(&solid)
 }
 
-/// A box between two corners with slightly rounded edges.
+/// Builds a box between two corners with slightly rounded edges.
 pub fn block(low: impl Into<Vec3>, high: impl Into<Vec3>, edge: f32) -> Solid {
     let (low, high) = (low.into(), high.into());
     rounded_box((high - low) / 2.0, edge, 1).moved((low + high) / 2.0)
 }
 
-/// A [`block`] about the y axis: its half widths along x and z, and its lower and upper end.
+/// Builds a [`block`] about the y axis, from its half widths along x and z, and its lower and upper end.
 pub fn pillar([x, z]: [f32; 2], [low, high]: [f32; 2], edge: f32) -> Solid {
     block([-x, low, -z], [x, high, z], edge)
 }
@@ -235,7 +236,7 @@ fn add_box_face(solid: &mut Solid, line: &[(f32, f32)], axis: usize, sign: f32, 
             let mut side = Vec3::ZERO;
             let mut out = Vec3::ZERO;
             (side[axis], side[u], side[v]) = (sign, side_u, side_v);
-            // A quarter turn is split between the two faces that meet at an edge.
+            // The two faces that meet at an edge each cover half of its quarter turn.
             let quarter = PI / 4.0;
             (out[axis], out[u], out[v]) = (sign, (turn_u * quarter).tan(), (turn_v * quarter).tan());
             solid.positions.push(side * inner + out.normalize() * radius);
@@ -251,7 +252,7 @@ fn add_box_face(solid: &mut Solid, line: &[(f32, f32)], axis: usize, sign: f32, 
     }
 }
 
-/// Merges vertices that agree to a hundredth of a millimetre, and drops triangles that collapse.
+/// Merges vertices that agree to 0.01 mm, and drops triangles that collapse.
 fn weld(solid: &Solid) -> Solid {
     let key = |p: Vec3| (p * 1e5).round().to_array().map(|value| value as i32);
     let mut known = std::collections::HashMap::new();
@@ -274,7 +275,7 @@ fn weld(solid: &Solid) -> Solid {
     welded
 }
 
-/// A wall across z with an opening that ends in a round arch, standing on y = 0 and centred on x.
+/// A wall across z with an opening that ends in a round arch. It starts at y = 0 and is centred on x.
 #[derive(Clone, Copy, Debug)]
 pub struct Arch {
     /// Whole width.
@@ -290,7 +291,7 @@ pub struct Arch {
 }
 
 impl Arch {
-    /// The wall as a solid. Its front is a fan for each pier and a quad for each arch segment:
+    /// Builds the wall. Its front is a fan for each pier and a quad for each arch segment:
     ///
     /// ```text
     ///   +----+-+-+-+----+  height
@@ -331,26 +332,26 @@ impl Arch {
     }
 }
 
-/// A box between two corners with sharp edges, for thin or distant things.
+/// Builds a box between two corners with sharp edges, for thin or distant objects.
 pub fn plank(low: impl Into<Vec3>, high: impl Into<Vec3>) -> Solid {
     let (low, high) = (low.into(), high.into());
     let outline = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
     prism(&outline, high.z - low.z).moved(Vec3::Z * (low.z + high.z) / 2.0)
 }
 
-/// The walls of a house about z = 0 with a gable at each end: half of its width, the heights of its foot, of its eaves
-/// and of its ridge, and its length.
+/// Builds the walls of a house about z = 0 with a gable at each end, from half of its width, the heights of
+/// its foot, eaves and ridge, and its length.
 pub fn gabled(half: f32, [foot, eaves, ridge]: [f32; 3], length: f32) -> Solid {
     prism(&[(-half, foot), (half, foot), (half, eaves), (0.0, ridge), (-half, eaves)], length)
 }
 
-/// A prism about z = 0 from a convex, counter-clockwise outline.
+/// Builds a prism about z = 0 from a convex, counter-clockwise outline.
 pub fn prism(outline: &[(f32, f32)], depth: f32) -> Solid {
     let faces: Vec<[u32; 3]> = (2..outline.len() as u32).map(|corner| [0, corner - 1, corner]).collect();
     extrude(outline, &faces, depth)
 }
 
-/// A wall across z between `height` and a lower edge, whose points are listed with ascending x.
+/// Builds a wall across z between `height` and a lower edge, whose points are listed with ascending x.
 pub fn wall_over(edge: &[(f32, f32)], height: f32, depth: f32) -> Solid {
     let count = edge.len() as u32;
     let mut outline = edge.to_vec();
@@ -361,7 +362,7 @@ pub fn wall_over(edge: &[(f32, f32)], height: f32, depth: f32) -> Solid {
     extrude(&outline, &faces, depth)
 }
 
-/// A prism about z = 0 from a counter-clockwise outline and the triangles that fill it.
+/// Builds a prism about z = 0 from a counter-clockwise outline and the triangles that fill it.
 pub fn extrude(outline: &[(f32, f32)], faces: &[[u32; 3]], depth: f32) -> Solid {
     let count = outline.len() as u32;
     let layer = |z: f32| outline.iter().map(move |&(x, y)| Vec3::new(x, y, z));

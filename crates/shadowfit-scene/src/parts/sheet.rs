@@ -1,28 +1,28 @@
-//! Open surfaces: grounds that follow a height, on grids that are finest where one stands.
+//! Open surfaces: grounds that follow a height function, on grids that are finest in the middle.
 
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::Primitive;
 
-/// Half of the distance over which a ground's slope is taken, in metres: less than a step.
+/// Half of the distance over which a ground's slope is measured, in metres: less than a footstep.
 const SLOPE: f32 = 0.2;
 
-/// `count + 1` coordinates from `-half` to `half` metres, about e^`growth` times as far apart at the ends as in the
-/// middle.
+/// Returns `count + 1` coordinates from `-half` to `half` metres. Their spacing is about e^`growth` times as
+/// large at the ends as in the middle.
 pub fn graded(half: f32, count: usize, growth: f32) -> Vec<f32> {
     let at = |index: usize| (index as f32 / count as f32 * 2.0 - 1.0) * growth;
     (0..=count).map(|index| half * at(index).sinh() / growth.sinh()).collect()
 }
 
-/// Unit normal of the surface y = `height(x, z)`.
+/// Returns the unit normal of the surface y = `height(x, z)`.
 pub fn slope_normal(height: impl Fn(f32, f32) -> f32, x: f32, z: f32) -> Vec3 {
     let dx = height(x + SLOPE, z) - height(x - SLOPE, z);
     let dz = height(x, z + SLOPE) - height(x, z - SLOPE);
     Vec3::new(-dx, 2.0 * SLOPE, -dz).normalize()
 }
 
-/// The surface y = `height(x, z)`, which faces up, with a vertex wherever the coordinates `xs` and `zs` (ascending)
-/// cross, a linear colour there, and 1 m of texture coordinate a metre.
+/// Builds the surface y = `height(x, z)`, which faces up. It has a vertex with a linear colour at each
+/// crossing of the coordinates `xs` and `zs` (ascending). Texture coordinates are in metres.
 pub fn ground(
     material: usize,
     [xs, zs]: [&[f32]; 2],

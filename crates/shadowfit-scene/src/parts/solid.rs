@@ -1,7 +1,7 @@
 //! Closed triangle meshes with shared vertices, and their conversion to drawable primitives.
 //!
-//! Generators only place vertices; normals follow here from the faces, split where two faces meet
-//! at more than a crease angle. So shading and winding cannot disagree.
+//! Generators only place vertices. This module computes the normals from the faces, split where two faces
+//! meet at more than a crease angle, so shading and winding cannot disagree.
 
 use std::f32::consts::TAU;
 
@@ -9,17 +9,17 @@ use glam::{Affine3A, Quat, Vec2, Vec3};
 
 use crate::Primitive;
 
-/// A closed surface: every edge belongs to two triangles, which are counter-clockwise from outside.
+/// A closed surface. Every edge belongs to two triangles, which are counter-clockwise from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
-    /// Vertices, shared between the faces that meet there.
+    /// Vertices, shared between adjacent faces.
     pub positions: Vec<Vec3>,
     /// Vertex indices.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Solid {
-    /// Moved, turned or scaled; a mirroring transform also turns the winding.
+    /// Applies a transform. A mirroring transform also reverses the winding.
     #[must_use]
     pub fn transformed(mut self, transform: Affine3A) -> Self {
         for position in &mut self.positions {
@@ -33,32 +33,32 @@ impl Solid {
         self
     }
 
-    /// Moved by `offset`.
+    /// Moves the solid by `offset`.
     #[must_use]
     pub fn moved(self, offset: impl Into<Vec3>) -> Self {
         self.transformed(Affine3A::from_translation(offset.into()))
     }
 
-    /// Turned about the origin, then moved by `offset`.
+    /// Rotates the solid about the origin, then moves it by `offset`.
     #[must_use]
     pub fn posed(self, turn: Quat, offset: impl Into<Vec3>) -> Self {
         self.transformed(Affine3A::from_rotation_translation(turn, offset.into()))
     }
 
-    /// As many copies together, turned evenly about the y axis.
+    /// Returns `count` copies together, turned evenly about the y axis.
     #[must_use]
     pub fn around(&self, count: usize) -> Self {
         let turn = |index: usize| Affine3A::from_rotation_y(index as f32 / count as f32 * TAU);
         (0..count).map(|index| self.clone().transformed(turn(index))).collect()
     }
 
-    /// Mirrored in the plane x = 0: left for right.
+    /// Mirrors the solid in the plane x = 0.
     #[must_use]
     pub fn mirrored(self) -> Self {
         self.transformed(Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)))
     }
 
-    /// Together with another solid; the two may overlap but keep their own surfaces.
+    /// Adds another solid. The two may overlap and keep their own surfaces.
     #[must_use]
     pub fn with(mut self, other: Self) -> Self {
         let first = self.positions.len() as u32;
@@ -67,20 +67,21 @@ impl Solid {
         self
     }
 
-    /// Together with its own mirror image in x = 0.
+    /// Adds the solid's mirror image in x = 0.
     #[must_use]
     pub fn and_mirrored(self) -> Self {
         let mirror = self.clone().mirrored();
         self.with(mirror)
     }
 
-    /// Drawable form: faces that meet at less than `crease` radians (below π/2) share a smooth
-    /// normal. Texture coordinates are metres, projected along the normal's greatest axis.
+    /// Converts to a primitive. Faces that meet at less than `crease` radians (below π/2) share a smooth
+    /// normal. Texture coordinates are in metres, projected along the normal's greatest axis.
     pub fn primitive(&self, material: usize, crease: f32) -> Primitive {
         self.primitive_with(material, crease, |vertex, normal| projected(self.positions[vertex], normal))
     }
 
-    /// As [`Self::primitive`], with texture coordinates from the vertex's index and its normal.
+    /// Converts like [`Self::primitive`], with texture coordinates computed from the vertex's index and its
+    /// normal.
     pub fn primitive_with(&self, material: usize, crease: f32, uv: impl Fn(usize, Vec3) -> Vec2) -> Primitive {
         let corners = Corners::new(self);
         let threshold = crease.cos();
@@ -108,14 +109,14 @@ impl Solid {
     }
 }
 
-/// All of them together, as by [`Solid::with`].
+/// Combines all solids, like [`Solid::with`].
 impl FromIterator<Solid> for Solid {
     fn from_iter<I: IntoIterator<Item = Self>>(solids: I) -> Self {
         solids.into_iter().reduce(Self::with).unwrap_or_default()
     }
 }
 
-/// Texture coordinates of a position, in metres, projected along the normal's greatest axis.
+/// Returns the texture coordinates of a position, in metres, projected along the normal's greatest axis.
 fn projected(position: Vec3, normal: Vec3) -> Vec2 {
     let size = normal.abs();
     if size.y >= size.x && size.y >= size.z {
@@ -129,7 +130,7 @@ fn projected(position: Vec3, normal: Vec3) -> Vec2 {
 
 /// The triangle corners at each vertex, and the area vectors of the faces.
 struct Corners {
-    /// Twice each face's area along its outward normal.
+    /// For each face, twice its area along its outward normal.
     areas: Vec<Vec3>,
     /// Unit face normals.
     normals: Vec<Vec3>,
@@ -164,12 +165,12 @@ impl Corners {
         Self { areas, normals, by_vertex: corners, starts }
     }
 
-    /// Corners at a vertex.
+    /// Returns the corners at a vertex.
     fn around(&self, vertex: usize) -> &[u32] {
         &self.by_vertex[self.starts[vertex]..self.starts[vertex + 1]]
     }
 
-    /// Which of the faces around a vertex are smooth with `face`, a bit each. Poles with more faces
+    /// Returns a bit mask of the faces around a vertex that are smooth with `face`. Poles with more faces
     /// than bits are smooth all around.
     fn smooth_mask(&self, vertex: usize, face: usize, threshold: f32) -> u64 {
         let around = self.around(vertex);
@@ -182,7 +183,7 @@ impl Corners {
         })
     }
 
-    /// Mean normal of the masked faces around a vertex, weighted by area.
+    /// Returns the area-weighted mean normal of the masked faces around a vertex.
     fn normal(&self, vertex: usize, mask: u64) -> Vec3 {
         let around = self.around(vertex);
         let chosen = |bit: usize| around.len() > 64 || mask >> bit & 1 == 1;

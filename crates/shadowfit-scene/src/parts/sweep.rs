@@ -7,22 +7,22 @@ use glam::Vec3;
 use super::shapes::{curve, tube};
 use super::solid::Solid;
 
-/// A point of the line with the ellipse across it, in metres.
+/// A point of the line with its elliptical cross-section, in metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop {
-    /// Where the line passes.
+    /// Position on the line.
     pub at: Vec3,
-    /// Half axes of the ellipse: along the sweep's side, and across side and line.
+    /// Half axes of the ellipse: along the sweep's side, and perpendicular to side and line.
     pub half: [f32; 2],
 }
 
-/// A stop with a round cross-section.
+/// Returns a stop with a round cross-section.
 pub const fn stop(at: Vec3, radius: f32) -> Stop {
     Stop { at, half: [radius; 2] }
 }
 
-/// The solid around a line of at least four stops in a plane across `side` (a unit vector). The first and the last stop
-/// are the tips that close it, whose cross-sections are ignored.
+/// Builds the solid around a line of at least four stops in a plane perpendicular to `side` (a unit vector).
+/// The first and the last stop are the tips that close it. Their cross-sections are ignored.
 pub fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
     let ring = |index: usize| {
         let along = (stops[index + 1].at - stops[index - 1].at).normalize();
@@ -39,7 +39,7 @@ pub fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
     tube(&rings, stops[0].at, stops[last].at)
 }
 
-/// Stops on a smooth curve through all of `stops`, `steps` from each to the next.
+/// Returns stops on a smooth curve through all of `stops`, `steps` from each to the next.
 pub fn smooth(stops: &[Stop], steps: usize) -> Vec<Stop> {
     let points: Vec<_> =
         stops.iter().map(|stop| [stop.at.x, stop.at.y, stop.at.z, stop.half[0], stop.half[1]]).collect();

@@ -1,13 +1,13 @@
-//! Real scenes and odd but valid files: numbers as other tools count them.
+//! Real scenes and unusual but valid files, compared with the numbers of other tools.
 
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use shadowfit_scene::{AlphaMode, Lens, Scene, Wrap, load_gltf, load_gltf_scene};
 
-/// The collection, or `None` with a word about it.
+/// Returns the folder of the collection. Prints a message and returns `None` if it is missing.
 pub(crate) fn folder() -> Option<PathBuf> {
-    // Named by cargo, or by the runner of a bundle of tests.
+    // Set by cargo, or by the runner of a bundle of tests.
     let package =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
     let folder = package.join("../../../shared/assets");
@@ -18,7 +18,8 @@ pub(crate) fn folder() -> Option<PathBuf> {
     None
 }
 
-/// Path, triangles and how many of them have no area, extents at rest without skinning, animations, skins, cameras, suns.
+/// Path, number of triangles and of triangles without area, extents at rest without skinning, animations,
+/// skins, cameras, suns.
 type Row = (&'static str, (usize, usize), [f32; 3], [f32; 3], [usize; 4]);
 
 const SCENES: [Row; 11] = [
@@ -66,7 +67,7 @@ fn real_scenes_have_the_triangles_and_extents_that_other_tools_count() {
     }
 }
 
-/// What the docs of the scene types promise.
+/// Checks the guarantees in the docs of the scene types.
 fn check_consistent(scene: &Scene, file: &str) {
     for (index, node) in scene.nodes.iter().enumerate() {
         assert!(node.parent.is_none_or(|parent| parent < index), "{file}");
@@ -101,7 +102,7 @@ fn every_part_kit_file_loads_whole() {
     }
 }
 
-/// All glTF files below a folder, sorted.
+/// Returns all glTF files below a folder, sorted.
 pub(crate) fn files_below(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {

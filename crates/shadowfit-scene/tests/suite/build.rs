@@ -1,4 +1,4 @@
-//! Makes small glTF files for the tests.
+//! Creates small glTF files for the tests.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ pub(crate) const F32: u32 = 5126;
 /// The three corners of the triangle that most tests use, facing +z with area 1/2.
 pub(crate) const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
-/// A glTF file in the making: buffer data with accessors, and JSON members beside them.
+/// A glTF file under construction: buffer data with accessors, and further JSON members.
 #[derive(Default)]
 pub(crate) struct Build {
     bytes: Vec<u8>,
@@ -32,7 +32,7 @@ impl Build {
         self.accessor_with(component, kind, count, data, "")
     }
 
-    /// As `accessor`, with more members in the accessor's JSON.
+    /// Adds an accessor like `accessor`, with further members in its JSON.
     pub(crate) fn accessor_with(&mut self, component: u32, kind: &str, count: usize, data: &[u8], more: &str) -> usize {
         let view = self.view(data);
         self.push_accessor(&format!(
@@ -48,7 +48,7 @@ impl Build {
         self.count - 1
     }
 
-    /// Adds a float accessor; the count follows from `components`.
+    /// Adds a float accessor. Its count is the number of values divided by `components`.
     pub(crate) fn floats(&mut self, kind: &str, components: usize, values: &[f32]) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
         self.accessor(F32, kind, values.len() / components, &bytes)
@@ -70,12 +70,12 @@ impl Build {
         self
     }
 
-    /// One node with one mesh of one primitive.
+    /// Adds one node with one mesh of one primitive.
     pub(crate) fn one_primitive(&mut self, primitive: &str) -> &mut Self {
         self.members(&format!(r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{primitive}]}}]"#))
     }
 
-    /// The file's text.
+    /// Returns the file's text.
     pub(crate) fn json(&self) -> String {
         let data = BASE64_STANDARD.encode(&self.bytes);
         let length = self.bytes.len();
@@ -92,8 +92,8 @@ impl Build {
     }
 }
 
-/// Writes a file into the folder `name` of the running test and returns its path. Tests run side by side, each on a
-/// thread that has its name; where they share one thread they run one after the other.
+/// Writes a file into the folder `name` of the running test and returns its path. Tests that run in parallel
+/// have threads with their names. Tests that share a thread run one after the other.
 pub(crate) fn write(name: &str, file: &str, content: &[u8]) -> PathBuf {
     let test = std::thread::current().name().unwrap_or("test").replace("::", "-");
     let folder = std::env::temp_dir().join(format!("shadowfit-scene-{}", std::process::id())).join(test).join(name);
@@ -103,12 +103,12 @@ pub(crate) fn write(name: &str, file: &str, content: &[u8]) -> PathBuf {
     path
 }
 
-/// Loads a file of this text.
+/// Loads a file with this text.
 pub(crate) fn load_text(name: &str, text: &str) -> Result<Scene, SceneError> {
     load_gltf(&write(name, &format!("{name}.gltf"), text.as_bytes()))
 }
 
-/// The message with which a file is refused.
+/// Returns the error message of a refused file.
 pub(crate) fn refusal(result: Result<Scene, SceneError>) -> String {
     match result {
         Ok(scene) => panic!("{} was accepted", scene.name),

@@ -1,5 +1,5 @@
-//! Broken and malicious files: each loads or is refused in words, soon, and without reading or
-//! allocating what it should not.
+//! Broken and malicious files. Each loads or is refused with a readable error, within seconds, without
+//! reading or allocating anything illegitimate.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use shadowfit_scene::{Scene, SceneError, load_gltf};
 
 use crate::assets;
 
-/// A guard against hangs, not a measure of speed.
+/// Timeout that detects hangs. It does not measure speed.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 #[test]
@@ -33,7 +33,7 @@ fn every_hostile_file_loads_or_is_refused_in_words() {
     }
 }
 
-/// Does with a scene what a renderer would.
+/// Poses a scene and computes its bounds and triangles, like a renderer.
 fn use_up(scene: &Scene) -> Vec<String> {
     for animation in 0..=scene.animations.len() {
         for seconds in [0.0, 0.37, 1e9, f32::NAN] {

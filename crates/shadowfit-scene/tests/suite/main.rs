@@ -1,7 +1,7 @@
 //! Tests of import, pose and bounds through the public interface.
 //!
-//! `small_*` make their files themselves. `assets` and `hostile` load a collection of real, odd and
-//! broken files from `../shared/assets` beside the workspace, and say so where it is not there.
+//! `small_*` create their own files. `assets` and `hostile` load a collection of real, unusual and broken
+//! files from `../shared/assets` beside the workspace, and report if it is missing.
 
 mod assets;
 mod build;

@@ -1,4 +1,4 @@
-//! What is told while a file is loaded.
+//! Progress reports during loading.
 
 use std::cell::RefCell;
 
@@ -6,7 +6,7 @@ use shadowfit_scene::{LoadStep, Scene, SceneError, SceneSize, load_gltf, load_gl
 
 use crate::build::{Build, F32, TRIANGLE, write};
 
-/// A file of five nodes, of which three draw a mesh; the last of these the one of the given number, of two.
+/// Returns a file of five nodes. Three of them draw a mesh, the last of these mesh number `mesh` of two.
 fn file(mesh: usize) -> String {
     let mut build = Build::default();
     let positions = build.floats("VEC3", 3, &TRIANGLE);
@@ -20,7 +20,7 @@ fn file(mesh: usize) -> String {
 
 type Told = Vec<(LoadStep, SceneSize)>;
 
-/// Loads a file; with all that is told meanwhile.
+/// Loads a file. Also returns the reported progress.
 fn load(path: &std::path::Path) -> (Result<Scene, SceneError>, Told) {
     let told = RefCell::new(Vec::new());
     let scene = load_gltf_with_progress(path, None, &|step, size| told.borrow_mut().push((step, *size)));

@@ -1,4 +1,4 @@
-//! Small broken files: each is refused by file, element and reason.
+//! Small broken files. The error names the file, the element and the reason.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use shadowfit_scene::{SceneError, load_gltf};
 
 use crate::build::{Build, F32, TRIANGLE, U8, U16, U32, load_text, refusal, write};
 
-/// A triangle with its indices.
+/// Returns a triangle with indices.
 fn triangle() -> Build {
     let mut build = Build::default();
     let positions = build.floats("VEC3", 3, &TRIANGLE);
@@ -16,7 +16,7 @@ fn triangle() -> Build {
     build
 }
 
-/// Replaces a part of the sound triangle file and expects these words in the refusal.
+/// Replaces a part of the valid triangle file and expects these words in the error.
 fn refused(from: &str, to: &str, words: &[&str]) {
     let text = triangle().json();
     assert!(text.contains(from), "{text}");
@@ -102,7 +102,7 @@ fn counts_beyond_the_data_are_refused_before_anything_is_allocated() {
             &format!(r#""type":"SCALAR","count":{count}"#),
             &["accessor 1", "need"],
         );
-        // Without a buffer view the elements are zero, and nothing bounds their number.
+        // Elements without a buffer view are zero, so the file's size does not limit their number.
         if count != "4" {
             let zero = format!(r#""componentType":{U16},"type":"SCALAR","count":{count}"#);
             refused(
@@ -140,7 +140,8 @@ fn positions_that_are_not_finite_or_absurd_are_refused_by_vertex() {
         assert!(message.contains("attributes.POSITION, accessor 0") && message.contains(words), "{message}");
     }
     refused(r#"{"mesh":0}"#, r#"{"mesh":0,"scale":[1e30,1,1]}"#, &["nodes[0]", "beyond"]);
-    // The exact reading of floats, which another crate of the build may ask of serde_json, refuses it before we can.
+    // If another crate of the build enables exact parsing of floats in serde_json, serde_json refuses the
+    // file first.
     let text = triangle().json().replacen(r#"{"mesh":0}"#, r#"{"mesh":0,"translation":[1e39,0,0]}"#, 1);
     let message = refusal(load_text("infinite", &text));
     let ours = message.contains("nodes[0]") && message.contains("not finite");
@@ -188,7 +189,7 @@ fn joints_beyond_the_skin_are_refused() {
         {{"POSITION":{positions},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}]}}]"#
     ));
     let message = refusal(build.load("joints"));
-    // Joint 9 has no weight and is not looked at.
+    // Joint 9 has no weight and is ignored.
     assert!(message.contains("nodes[0].skin: primitive 0 of its mesh uses joint 1, its skin has 1"), "{message}");
 }
 
@@ -209,7 +210,7 @@ fn missing_buffers_and_paths_out_of_the_folder_are_refused() {
 
 #[test]
 fn a_small_file_cannot_ask_for_endless_geometry() {
-    // Three thousand nodes draw the same hundred thousand vertices.
+    // 3000 nodes draw the same 100,000 vertices.
     let mut build = Build::default();
     let count = 100_000;
     let positions: Vec<f32> = (0..count * 3).map(|i| (i % 7) as f32).collect();
@@ -219,7 +220,7 @@ fn a_small_file_cannot_ask_for_endless_geometry() {
     build.members(&format!(r#""nodes":[{nodes}],"meshes":[{{"primitives":[{primitive}]}}]"#));
     let message = refusal(build.load("endless"));
     assert!(message.contains("draws more than"), "{message}");
-    // A thousand nodes draw the same three thousand primitives without triangles.
+    // 1000 nodes draw the same 3000 primitives without triangles.
     let mut build = Build::default();
     let none = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":0}}"#));
     let primitives = vec![format!(r#"{{"attributes":{{"POSITION":{none}}}}}"#); 3000].join(",");
@@ -231,7 +232,7 @@ fn a_small_file_cannot_ask_for_endless_geometry() {
 
 #[test]
 fn morph_targets_cannot_ask_for_endless_copies() {
-    // A million vertices and a hundred and thirty targets without positions, or one vertex and a million corners.
+    // A million vertices and 130 targets without positions, or one vertex and a million corners.
     let million = 1_048_575;
     for (vertices, corners, targets) in [(million, 0, 130), (1, million, 65)] {
         let mut build = Build::default();
@@ -262,7 +263,7 @@ proptest! {
     }
 }
 
-/// A file with something of everything: skin, morph, animation, colours, camera.
+/// Returns a file with a skin, a morph target, an animation, colours and a camera.
 fn skinned_text() -> String {
     let mut build = Build::default();
     let positions = build.floats("VEC3", 3, &TRIANGLE);

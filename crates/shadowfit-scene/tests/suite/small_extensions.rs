@@ -1,11 +1,11 @@
-//! Extensions: hidden nodes, materials of other kinds, and notes about the ones that are ignored.
+//! Extensions: hidden nodes, other kinds of materials, and notes about ignored extensions.
 
 use glam::{Vec3, Vec4};
 use shadowfit_scene::{AlphaMode, Casting, Scene, SceneError, load_gltf};
 
 use crate::build::{Build, TRIANGLE, load_text, refusal, write};
 
-/// A triangle, with members of its primitive and of the file.
+/// Returns a triangle, with further members of its primitive and of the file.
 fn triangle(primitive: &str, members: &str) -> String {
     let mut build = Build::default();
     let positions = build.floats("VEC3", 3, &TRIANGLE);
@@ -218,7 +218,7 @@ fn a_cutoff_above_one_hides_a_primitive_and_blended_ones_cast_where_they_are_opa
         matches!(casting(&material(r#""alphaMode":"MASK","alphaCutoff":1"#)), Casting::CutOut(least) if least < 1.0)
     );
     assert_eq!(casting(&material(r#""alphaMode":"OPAQUE","alphaCutoff":7"#)), Casting::Whole);
-    // Transparent texels are holes at the smallest cutoffs, and opaque at 0 alone.
+    // Transparent texels are holes at the smallest cutoffs, and opaque only at 0.
     for cutoff in [1e-6, 1e-4, 9e-4, 2e-3_f32] {
         let found = casting(&material(&format!(r#""alphaMode":"MASK","alphaCutoff":{cutoff}"#)));
         assert!(matches!(found, Casting::CutOut(least) if least > 0.0 && least < cutoff), "{cutoff}: {found:?}");

@@ -5,14 +5,14 @@ use shadowfit_scene::Scene;
 
 use crate::build::{Build, TRIANGLE, U8};
 
-/// A place on the globe and the turn of its ground, as files of surveys have them.
+/// A place on the globe, at survey coordinates.
 const PLACE: DVec3 = DVec3::new(-2_694_044.411_163, 4_266_352.873_251, 3_888_310.602_734);
 
 fn turn() -> DQuat {
     DQuat::from_euler(glam::EulerRot::XYZ, 0.3, -1.1, 2.2)
 }
 
-/// JSON of numbers with all of their digits.
+/// Returns JSON numbers with all digits.
 fn json(values: &[f64]) -> String {
     format!("{values:?}")
 }
@@ -30,7 +30,8 @@ fn file(nodes: &str, more: &str) -> Scene {
     build.load("far").unwrap()
 }
 
-/// Three parts of a place: as a matrix, nested in a turned and scaled root, and by its own long translation.
+/// Returns three parts of a place: as a matrix, nested in a rotated and scaled root, and with its own long
+/// translation.
 fn nodes(offset: DVec3) -> String {
     let part = DMat4::from_scale_rotation_translation(DVec3::ONE, turn(), PLACE + turn() * offset);
     let inner = DVec3::new(5.0, 0.25, 1.125) * 1e-3;
@@ -109,7 +110,7 @@ fn scenes_near_their_origin_and_those_around_it_stay() {
         let scene = file(&[node.as_str(), "{}", "{}"].join(","), "");
         assert_eq!(scene.origin != DVec3::ZERO, is_moved, "{place}");
     }
-    // Two triangles here, and a backdrop of three.
+    // Two triangles near the origin, and a backdrop of three.
     let far = r#""mesh":0,"translation":[50000,0,0]"#;
     let backdrop =
         format!(r#"{{"mesh":0,"children":[3]}},{{{far},"children":[4]}},{{{far}}},{{"mesh":0}},{{"mesh":0}}"#);

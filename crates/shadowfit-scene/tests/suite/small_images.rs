@@ -1,5 +1,5 @@
-//! Images of small files: which of a texture's images is taken, WebP among them, and what replaces one that cannot be
-//! used.
+//! Images of small files: selection among a texture's images, including WebP, and replacement of unusable
+//! ones.
 
 use std::io::Cursor;
 
@@ -14,10 +14,10 @@ use crate::build::{Build, TRIANGLE, refusal, write};
 /// Members of a texture with a WebP image and another one for readers that do not know the extension.
 const WEBP_AND_FALLBACK: &str = r#""source":1,"extensions":{"EXT_texture_webp":{"source":0}}"#;
 
-/// The same without the other one.
+/// Members of a texture with a WebP image only.
 const WEBP_ALONE: &str = r#""extensions":{"EXT_texture_webp":{"source":0}}"#;
 
-/// Two pixels of these colours, half transparent, without loss.
+/// Encodes two half-transparent pixels of these colours without loss.
 fn encoded(format: ImageFormat, colors: [[u8; 4]; 2]) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     let pixels = RgbaImage::from_raw(2, 1, colors.concat()).unwrap();
@@ -41,7 +41,7 @@ fn damaged_webp() -> String {
     data_uri(&bytes[..bytes.len() - 6], "webp")
 }
 
-/// Completes a file with a triangle whose base colour is a texture of these members.
+/// Completes a file with a triangle whose base colour texture has these members.
 fn textured(mut build: Build, texture: &str, images: &[String], more: &str) -> Build {
     let positions = build.floats("VEC3", 3, &TRIANGLE);
     build.one_primitive(&format!(r#"{{"material":0,"attributes":{{"POSITION":{positions}}}}}"#));
@@ -57,12 +57,12 @@ fn load(texture: &str, images: &[String]) -> Result<Scene, SceneError> {
     textured(Build::default(), texture, images, "").load("images")
 }
 
-/// The image of the triangle's base colour.
+/// Returns the image of the triangle's base colour.
 fn base_color(scene: &Scene) -> &Image {
     &scene.images[scene.materials[1].base_color_texture.unwrap().image]
 }
 
-/// The notes about images and textures.
+/// Returns the notes about images and textures.
 fn image_notes(scene: &Scene) -> Vec<&str> {
     let is_of_image = |note: &&str| note.starts_with("images") || note.starts_with("textures");
     scene.notes.iter().map(String::as_str).filter(is_of_image).collect()
@@ -86,7 +86,7 @@ fn webp_images_are_read_from_buffer_views_data_uris_and_files_of_any_name() {
         load(WEBP_ALONE, &[webp()]),
         load(WEBP_ALONE, &[r#"{"uri":"red.webp"}"#.to_owned()]),
         load(WEBP_ALONE, &[r#"{"uri":"red.png"}"#.to_owned()]),
-        // Not allowed without the extension, and plain enough to read all the same.
+        // The specification forbids WebP without the extension, but the reader accepts it.
         load(r#""source":0"#, &[webp()]),
     ];
     for scene in scenes.map(Result::unwrap) {
@@ -138,7 +138,7 @@ fn webp_images_cut_short_at_any_length_are_replaced_with_a_note() {
 
 #[test]
 fn a_webp_image_that_claims_more_pixels_than_the_limit_is_replaced_before_they_are_allocated() {
-    // Width and height less one, in 14 bits each.
+    // Width and height minus one, in 14 bits each.
     let side = 16_383_u32 - 1;
     let size = side | (side << 14);
     let bytes = [b"RIFF\x12\0\0\0WEBPVP8L\x05\0\0\0\x2f".as_slice(), &size.to_le_bytes(), b"\0"].concat();

@@ -8,7 +8,8 @@ use crate::build::{Build, F32, TRIANGLE, U8, refusal};
 const I8: u32 = 5120;
 const I16: u32 = 5122;
 
-/// A node under a moved parent that draws the triangle for each row of a table; `more` is added to the file.
+/// Loads a file with a node under a moved parent that draws the triangle for each row of a table. `more` is
+/// added to the file.
 fn with_table(build: &mut Build, attributes: &str, node: &str, more: &str) -> Result<Scene, SceneError> {
     let positions = build.floats("VEC3", 3, &TRIANGLE);
     build.members(&format!(
@@ -20,7 +21,7 @@ fn with_table(build: &mut Build, attributes: &str, node: &str, more: &str) -> Re
     build.load("instances")
 }
 
-/// The first corner and the edge to the second one of each triangle.
+/// Returns the first corner of each triangle, and the edge from it to the second.
 fn placed(scene: &Scene, seconds: f32) -> Vec<[Vec3; 2]> {
     let triangles = scene.pose(Some(0), seconds).triangles(scene);
     triangles.iter().map(|triangle| [triangle.vertices[0], triangle.vertices[1] - triangle.vertices[0]]).collect()
@@ -112,7 +113,7 @@ fn rows_of_morphed_meshes_and_copies_of_their_channels_are_limited() {
             Err(error) => assert!(!is_sound && error.to_string().contains("morph targets"), "{error}"),
         }
     }
-    // Eight thousand keys for each of sixteen thousand rows.
+    // 8192 keys for each of 16,384 rows.
     let mut build = Build::default();
     let table = build.push_accessor(&zeros(16_384));
     let keys = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"SCALAR","count":8192}}"#));
@@ -171,7 +172,7 @@ fn broken_tables_are_refused_by_node_and_attribute() {
         assert!(message.contains("nodes[1].extensions.EXT_mesh_gpu_instancing"), "{message}");
         assert!(message.contains(words), "{words} is missing in {message}");
     }
-    // Rows that are all zero need no data, and primitives without triangles need no limit of triangles.
+    // Rows of zeros need no data. Primitives without triangles do not count toward the triangle limit.
     let mut build = Build::default();
     let none = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":0}}"#));
     let table = build.push_accessor(&format!(r#"{{"componentType":{F32},"type":"VEC3","count":1048576}}"#));
@@ -181,7 +182,7 @@ fn broken_tables_are_refused_by_node_and_attribute() {
     build.members(&format!(r#""nodes":[{node}],"meshes":[{{"primitives":[{primitives}]}}]"#));
     let message = refusal(build.load("primitives"));
     assert!(message.contains("nodes[0]") && message.contains("more than 2097152 primitives"), "{message}");
-    // Nodes together may not have more either.
+    // The limit also applies to the sum over all nodes.
     let mut build = Build::default();
     let table = build.push_accessor(&many);
     let positions = build.floats("VEC3", 3, &TRIANGLE);

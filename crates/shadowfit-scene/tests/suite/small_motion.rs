@@ -1,4 +1,4 @@
-//! Animation, skins and morph targets of small files, against values worked out by hand.
+//! Animation, skins and morph targets of small files, against values computed by hand.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -7,7 +7,7 @@ use shadowfit_scene::{Scene, SceneError};
 
 use crate::build::{Build, TRIANGLE, U8, U16, refusal};
 
-/// A triangle at a node that one channel moves.
+/// Loads a triangle at a node that one channel moves.
 fn moving(
     path: &str,
     interpolation: &str,
@@ -79,11 +79,11 @@ fn pointers_to_transforms_and_weights_of_nodes_move_them_and_others_are_noted() 
     assert_eq!((translation(&scene, 0.5), &pose.morph_weights[0][..]), (Vec3::splat(2.0), &[0.5][..]));
     let turned = pose.world_from_node[0].transform_vector3(Vec3::X);
     assert!(turned.abs_diff_eq(Vec3::NEG_Z * 2.0, 1e-5), "{turned}");
-    let is_noted = |note: &String| note.contains("weights of meshes and single weights stand still");
+    let is_noted = |note: &String| note.contains("weights of meshes and single weights are not played");
     assert!(scene.notes.iter().any(is_noted), "{:?}", scene.notes);
 }
 
-/// The extension forbids a node, and the gltf crate reads such a file as it is.
+/// The extension forbids a node, but the gltf crate accepts such a file.
 #[test]
 fn a_pointer_beside_a_node_moves_the_node_that_it_points_at() {
     let mut build = Build::default();
@@ -120,7 +120,7 @@ fn step_holds_the_earlier_key() {
 
 #[test]
 fn cubic_splines_pass_their_keys_and_take_tangents_per_second() {
-    // Two seconds from 0 with slope 3 to 4 with slope 0: at half, (0 + 4) / 2 + 2 (3 - 0) / 8.
+    // Two seconds from 0 with slope 3 to 4 with slope 0. In the middle: (0 + 4) / 2 + 2 (3 - 0) / 8.
     let key = |inward: f32, value: f32, outward: f32| [inward, 0.0, 0.0, value, 0.0, 0.0, outward, 0.0, 0.0];
     let values = [key(9.0, 0.0, 3.0), key(0.0, 4.0, 9.0)].concat();
     let scene = moving("translation", "CUBICSPLINE", "VEC3", 3, &[0.0, 2.0], &values).unwrap();
@@ -131,7 +131,7 @@ fn cubic_splines_pass_their_keys_and_take_tangents_per_second() {
 
 #[test]
 fn rotations_take_the_short_arc_with_constant_speed() {
-    // A quarter turn about y, given by the quaternion of the far side.
+    // A quarter turn about y, given as the negative quaternion.
     let values = [0.0, 0.0, 0.0, 1.0, 0.0, -FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2];
     let scene = moving("rotation", "LINEAR", "VEC4", 4, &[0.0, 3.0], &values).unwrap();
     let rotation = Quat::from_mat4(&scene.pose(Some(0), 1.0).world_from_node[0]);
@@ -156,7 +156,7 @@ fn morph_weights_play_and_flat_normals_follow() {
 fn flat_normals_of_morphed_faces_are_exact_at_full_weight() {
     let mut build = Build::default();
     let positions = build.floats("VEC3", 3, &TRIANGLE);
-    // Lifts the corner at y to stand on z: the face turns from +z to -y.
+    // Moves the corner on y to z, so the face turns from +z to -y.
     let target = build.floats("VEC3", 3, &[0., 0., 0., 0., 0., 0., 0., -1., 1.]);
     build.members(&format!(
         r#""nodes":[{{"mesh":0}}],"meshes":[{{"weights":[1],"primitives":[{{"attributes":{{"POSITION":{positions}}},"targets":[{{"POSITION":{target}}}]}}]}}]"#
@@ -166,7 +166,7 @@ fn flat_normals_of_morphed_faces_are_exact_at_full_weight() {
     assert_eq!(deformed.normals, [Vec3::NEG_Y; 3]);
 }
 
-/// An upright strip at heights 0, 1 and 2 on two bones: the second starts at height 1.
+/// Loads an upright strip at heights 0, 1 and 2 on two bones. The second bone starts at height 1.
 fn two_bones(rotation: &str, scale: &str) -> Scene {
     let mut build = Build::default();
     let positions = build.floats("VEC3", 3, &[0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 2., 0.]);
@@ -190,7 +190,7 @@ fn two_bones(rotation: &str, scale: &str) -> Scene {
 
 #[test]
 fn a_two_bone_bend_carries_the_upper_part_and_ignores_the_mesh_node() {
-    // The upper bone bends a quarter turn about z: up becomes left.
+    // The upper bone rotates by 90° about z, so up becomes left.
     let scene = two_bones("[0,0,0.70710678,0.70710678]", "[1,1,1]");
     let (pose, instance) = (scene.pose(None, 0.0), scene.instances()[0]);
     let deformed = pose.deform(&scene, &instance).unwrap();

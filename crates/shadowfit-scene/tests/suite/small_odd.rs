@@ -1,4 +1,4 @@
-//! Odd files that are valid, or that people have although they are not.
+//! Unusual files: valid ones, and common invalid ones.
 
 use glam::Vec3;
 use shadowfit_scene::{Scene, load_gltf};
@@ -57,7 +57,7 @@ fn interleaved_attributes_and_a_stride_of_zero_are_read() {
         r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[
         {{"attributes":{{"POSITION":{positions},"NORMAL":{normals}}}}},{{"attributes":{{"POSITION":{plain}}}}}]}}]"#
     ));
-    // The first view that has none yet.
+    // Sets the stride of the first view without one.
     let stride = |text: &str, stride: usize| {
         text.replacen(r#"{"buffer":0,"#, &format!(r#"{{"byteStride":{stride},"buffer":0,"#), 1)
     };

@@ -1,4 +1,4 @@
-//! Primitives that share accessors: time and memory follow the file's size.
+//! Primitives that share accessors: time and memory depend on the file's size alone.
 
 use std::sync::Arc;
 
@@ -10,20 +10,20 @@ use crate::build::{Build, F32, U8, U32, refusal};
 /// Vertices of the shared accessors.
 const VERTICES: usize = 62_000;
 
-/// Primitives that use one triangle each. All of their vertices would be far more than an import may decode.
+/// Primitives with one triangle each. All of their vertices together would exceed the import limit by far.
 const PRIMITIVES: usize = 1500;
 
 fn position(vertex: usize) -> Vec3 {
     Vec3::new((vertex % 250) as f32, (vertex / 250) as f32, (vertex % 7) as f32)
 }
 
-/// Corners of primitive `number`, in no order.
+/// Returns the corners of primitive `number`, in mixed order.
 fn corners(number: usize) -> [usize; 3] {
     let first = number * 41;
     [first + 2, first, first + 251]
 }
 
-/// Adds one index accessor for each primitive and returns the first one's index.
+/// Adds one index accessor for each primitive and returns the first accessor's index.
 fn indices(build: &mut Build) -> usize {
     let all: Vec<u8> = (0..PRIMITIVES).flat_map(corners).flat_map(|corner| (corner as u32).to_le_bytes()).collect();
     let view = build.view(&all);
@@ -79,7 +79,7 @@ fn primitives_keep_the_vertices_that_they_use_of_shared_accessors() {
 #[test]
 fn a_sparse_accessor_is_put_together_once() {
     let mut build = Build::default();
-    // All of its elements are replaced, so that each copy of it would count.
+    // All of its elements are replaced, so each copy of it would count.
     let replaced: Vec<u8> = (0..VERTICES as u32).flat_map(u32::to_le_bytes).collect();
     let values: Vec<u8> =
         (0..VERTICES).flat_map(|vertex| position(vertex).to_array()).flat_map(f32::to_le_bytes).collect();
@@ -101,7 +101,7 @@ fn primitives_that_differ_in_material_alone_share_their_geometry_until_one_is_ch
     let positions: Vec<f32> = (0..VERTICES).flat_map(|vertex| position(vertex * 37 % VERTICES).to_array()).collect();
     let positions = build.floats("VEC3", 3, &positions);
     let primitive = |material: usize| format!(r#"{{"attributes":{{"POSITION":{positions}}},"material":{material}}}"#);
-    // Their vertices together would be refused.
+    // Together, their vertices would exceed the import limit.
     let primitives: Vec<String> = (0..2500).map(|number| primitive(number % 3)).collect();
     let primitives = primitives.join(",");
     build.members(&format!(

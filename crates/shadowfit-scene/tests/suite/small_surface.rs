@@ -9,7 +9,7 @@ fn only(scene: &Scene) -> &Primitive {
     &scene.meshes[0].primitives[0]
 }
 
-/// Four corners of a square, in the order of a strip; as a fan they are folded.
+/// Four corners of a square, in strip order. As a fan they fold over.
 const SQUARE: [f32; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0];
 
 #[test]
@@ -49,7 +49,7 @@ fn indices_of_every_type_address_the_same_triangle() {
 #[test]
 fn missing_normals_are_computed_flat_on_split_vertices() {
     let mut build = Build::default();
-    // Two faces at a right angle that share an edge.
+    // Two perpendicular faces that share an edge.
     let positions = build.floats("VEC3", 3, &[0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1.]);
     let indices = build.accessor(U8, "SCALAR", 6, &[0, 1, 2, 0, 2, 3]);
     build.one_primitive(&format!(r#"{{"attributes":{{"POSITION":{positions}}},"indices":{indices}}}"#));
@@ -143,7 +143,7 @@ fn nodes_are_parents_first_and_only_those_of_the_scene() {
     assert!(scene.node_bounds(&pose, 1).is_none());
 }
 
-/// A PNG of two pixels, red and green.
+/// Returns a PNG of two pixels, red and green.
 fn png() -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let pixels = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 255, 0, 255]).unwrap();
@@ -151,7 +151,7 @@ fn png() -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// A textured triangle; `image` and the material's members vary.
+/// Returns a file with a textured triangle, with the given image and material members.
 fn textured(build: &mut Build, material: &str, image: &str) -> String {
     let positions = build.floats("VEC3", 3, &TRIANGLE);
     let uvs = build.floats("VEC2", 2, &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
@@ -188,7 +188,7 @@ fn materials_keep_factors_modes_textures_and_sampling() {
     assert!(material.double_sided);
     let texture = material.base_color_texture.unwrap();
     assert_eq!((texture.wrap, texture.nearest), ([Wrap::Clamp, Wrap::Mirror], true));
-    // A quarter turn counter-clockwise in the image takes u to -v, which points up, and v to u.
+    // A quarter turn counter-clockwise in the image maps u to -v, which points up, and v to u.
     let [u, v] = texture.uv_from_texcoord;
     let apply = |uv: Vec2| Vec2::new(u.dot(uv.extend(1.0)), v.dot(uv.extend(1.0)));
     assert!((apply(Vec2::X) - Vec2::new(0.25, -1.5)).length() < 1e-6);

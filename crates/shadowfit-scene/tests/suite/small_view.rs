@@ -1,16 +1,17 @@
-//! Cameras and suns of small files: which are taken, and where animations move them.
+//! Cameras and suns of small files: which ones are used, and how animations move them.
 
 use glam::{DVec3, Vec3};
 use shadowfit_scene::{Lens, Scene};
 
 use crate::build::{Build, TRIANGLE, load_text};
 
-/// A triangle, and these nodes after its own; `members` are further members of the file.
+/// Loads a triangle, and these nodes after its own. `members` are further members of the file.
 fn scene(name: &str, nodes: &str, members: &str) -> Scene {
     with_motion(name, nodes, members, "")
 }
 
-/// The same with the keys 0 s and 2 s as accessor 1, and `rotations`, two quaternions, as accessor 2.
+/// Loads the same scene with an animation. The keys 0 s and 2 s are accessor 1, `rotations`, two quaternions,
+/// are accessor 2.
 fn with_motion(name: &str, nodes: &str, members: &str, animation: &str) -> Scene {
     let mut build = Build::default();
     build.floats("VEC3", 3, &TRIANGLE);
@@ -24,7 +25,7 @@ fn with_motion(name: &str, nodes: &str, members: &str, animation: &str) -> Scene
     load_text(name, &build.json()).expect(name)
 }
 
-/// Nodes 1 to 3 with a light each; the first travels along -z, the second down, the third along -x.
+/// Nodes 1 to 3 with a light each. The first light travels along -z, the second down, the third along -x.
 const LIT: &str = r#"{"name":"a","extensions":{"KHR_lights_punctual":{"light":0}}},
     {"name":"b","rotation":[-0.70710678,0,0,0.70710678],"scale":[3,3,3],"extensions":{"KHR_lights_punctual":{"light":1}}},
     {"name":"c","rotation":[0,0.70710678,0,0.70710678],"scale":[-2,1,1],"extensions":{"KHR_lights_punctual":{"light":2}}}"#;
@@ -53,7 +54,7 @@ fn orthographic(lens: &str) -> String {
 #[test]
 fn the_strongest_directional_light_is_the_sun_and_all_are_listed() {
     let table: [(&str, Option<usize>, &str); 6] = [
-        // Intensity counts, and green light is brighter than blue light of the same intensity.
+        // Intensity counts. Green light is brighter than blue light of the same intensity.
         (
             r#"{"type":"directional","intensity":0},{"type":"directional","intensity":5},{"type":"directional"}"#,
             Some(1),
@@ -68,7 +69,7 @@ fn the_strongest_directional_light_is_the_sun_and_all_are_listed() {
         (
             r#"{"type":"directional","intensity":-7},{"type":"directional","color":[0,0,0]},{"type":"directional","intensity":0}"#,
             None,
-            "without intensity",
+            "emits no light",
         ),
         (
             r#"{"type":"point","intensity":900},{"type":"spot","spot":{}},{"type":"directional"}"#,
@@ -117,7 +118,7 @@ fn a_strongest_light_that_cannot_be_used_leaves_the_sun_to_the_next_one() {
     let flat = LIT.replace(r#""name":"a","#, r#""name":"a","scale":[0,0,0],"#);
     let bright = r#""color":[1e20,1e20,1e20],"intensity":1e30"#;
     for (nodes, first, fault) in
-        [(flat.as_str(), r#""intensity":9"#, "its node has no size"), (LIT, bright, "it is brighter")]
+        [(flat.as_str(), r#""intensity":9"#, "its node has no size"), (LIT, bright, "its brightness")]
     {
         let json =
             format!(r#"{{"type":"directional",{first}}},{{"type":"directional","intensity":2}},{{"type":"point"}}"#);

@@ -1,4 +1,4 @@
-//! The columns and the low wall that they stand on.
+//! The columns and the low wall below them.
 
 use glam::Vec3;
 
@@ -6,9 +6,9 @@ use super::palette::Paint;
 use super::plan::{BAY, ROW, SPRING, bay_middles, column_places};
 use crate::parts::{Builder, CRISP, lathe, pillar};
 
-/// Height of the low wall between the columns, in metres: a seat.
+/// Height of the low wall between the columns, in metres: the height of a seat.
 const SEAT: f32 = 0.48;
-/// Bays whose low wall is left open, as a way into the garden.
+/// Bays without a low wall, open toward the garden.
 const OPEN: [usize; 2] = [4, 8];
 
 /// Adds columns and low walls.
@@ -26,8 +26,8 @@ pub(super) fn build(builder: &mut Builder) {
     }
 }
 
-/// Adds the mesh of a column: base, shaft and capital are round, its stand and the abacus, which carries the arches,
-/// square.
+/// Adds the mesh of a column. Base, shaft and capital are round. The plinth, and the abacus that carries the
+/// arches, are square.
 pub(super) fn column(builder: &mut Builder, name: &str, segments: usize) -> usize {
     let base = [(0.30, 0.56), (0.328, 0.58), (0.335, 0.60), (0.328, 0.62), (0.30, 0.64), (0.27, 0.65)];
     let waist = [(0.275, 0.69), (0.29, 0.71), (0.25, 0.735)];

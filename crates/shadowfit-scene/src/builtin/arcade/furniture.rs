@@ -1,4 +1,4 @@
-//! What stands and hangs in the gallery: an urn, pots, benches, and lanterns that swing.
+//! Furniture of the gallery: an urn, pots, benches, and lanterns that swing.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -12,12 +12,12 @@ use crate::parts::{
 };
 use crate::{Channel, Primitive};
 
-/// Time in which the lanterns swing once through their whole pattern, in seconds.
+/// Period of the lanterns' swing, in seconds.
 pub(super) const SWING_TIME: f32 = 9.0;
 /// Keyframes of a lantern's swing.
 const SWING_KEYS: usize = 72;
 
-/// Adds everything that stands or hangs in the gallery; returns the urn's node and how the lanterns swing.
+/// Adds the furniture. Returns the urn's node and the animation channels of the lanterns.
 pub(super) fn build(builder: &mut Builder) -> (usize, Vec<Channel>) {
     let urn = urn(builder);
     let group = builder.group("furniture", Vec3::ZERO, 0.0);
@@ -26,7 +26,7 @@ pub(super) fn build(builder: &mut Builder) -> (usize, Vec<Channel>) {
     (urn, lanterns(builder, group))
 }
 
-/// A marble urn with an agave, on a pedestal.
+/// Adds a marble urn with an agave, on a pedestal.
 fn urn(builder: &mut Builder) -> usize {
     let foot = [(0.15, 0.0), (0.165, 0.015), (0.15, 0.04), (0.085, 0.07), (0.06, 0.11), (0.075, 0.135), (0.10, 0.145)];
     let belly = [(0.16, 0.17), (0.215, 0.22), (0.24, 0.28), (0.245, 0.32), (0.23, 0.36), (0.20, 0.40), (0.185, 0.46)];
@@ -52,7 +52,7 @@ fn urn(builder: &mut Builder) -> usize {
     builder.node("urn", None, turned([-1.0, 0.0, -2.3], 0.5), Some(mesh))
 }
 
-/// A rosette of thick pointed leaves that grows from `at`.
+/// Builds a rosette of thick pointed leaves that grows from `at`.
 fn agave(at: Vec3, size: f32) -> Primitive {
     let mut dice = Dice::new(40);
     let mut limbs = Limbs::default();
@@ -76,7 +76,7 @@ fn agave(at: Vec3, size: f32) -> Primitive {
     limbs.primitive(Paint::Agave)
 }
 
-/// Stone benches along the rear wall.
+/// Adds stone benches along the rear wall.
 fn benches(builder: &mut Builder, group: usize) {
     let seat = pillar([0.22, 0.85], [0.42, 0.50], 0.015);
     let leg = |z: f32| block([-0.16, -0.01, z - 0.07], [0.16, 0.43, z + 0.07], 0.012);
@@ -87,7 +87,7 @@ fn benches(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Clay pots with shrubs, between the benches and by the columns.
+/// Adds clay pots with shrubs, between the benches and by the columns.
 fn pots(builder: &mut Builder, group: usize) {
     #[rustfmt::skip]
     let profile = [
@@ -119,7 +119,7 @@ fn pots(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Iron lanterns on chains, in the crowns of arches.
+/// Adds iron lanterns on chains, in the crowns of arches. Returns their animation channels.
 fn lanterns(builder: &mut Builder, group: usize) -> Vec<Channel> {
     let glass = lathe(&[(0.05, -0.98), (0.075, -0.93), (0.075, -0.76), (0.05, -0.72)], 16);
     let lantern = builder.solids("lantern", [(ironwork(), Paint::Iron, SMOOTH), (glass, Paint::Glass, CRISP)]);
@@ -128,7 +128,7 @@ fn lanterns(builder: &mut Builder, group: usize) -> Vec<Channel> {
         .map(|(index, crown)| {
             let node = builder.place(group, lantern, crown + Vec3::Y * 0.02, 0.0);
             let late = index as f32 * 0.9;
-            // Two swings at right angles and of unlike rate, as of a pendulum in a draught.
+            // Two swings at right angles with different periods, like a pendulum in a draught.
             rotations(node, SWING_TIME, SWING_KEYS, |phase| {
                 let across = 0.17 * (5.0 * phase + late).sin() + 0.05 * (2.0 * phase).sin();
                 let along = 0.10 * (4.0 * phase + 1.7 * late).sin();
@@ -138,7 +138,7 @@ fn lanterns(builder: &mut Builder, group: usize) -> Vec<Channel> {
         .collect()
 }
 
-/// Chain, frame and roof of a lantern that hangs from the origin.
+/// Builds chain, frame and roof of a lantern that hangs from the origin.
 fn ironwork() -> Solid {
     let link = |link: u8| {
         let turn = Quat::from_rotation_y(FRAC_PI_2 * f32::from(link % 2)) * Quat::from_rotation_x(FRAC_PI_2);

@@ -1,4 +1,4 @@
-//! The garden that the arcade looks on: gravel, lawns, hedges, a fountain, cypresses, and the wing across.
+//! The garden next to the arcade: gravel, lawns, hedges, a fountain, cypresses, and the wing across.
 
 use std::f32::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ use crate::{Primitive, Transform};
 
 /// Middle of the garden, in metres.
 const MIDDLE: Vec3 = Vec3::new(9.6, GARDEN, -6.0);
-/// Where the columns of the wing across stand along x, in metres.
+/// Position of the columns of the wing across, along x, in metres.
 const ACROSS: f32 = 17.5;
 /// Bays of the wing across.
 const BAYS_ACROSS: usize = 9;
@@ -28,17 +28,17 @@ pub(super) fn build(builder: &mut Builder) {
     wing_across(builder, group);
 }
 
-/// Gravel on all sides of the gallery and its house, but not below them.
+/// Builds the gravel on all sides of the gallery and its house, but not below them.
 fn gravel() -> Primitive {
     let (xs, zs) = ([-60.0, -HALF - 9.0, 3.2, 20.0, 60.0], [-60.0, END - 0.4, START + 0.4, 60.0]);
     let mut gravel = ground(Paint::Gravel.into(), [&xs, &zs], |_, _| GARDEN, |_| Vec3::ONE);
-    // The cell in the second row and the second column, two triangles each.
+    // Drops the two triangles of the cell in the second row and second column.
     let cell = (xs.len() - 1 + 1) * 6;
     gravel.indices.drain(cell..cell + 6);
     gravel
 }
 
-/// Lawns framed by hedges, with balls of box at their corners, around a crossing of paths.
+/// Adds lawns framed by hedges, with round box shrubs at their corners, around a crossing of paths.
 fn beds(builder: &mut Builder, group: usize) {
     let lawn = builder.solid("lawn", &rounded_box([2.0, 0.06, 3.4], 0.02, 1), Paint::Lawn, CRISP);
     let long = builder.solid("long hedge", &rounded_box([0.22, 0.3, 3.5], 0.05, 1), Paint::Hedge, CRISP);
@@ -58,7 +58,7 @@ fn beds(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A fountain of two bowls where the paths cross.
+/// Adds a fountain of two bowls where the paths cross.
 fn fountain(builder: &mut Builder, group: usize) {
     #[rustfmt::skip]
     let basin = [
@@ -75,7 +75,7 @@ fn fountain(builder: &mut Builder, group: usize) {
     builder.place(group, fountain, MIDDLE, 0.0);
 }
 
-/// Cypresses in the garden, and beyond the doorway at the end.
+/// Adds cypresses in the garden and beyond the doorway at the end.
 fn cypresses(builder: &mut Builder, group: usize) {
     let trunk = lathe(&[(0.12, -0.05), (0.10, 0.8)], 10);
     let crown = cypress(1.55, [0.3, 7.5], 11, 14);
@@ -97,7 +97,7 @@ fn cypresses(builder: &mut Builder, group: usize) {
     }
 }
 
-/// The wing across the garden: the same arches, seen from outside, before a dark gallery.
+/// Adds the wing across the garden: the same arches from outside, in front of a dark gallery.
 fn wing_across(builder: &mut Builder, group: usize) {
     let start = START - 2.0 * BAY;
     let length = BAY * BAYS_ACROSS as f32;

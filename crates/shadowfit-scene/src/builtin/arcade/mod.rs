@@ -1,8 +1,8 @@
 //! The arcade: a vaulted gallery seen from inside, with sunlight that falls between its columns.
 //!
-//! What casts is mostly out of the picture: vault, roof, and the columns behind the eye. Light leaks show where walls,
-//! vault and floor meet in the dark, and vessels, benches and columns stand in contact shadows. In animation 0,
-//! "swing", the lanterns that hang in the arches swing, and with them their shadows.
+//! Most casters are outside the picture: the vault, the roof, and the columns behind the eye. Light leaks
+//! show in the dark where walls, vault and floor meet. Vessels, benches and columns cast contact shadows. In
+//! animation 0, "swing", the lanterns in the arches swing, and their shadows move with them.
 
 mod columns;
 mod furniture;
@@ -17,17 +17,18 @@ use glam::Vec3;
 use crate::Scene;
 use crate::parts::{Builder, looped, sunlight};
 
-/// Direction of the sun from +z toward +x, in radians: from the garden, ahead of the start view, so that the patches of
-/// light come toward the eye.
+/// Direction of the sun from +z toward +x, in radians. The sun shines from the garden, ahead of the start
+/// view, so that the patches of light point toward the eye.
 const SUN_AZIMUTH: f32 = 2.30;
-/// Height of the sun above the horizon, in radians: low enough for the crowns of the arches to climb the rear wall.
+/// Height of the sun above the horizon, in radians: low enough for the light of the arches' crowns to reach
+/// the rear wall.
 const SUN_ELEVATION: f32 = 0.37;
 /// Vertical field of view of the start view, in radians.
 const FOV_Y: f32 = 0.87;
 /// Far plane of the start view, in metres: beyond the trees of the garden.
 const FAR: f32 = 100.0;
 
-/// The scene.
+/// Builds the scene.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("arcade", palette::Paint::all(), textures::Picture::all());
     shell::build(&mut builder);

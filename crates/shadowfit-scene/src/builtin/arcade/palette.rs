@@ -5,7 +5,7 @@ use crate::Material;
 use crate::parts::{WHITE, cut_out, matt, numbered, tiled};
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too.
+    /// A material, by its index in the scene. The first is also the default material.
     Paint: Material {
         Stone = tiled(matt("stone", [0.98, 0.93, 0.84], 0.9), Picture::Stone.into(), [1.2; 2]),
         Tiles = tiled(matt("floor tiles", WHITE, 0.6), Picture::Tiles.into(), [super::textures::TILES_METRES; 2]),

@@ -8,18 +8,19 @@ use super::palette::Paint;
 use super::plan::{ARCH, BAY, BAYS, END, HALF, ROW, SPRING, START, THICK, column_places};
 use crate::parts::{Arch, Builder, CRISP, Solid, block, extrude, prism, wall_over};
 
-/// Rise of the vault above the height at which it springs, in metres.
+/// Rise of the vault above its spring line, in metres.
 const RISE: f32 = 1.55;
 /// Height of the walls, in metres: above the vault's crown.
 const WALL: f32 = 4.75;
-/// Depth of the house behind the rear wall, in metres: what falls through the wall meets no ground beyond it.
+/// Depth of the house behind the rear wall, in metres. The house hides any light that leaks through the wall
+/// from the ground behind it.
 const HOUSE: f32 = 9.5;
 /// Height of the red foot of the walls, in metres.
 const DADO: f32 = 0.85;
 /// Segments of an arch and of a bay of the vault.
 const SEGMENTS: usize = 16;
-/// Crease of the vault, in radians: just more than between two segments of a barrel, so that groins stay sharp until
-/// near the crown.
+/// Crease angle of the vault, in radians: slightly more than the angle between two segments of a barrel, so
+/// that groins stay sharp almost up to the crown.
 const GROIN: f32 = 0.2;
 
 /// Adds the shell.
@@ -47,9 +48,10 @@ pub(super) fn build(builder: &mut Builder) {
     ribs(builder, group);
 }
 
-/// The wall over the arches: `bays` arches along z from [`START`], on columns whose tops are at y = 0, about x = 0.
+/// Builds the wall over the arches: `bays` arches along z from [`START`], centred on x = 0. The tops of their
+/// columns are at y = 0.
 pub(super) fn arcade_wall(bays: usize) -> Solid {
-    // The ends stand a little into the walls across.
+    // The ends extend a little into the adjoining walls.
     let mut edge = vec![(-0.05, 0.0)];
     for bay in 0..bays {
         let middle = BAY * (bay as f32 + 0.5);
@@ -60,22 +62,22 @@ pub(super) fn arcade_wall(bays: usize) -> Solid {
     }
     edge.push((BAY * bays as f32 + 0.05, 0.0));
     let wall = wall_over(&edge, WALL - SPRING, THICK);
-    // Along x becomes along -z.
+    // Turns x into -z.
     wall.transformed(Affine3A::from_rotation_y(FRAC_PI_2)).moved(Vec3::Z * START)
 }
 
-/// Height of a vault at a share of -1..1 of the half width of one of its barrels.
+/// Returns the height of a barrel vault at `share` of its half width, -1..1.
 fn barrel(share: f32) -> f32 {
     RISE * (1.0 - share * share).max(0.0).sqrt()
 }
 
-/// Places across and along the vault.
+/// Positions across and along the vault.
 const COLUMNS: usize = SEGMENTS + 1;
 const ROWS: usize = SEGMENTS * BAYS + 1;
 
-/// Returns the places of the vault by row, and the two edges of its flat top for each row.
+/// Returns the positions of the vault by row, then the two edges of its flat top for each row.
 fn vault_positions() -> Vec<Vec3> {
-    // Places along a half circle crowd where it is steep, so that its segments are even.
+    // Positions at equal angles of a half circle make its segments equally long.
     let share = |step: usize| -(step as f32 / SEGMENTS as f32 * PI).cos();
     let mut positions = Vec::new();
     for row in 0..ROWS {
@@ -83,7 +85,7 @@ fn vault_positions() -> Vec<Vec3> {
         let z = START - BAY * ((row / SEGMENTS) as f32 + 0.5 * (along + 1.0));
         for column in 0..COLUMNS {
             let across = share(column);
-            // The edges stand in the walls.
+            // The edges extend into the walls.
             let x = across * (HALF + 0.05);
             positions.push(Vec3::new(x, SPRING + barrel(across).max(barrel(along)), z));
         }
@@ -97,8 +99,8 @@ fn vault_positions() -> Vec<Vec3> {
     positions
 }
 
-/// Builds the groin vault: where two barrels cross, the higher one bounds the room. Flat above, so that nothing leaks
-/// through.
+/// Builds the groin vault: where two barrels cross, the higher one bounds the room. The top is flat, so that
+/// no light leaks through.
 fn vault() -> Solid {
     let mut solid = Solid { positions: vault_positions(), ..Solid::default() };
     let triangles = &mut solid.triangles;
@@ -116,7 +118,7 @@ fn vault() -> Solid {
         triangles.extend([[a, b, c], [a, c, d], [left[0], a, d], [left[0], d, left[1]]]);
         triangles.extend([[right[0], right[1], c], [right[0], c, b]]);
     }
-    // Each half of an end's arch is seen from the upper corner at its side.
+    // The triangles of each half of an end's arch meet in the upper corner of their side.
     for column in 0..COLUMNS - 1 {
         let side = u32::from(column >= COLUMNS / 2);
         triangles.push([top(0, side), at(0, column), at(0, column + 1)]);
@@ -127,7 +129,7 @@ fn vault() -> Solid {
     solid
 }
 
-/// Ribs across the vault, from pilasters at the rear wall to the columns.
+/// Adds ribs across the vault, from pilasters at the rear wall to the columns.
 fn ribs(builder: &mut Builder, group: usize) {
     let arc = |width: f32, rise: f32| {
         move |step: usize| {
@@ -154,7 +156,7 @@ fn ribs(builder: &mut Builder, group: usize) {
     }
 }
 
-/// The walls at both ends: an open doorway far ahead, a closed door behind the eye.
+/// Adds the walls at both ends: an open doorway far ahead, a closed door behind the eye.
 fn ends(builder: &mut Builder, group: usize) {
     let doorway = Arch { width: 2.0 * HALF + 1.2, height: WALL, depth: 0.55, radius: 1.05, spring: 2.1 };
     let wall = builder.solid("end wall", &doorway.solid(24), Paint::Plaster, CRISP);
@@ -169,7 +171,7 @@ fn ends(builder: &mut Builder, group: usize) {
     builder.place(group, door, [0.0, 0.0, START + 0.2], 0.0);
 }
 
-/// A closed door in the rear wall, under a stone arch that stands out from it.
+/// Adds a closed door in the rear wall, under a stone arch that projects from it.
 fn side_door(builder: &mut Builder, group: usize) {
     let frame = Arch { width: 1.9, height: 2.75, depth: 0.34, radius: 0.68, spring: 1.72 };
     let frame = builder.solid("side doorway", &frame.solid(20), Paint::Stone, CRISP);
@@ -182,7 +184,7 @@ fn side_door(builder: &mut Builder, group: usize) {
     builder.place(group, leaves, [-HALF + 0.05, 0.01, z], FRAC_PI_2);
 }
 
-/// A roof over gallery and house, which hangs over the arcade's wall.
+/// Builds a roof over gallery and house, which overhangs the arcade's wall.
 fn roof() -> Solid {
     let [eaves, back] = [HALF + 1.1, -HALF - HOUSE - 0.5];
     let ridge = (f32::midpoint(eaves, back), WALL + 2.4);

@@ -14,16 +14,16 @@ numbered! {
     }
 }
 
-/// Metres that the image of the floor spans.
+/// Size of the floor's image in the scene, in metres.
 pub(super) const TILES_METRES: f32 = 2.4;
-/// Pixels along a side of the floor's image: 5 mm each.
+/// Pixels along a side of the floor's image. A pixel is 5 mm wide.
 const TILES_SIZE: u32 = 512;
 /// Pixels along a side of the other images.
 const SIZE: u32 = 256;
-/// Tiles along each diagonal of the floor's image; even, so that it repeats.
+/// Tiles along each diagonal of the floor's image. An even number, so that the image repeats without a seam.
 const DIAGONALS: f32 = 4.0;
 
-/// Cream and terracotta tiles set diagonally, with dark joints.
+/// Draws cream and terracotta tiles set diagonally, with dark joints.
 fn tiles() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / TILES_SIZE as f32;
@@ -40,7 +40,7 @@ fn tiles() -> Image {
                 return shade([112.0, 98.0, 82.0], 5.0 * grain);
             }
             let [column, row] = [a as u32 % 8, b as u32 % 8];
-            // The image repeats after as many tiles along x as along y.
+            // The image repeats after the same number of tiles along x and along y.
             let id = |a: u32, b: u32| (a.midpoint(b) % 4, a.midpoint(8 - b) % 4);
             let own = hash(id(column, row).0, 60 + id(column, row).1) - 0.5;
             let light = 13.0 * own + 5.0 * clouds.at(px * cell) + 3.0 * grain;
@@ -53,14 +53,14 @@ fn tiles() -> Image {
     })
 }
 
-/// Lime plaster: soft clouds with a few paler patches, near white so that materials tint it.
+/// Draws lime plaster: soft clouds with a few paler patches, near white so that materials tint it.
 fn plaster() -> Image {
     draw_noisy("plaster", SIZE, [0.125, 0.5, 4.0], |_, _, [patches, clouds, grains]| {
         shade([236.0, 236.0, 236.0], 7.0 * patches + 5.0 * clouds + 4.0 * grains)
     })
 }
 
-/// Limestone: coarse grain with pits.
+/// Draws limestone: coarse grain with pits.
 fn stone() -> Image {
     draw_noisy("stone", SIZE, [0.25, 3.0], |_, _, [cloud, grain]| {
         let pit = if grain > 0.78 { -22.0 } else { 0.0 };
@@ -68,7 +68,7 @@ fn stone() -> Image {
     })
 }
 
-/// Rows of round roof tiles, four across and two along.
+/// Draws rows of round roof tiles, four across and two along.
 fn roof() -> Image {
     let size = SIZE as f32;
     draw("roof tiles", SIZE, |y| {

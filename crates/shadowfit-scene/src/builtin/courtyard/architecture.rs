@@ -22,9 +22,9 @@ const COLUMN: f32 = 3.5;
 const MIDDLE: f32 = 1.0;
 /// Half of the platform's width.
 const HALF_WIDTH: f32 = 8.2;
-/// Where the row of columns stands along z.
+/// Position of the row of columns along z, in metres.
 const ROW: f32 = -6.4;
-/// Where the middle of the rear wall stands along z.
+/// Position of the middle of the rear wall along z, in metres.
 const WALL: f32 = -8.2;
 /// Slope of the roof, in radians.
 const PITCH: f32 = 0.245;
@@ -38,7 +38,7 @@ pub(super) fn build(builder: &mut Builder) {
     arcade(builder);
 }
 
-/// The floor: level, of one colour.
+/// Builds the floor: level, of one colour.
 fn floor() -> Primitive {
     let step = FLOOR / FLOOR_QUADS as f32;
     let lines: Vec<f32> = (0..=FLOOR_QUADS).map(|line| line as f32 * step - FLOOR / 2.0).collect();
@@ -48,7 +48,7 @@ fn floor() -> Primitive {
     floor
 }
 
-/// A fluted column on a square foot, with a square slab above its capital.
+/// Builds a fluted column on a square foot, with a square slab above its capital.
 fn column(builder: &mut Builder) -> usize {
     let point = |step: usize| {
         let t = step as f32 / 5.0;
@@ -73,7 +73,7 @@ fn column(builder: &mut Builder) -> usize {
     builder.solids("column", [(shaft, Paint::Marble, CRISP), (round, Paint::Marble, 0.75)])
 }
 
-/// The loggia: platform, colonnade, rear wall, roof.
+/// Adds the loggia: platform, colonnade, rear wall, roof.
 fn loggia(builder: &mut Builder, column: usize) {
     let group = builder.group("loggia", [MIDDLE, 0.0, 0.0], 0.0);
     let step = |step: u8| {
@@ -89,7 +89,7 @@ fn loggia(builder: &mut Builder, column: usize) {
     roof(builder, group);
 }
 
-/// The wall behind the colonnade, with a doorway under an arch.
+/// Adds the wall behind the colonnade, with a doorway under an arch.
 fn rear_wall(builder: &mut Builder, group: usize) {
     let door = Arch { width: 2.4, height: 4.15, depth: 0.52, radius: 0.75, spring: 2.0 };
     let door = builder.solid("doorway", &door.solid(24), Paint::Stone, CRISP);
@@ -104,7 +104,7 @@ fn rear_wall(builder: &mut Builder, group: usize) {
     builder.fix(group, "skirting", &skirting, Paint::Stone, CRISP);
 }
 
-/// Beam, rafters, boards and rows of round tiles, overhanging the colonnade.
+/// Adds beam, rafters, boards and rows of round tiles, overhanging the colonnade.
 fn roof(builder: &mut Builder, group: usize) {
     let beam_top = PLATFORM + COLUMN + 0.28;
     let beam = block([-7.6, beam_top - 0.285, ROW - 0.15], [7.6, beam_top, ROW + 0.15], 0.01);
@@ -125,7 +125,7 @@ fn roof(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A row of overlapping round tiles along -z, each wider at its lower end.
+/// Builds a row of overlapping round tiles along -z, each wider at its lower end.
 fn tile_row() -> Solid {
     let mut profile = vec![(0.05, 0.0)];
     for tile in 0..7 {
@@ -135,7 +135,7 @@ fn tile_row() -> Solid {
     lathe(&profile, 8).transformed(Affine3A::from_rotation_x(-TAU / 4.0))
 }
 
-/// Columns without a roof: two whole ones with a bronze ball, one broken off.
+/// Adds columns without a roof: two whole ones with a bronze ball, one broken off.
 fn free_columns(builder: &mut Builder, column: usize) {
     let group = builder.group("free columns", Vec3::ZERO, 0.0);
     let stand = builder.solid("pedestal", &pillar([0.42; 2], [-0.01, 0.3], 0.012), Paint::Stone, CRISP);
@@ -147,14 +147,14 @@ fn free_columns(builder: &mut Builder, column: usize) {
     }
 }
 
-/// A far row of arches, and an obelisk before it.
+/// Adds a far row of arches, and an obelisk before it.
 fn arcade(builder: &mut Builder) {
     let group = builder.group("arcade", Vec3::ZERO, 0.0);
     let arch = Arch { width: 4.2, height: 6.2, depth: 1.1, radius: 1.5, spring: 3.4 };
     let arch = arch.solid(24).moved(Vec3::Y * -0.02).with(pillar([2.04, 0.7], [6.05, 6.45], 0.03));
     let arch = builder.solid("arch", &arch, Paint::Stone, CRISP);
-    // Along the far side, then toward the eye on the right; neighbours overlap, so every second one
-    // is a little thinner and lower, so that faces do not coincide.
+    // The row follows the far side, then turns toward the eye on the right. Neighbours overlap. Every second
+    // arch is a little thinner and lower, so that faces do not coincide.
     for index in 0..24 {
         let (at, yaw) = if index < 15 {
             (Vec3::new(-24.0 + 4.1 * index as f32, 0.0, -34.0), 0.0)

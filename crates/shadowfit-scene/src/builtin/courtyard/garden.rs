@@ -1,4 +1,4 @@
-//! What stands about in the courtyard: fence, pole, lattices, jars, crates, cypresses, low walls.
+//! Objects in the courtyard: fence, pole, lattices, jars, crates, cypresses, low walls.
 
 use std::f32::consts::TAU;
 
@@ -7,10 +7,10 @@ use glam::{Quat, Vec3};
 use super::palette::Paint;
 use crate::parts::{Builder, CRISP, SMOOTH, block, cypress, ellipsoid, hash, lathe, pillar, rounded_box, torus};
 
-/// Where the fence stands along x.
+/// Position of the fence along x, in metres.
 const FENCE_X: f32 = 4.7;
 
-/// Adds everything that is not a building.
+/// Adds the objects in front of the buildings.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("garden", Vec3::ZERO, 0.0);
     fence(builder, group);
@@ -22,7 +22,7 @@ pub(super) fn build(builder: &mut Builder) {
     low_walls(builder, group);
 }
 
-/// A fence of thin round posts between two rails, along z.
+/// Adds a fence of thin round posts between two rails, along z.
 fn fence(builder: &mut Builder, group: usize) {
     let post = [(0.02, -0.01), (0.02, 1.2), (0.013, 1.225), (0.021, 1.24), (0.026, 1.26), (0.021, 1.28), (0.0, 1.305)];
     let post = builder.solid("fence post", &lathe(&post, 10), Paint::Iron, 0.9);
@@ -43,7 +43,7 @@ fn fence(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A tall thin mast with a ball on top and a stone foot.
+/// Adds a tall thin mast with a ball on top and a stone foot.
 fn pole(builder: &mut Builder, group: usize) {
     let foot = [(0.3, -0.01), (0.3, 0.14), (0.28, 0.16), (0.2, 0.17), (0.18, 0.2), (0.17, 0.34), (0.14, 0.37)];
     let ball = ellipsoid([0.09; 3], 18, 10).moved(Vec3::Y * 7.05);
@@ -57,7 +57,7 @@ fn pole(builder: &mut Builder, group: usize) {
     builder.place(group, pole, [3.5, 0.0, 3.3], 0.0);
 }
 
-/// Framed lattices whose holes are cut by a texture: one by the path, two between columns of the loggia.
+/// Adds framed lattices with holes cut by a texture: one by the path, two between columns of the loggia.
 fn lattices(builder: &mut Builder, group: usize) {
     let (w, h) = (0.75, 2.1);
     let sheet = rounded_box([w, h / 2.0 - 0.05, 0.006], 0.002, 1).moved(Vec3::Y * (h / 2.0 + 0.04));
@@ -74,7 +74,7 @@ fn lattices(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Clay jars, with and without handles.
+/// Adds clay jars, with and without handles.
 fn jars(builder: &mut Builder, group: usize) {
     #[rustfmt::skip]
     let profile = [
@@ -96,13 +96,14 @@ fn jars(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Wooden crates by the fence.
+/// Adds wooden crates by the fence.
 fn crates(builder: &mut Builder, group: usize) {
     let half = 0.3;
     let mut boxes = rounded_box([half - 0.02; 3], 0.004, 1);
     for side in [-1.0, 1.0] {
         for other in [-1.0, 1.0] {
-            // Bars at the edges, each direction a little thicker and nearer than the last, so that no faces coincide.
+            // Bars at the edges. Each direction is a little thicker and nearer than the previous one, so that
+            // no faces coincide.
             for (bar, inset, at) in [
                 ([0.03, 0.03, half + 0.004], 0.025, [side, other, 0.0]),
                 ([half + 0.001, 0.031, 0.031], 0.024, [0.0, side, other]),
@@ -119,7 +120,7 @@ fn crates(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Cypresses: a dense row behind the loggia and some farther off.
+/// Adds cypresses: a dense row behind the loggia and a few farther away.
 fn cypresses(builder: &mut Builder, group: usize) {
     let trunk = lathe(&[(0.13, -0.02), (0.10, 0.8)], 14);
     let crown = cypress(1.75, [0.35, 6.4], 17, 24);
@@ -136,7 +137,7 @@ fn cypresses(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Low walls at the sides of the court, with coping.
+/// Adds low walls at the sides of the court, with coping.
 fn low_walls(builder: &mut Builder, group: usize) {
     let wall = pillar([0.16, 2.5], [-0.02, 0.95], 0.01);
     let coping = pillar([0.22, 2.54], [0.93, 1.02], 0.012);

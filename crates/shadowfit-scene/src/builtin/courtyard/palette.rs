@@ -5,7 +5,7 @@ use crate::Material;
 use crate::parts::{WHITE, Wear, matt, numbered, perforated, tiled};
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too.
+    /// A material, by its index in the scene. The first is also the default material.
     Paint: Material {
         Stone = matt("stone", [0.56, 0.49, 0.40], 0.9),
         Paving = tiled(matt("paving", WHITE, 0.85), Picture::Paving.into(), [PAVING_METRES; 2]),
@@ -22,19 +22,21 @@ numbered! {
     }
 }
 
-/// Slats with holes between them.
+/// Returns the material of the lattice: slats with holes between them.
 fn lattice() -> Material {
     let slats = matt("lattice", [0.30, 0.16, 0.075], 0.75);
     perforated(tiled(slats, Picture::Lattice.into(), [LATTICE_METRES; 2]))
 }
 
-/// All materials: those of [`Paint`], then those of the figure but for its bronze, which the courtyard has too.
+/// Returns all materials: first [`Paint`], then the figure's materials except its bronze, which [`Paint`]
+/// already contains.
 pub(super) fn materials() -> Vec<Material> {
     let figure = Wear::all().into_iter().skip(1);
     Paint::all().into_iter().chain(figure).collect()
 }
 
-/// Index of a material of the figure. Its first material is bronze, which the courtyard has too.
+/// Returns the index of a material of the figure. The figure's first material is bronze, which is in
+/// [`Paint`].
 pub(super) fn worn(wear: usize) -> usize {
     if wear == 0 { Paint::Bronze.into() } else { usize::from(Paint::Clay) + wear }
 }

@@ -1,6 +1,7 @@
 //! Images of the courtyard: paving with a metre grid, wall blocks, a lattice with holes.
 //!
-//! All repeat without a seam and are drawn from a fixed hash, so that they are the same everywhere.
+//! All images repeat without a seam. They are drawn from a fixed hash, so every machine draws the same
+//! pixels.
 
 use crate::Image;
 use crate::parts::{NOISE_CELLS, Noise, draw, hash, numbered, shade};
@@ -14,11 +15,11 @@ numbered! {
     }
 }
 
-/// Metres that the paving image spans: five tiles of a metre, with a stronger line around them.
+/// Size of the paving image in the scene, in metres: five tiles of a metre, with a stronger line around them.
 pub(super) const PAVING_METRES: f32 = 5.0;
-/// Metres that the wall image spans.
+/// Size of the wall image in the scene, in metres.
 pub(super) const BLOCKS_METRES: f32 = 2.4;
-/// Metres that the lattice image spans: one hole and the slats around it.
+/// Size of the lattice image in the scene, in metres: one hole and the slats around it.
 pub(super) const LATTICE_METRES: f32 = 0.15;
 
 /// Pixels along a side of the paving image.
@@ -28,7 +29,7 @@ const BLOCKS_SIZE: u32 = 512;
 /// Pixels along a side of the lattice image.
 const LATTICE_SIZE: u32 = 64;
 
-/// Warm stone tiles of a metre with joints, faint quarter-metre lines and a red line every 5 m.
+/// Draws warm stone tiles of a metre with joints, faint quarter-metre lines and a red line every 5 m.
 fn paving() -> Image {
     let noise = Noise::new();
     let metre = PAVING_SIZE as f32 / PAVING_METRES;
@@ -63,7 +64,7 @@ fn paving() -> Image {
     })
 }
 
-/// Courses of plastered blocks, each with its own tint, in half bond.
+/// Draws courses of plastered blocks, each with its own tint, in half bond.
 fn blocks() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / BLOCKS_SIZE as f32;
@@ -90,7 +91,7 @@ fn blocks() -> Image {
     })
 }
 
-/// White slats around a square hole, which is transparent.
+/// Draws white slats around a square hole, which is transparent.
 fn lattice() -> Image {
     let size = LATTICE_SIZE as f32;
     let slat = size * 0.16;
@@ -99,7 +100,7 @@ fn lattice() -> Image {
         move |x| {
             let px = x as f32 + 0.5;
             let edge = px.min(size - px).min(py).min(size - py);
-            // Alpha passes one half where the slat ends, so that filtered cut-outs keep their size.
+            // Alpha passes 0.5 at the edge of the slat, so that filtered cut-outs keep their size.
             let alpha = (127.5 + (slat - edge) * 40.0).clamp(0.0, 255.0);
             [235.0, 235.0, 235.0, alpha]
         }

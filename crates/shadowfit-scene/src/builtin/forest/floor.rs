@@ -5,14 +5,14 @@ use glam::{Vec2, Vec3};
 use super::palette::Paint;
 use crate::parts::{Builder, Dice, Limbs, SMOOTH, egg, ellipsoid, graded, ground, modulated_lathe};
 
-/// Half of the floor's side, in metres: the trees end before it.
+/// Half of the floor's side, in metres. The trees end before it.
 const HALF: f32 = 60.0;
 /// Cells along a side of the floor.
 const CELLS: usize = 60;
 /// Half of the path's width, in metres.
 const PATH_HALF: f32 = 0.75;
 
-/// Height of the floor, in metres.
+/// Returns the height of the floor, in metres.
 pub(super) fn height(x: f32, z: f32) -> f32 {
     let waves = 0.22 * (0.21 * x + 0.7).sin() * (0.17 * z).cos() + 0.10 * (0.53 * x + 0.41 * z).sin();
     // The floor rises away from the path, more at the back.
@@ -23,12 +23,12 @@ pub(super) fn height(x: f32, z: f32) -> f32 {
         - 0.05 * (1.0 - aside / PATH_HALF).max(0.0)
 }
 
-/// Distance from the middle of the path, across the view, in metres.
+/// Returns the distance from the middle of the path, across the view, in metres.
 pub(super) fn path_distance(x: f32, z: f32) -> f32 {
     (x - 1.5 * (0.17 * z + 0.55).sin()).abs()
 }
 
-/// Adds the floor and what lies on it, and returns the node of the old stump.
+/// Adds the floor and the objects on it, and returns the node of the old stump.
 pub(super) fn build(builder: &mut Builder) -> usize {
     let lines = graded(HALF, CELLS, 3.4);
     let color = |at: Vec3| {
@@ -47,12 +47,12 @@ pub(super) fn build(builder: &mut Builder) -> usize {
     stump(builder, group)
 }
 
-/// A point on the floor.
+/// Returns a point on the floor.
 pub(super) fn on_floor(x: f32, z: f32) -> Vec3 {
     Vec3::new(x, height(x, z), z)
 }
 
-/// An old stump by the path: round bark in the sun, roots, and a broken hollow top.
+/// Adds an old stump by the path: round bark in the sun, roots, and a broken hollow top.
 fn stump(builder: &mut Builder, group: usize) -> usize {
     #[rustfmt::skip]
     let outline = [
@@ -65,20 +65,20 @@ fn stump(builder: &mut Builder, group: usize) -> usize {
     };
     let mut solid = modulated_lathe(&outline, 40, shape);
     for position in solid.positions.iter_mut().filter(|position| position.y > 0.86) {
-        // Splinters: the rim is as ragged as the trunk broke.
+        // Splinters: the rim of the break is ragged.
         let turn = position.x.atan2(position.z);
         position.y += 0.11 * (2.0 * turn + 0.8).sin() + 0.06 * (7.0 * turn).sin() + 0.035 * (13.0 * turn).cos();
     }
     let bark = solid.primitive_with(Paint::Bark.into(), SMOOTH, |vertex, _| {
         let at = solid.positions[vertex];
-        // There and back around, as on other trunks.
+        // The coordinate runs around to the back and back again, as on other trunks.
         Vec2::new(at.x.atan2(at.z).abs() * 0.35, -at.y)
     });
     let stump = builder.mesh("stump", vec![bark]);
     builder.place(group, stump, on_floor(2.15, -0.55), 2.1)
 }
 
-/// Mossy stones, half sunk.
+/// Adds mossy stones, half sunk.
 fn stones(builder: &mut Builder, group: usize) {
     let lump = |turn: f32, y: f32| 1.0 + 0.13 * (2.0 * turn + 4.0 * y).sin() + 0.07 * (5.0 * turn - 6.0 * y).cos();
     let stone = modulated_lathe(&egg(1.0, 0.62, 0.8), 18, lump);
@@ -96,7 +96,7 @@ fn stones(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A trunk that lies across, with a broken end.
+/// Adds a trunk that lies across, with a broken end.
 fn fallen_trunk(builder: &mut Builder, group: usize) {
     let path: Vec<Vec3> = (0..=7)
         .map(|step| {
@@ -116,7 +116,7 @@ fn fallen_trunk(builder: &mut Builder, group: usize) {
     builder.place(group, trunk, on_floor(-6.3, -6.2) + Vec3::Y * 0.17, 0.95);
 }
 
-/// Mushrooms by the path.
+/// Adds mushrooms by the path.
 fn mushrooms(builder: &mut Builder, group: usize) {
     let cap = ellipsoid([0.05, 0.028, 0.05], 16, 8).moved(Vec3::Y * 0.085);
     let stalk = ellipsoid([0.015, 0.06, 0.015], 10, 6).moved(Vec3::Y * 0.035);

@@ -1,8 +1,8 @@
 //! The forest: thin trunks and cut-out leaves over a floor of dappled light.
 //!
-//! Trunks of 0.1 to 0.5 m are a few texels of a far map, branches and leaves less than one; bark turns away from the
-//! sun at every angle; the subject is an old stump by the path. In animation 0, "wind", boughs near the start view
-//! sway, and with them their shadows.
+//! Trunks of 0.1 to 0.5 m are a few texels wide in a far map. Branches and leaves are narrower than a texel.
+//! Bark faces the sun at every angle. The subject is an old stump by the path. In animation 0, "wind", boughs
+//! near the start view sway, and their shadows move with them.
 
 mod floor;
 mod palette;
@@ -15,8 +15,8 @@ use glam::Vec3;
 use crate::Scene;
 use crate::parts::{Builder, looped, sunlight};
 
-/// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, so that the shadows of
-/// trunks come toward the eye.
+/// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, so that the
+/// shadows of trunks point toward the eye.
 const SUN_AZIMUTH: f32 = -1.82;
 /// Height of the sun above the horizon, in radians: high enough for light to reach the floor between the crowns.
 const SUN_ELEVATION: f32 = 0.72;
@@ -25,7 +25,7 @@ const FOV_Y: f32 = 0.82;
 /// Far plane of the start view, in metres: beyond the last trees, near enough for haze between them.
 const FAR: f32 = 90.0;
 
-/// The scene.
+/// Builds the scene.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("forest", palette::Paint::all(), textures::Picture::all());
     let stump = floor::build(&mut builder);

@@ -4,13 +4,13 @@ use super::textures::Picture;
 use crate::Material;
 use crate::parts::{WHITE, cut_out, matt, numbered, tiled, wrapped};
 
-/// Metres that the image of the floor spans.
+/// Size of the floor's image in the scene, in metres.
 const FLOOR_METRES: f32 = 3.0;
-/// Metres that the images of bark span around a limb and along it.
+/// Size of the bark images in the scene, around a limb and along it, in metres.
 const BARK_METRES: [f32; 2] = [0.55, 1.3];
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too.
+    /// A material, by its index in the scene. The first is also the default material.
     Paint: Material {
         Stone = tiled(matt("mossy stone", WHITE, 0.95), Picture::Stone.into(), [1.1; 2]),
         Floor = tiled(matt("forest floor", WHITE, 0.95), Picture::Floor.into(), [FLOOR_METRES; 2]),

@@ -1,4 +1,4 @@
-//! Images of the forest: litter, moss, bark, and what leaves are cut from.
+//! Images of the forest: litter, moss, bark, and cut-outs of leaves.
 
 use glam::{Vec2, Vec3};
 
@@ -18,14 +18,14 @@ numbered! {
     }
 }
 
-/// Pixels along a side of the floor's image: 6 mm each.
+/// Pixels along a side of the floor's image. A pixel is 6 mm wide.
 const FLOOR_SIZE: u32 = 512;
 /// Pixels along a side of the images of bark and stone.
 const BARK_SIZE: u32 = 256;
 /// Fallen leaves on the floor's image, enough to hide most of the earth.
 const LITTER: usize = 1500;
 
-/// Earth under brown leaves.
+/// Draws earth under brown leaves.
 fn floor() -> Image {
     let mut image = draw_noisy("floor", FLOOR_SIZE, [0.25, 4.0], |_, _, [cloud, grain]| {
         let light = 8.0 * cloud + 12.0 * grain;
@@ -38,7 +38,7 @@ fn floor() -> Image {
     image
 }
 
-/// Draws a leaf at a random place, across the edges of the image where it lies there.
+/// Draws a leaf at a random place. It wraps around at the edges of the image.
 fn fallen_leaf(image: &mut Image, dice: &mut Dice) {
     let size = FLOOR_SIZE.cast_signed();
     let middle = Vec2::new(dice.roll(), dice.roll()) * FLOOR_SIZE as f32;
@@ -58,7 +58,7 @@ fn fallen_leaf(image: &mut Image, dice: &mut Dice) {
             if along.abs() >= 1.0 || across.abs() > half_width {
                 continue;
             }
-            // A shadow line at one side lifts the leaf off what is below.
+            // A dark line at one side separates the leaf from its background.
             let light = if across.abs() < 0.6 {
                 0.8
             } else if across > half_width - 1.0 {
@@ -76,7 +76,7 @@ fn fallen_leaf(image: &mut Image, dice: &mut Dice) {
     }
 }
 
-/// Grey stone with patches of moss.
+/// Draws grey stone with patches of moss.
 fn stone() -> Image {
     draw_noisy("stone", BARK_SIZE, [0.25, 2.0], |_, _, [cloud, grain]| {
         let light = 14.0 * grain;
@@ -88,7 +88,7 @@ fn stone() -> Image {
     })
 }
 
-/// White bark with dark dashes across.
+/// Draws white bark with dark dashes across.
 fn birch() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / BARK_SIZE as f32;

@@ -9,23 +9,24 @@ use super::palette::Paint;
 use crate::parts::{Builder, Card, Cards, Dice, Limbs, rotations, turned};
 use crate::{Channel, Primitive, Transform};
 
-/// Time of a gust and the lull after it, in seconds.
+/// Period of the wind, a gust and a lull, in seconds.
 pub(super) const WIND_TIME: f32 = 8.0;
-/// Distance between neighbouring trees, in metres, before each is moved a little.
+/// Distance between neighbouring trees, in metres, before each is moved by a small random offset.
 const SPACING: f32 = 3.9;
 /// Trees along a side of the grid.
 const ROWS: i32 = 19;
-/// Trees farther from the start view than this are simpler, in metres.
+/// Distance from the start view beyond which trees are simpler, in metres.
 const FAR: f32 = 11.5;
 /// Boughs of a far tree.
 const FAR_BOUGHS: usize = 7;
-/// Boughs nearer to the start view than this sway, in metres.
+/// Distance from the start view within which boughs sway, in metres.
 const SWAYS: f32 = 12.0;
-/// Clear distance at both sides of the path's middle, in metres.
+/// Half width of the clear strip along the path, in metres.
 const CLEAR: f32 = 1.7;
-/// Angle between one bough and the next higher one, in radians: the golden angle, which shades the least.
+/// Angle from one bough to the next higher one, in radians: the golden angle, which shades the lower boughs
+/// the least.
 const GOLDEN: f32 = 2.399_963;
-/// Height that trunks are modelled with, in metres; scale makes them differ.
+/// Height of the modelled trunks, in metres. Scale makes them differ.
 const HEIGHT: f32 = 10.0;
 
 /// Shared meshes.
@@ -38,7 +39,7 @@ struct Meshes {
     far: [[usize; 2]; 2],
 }
 
-/// A tree that stands somewhere.
+/// A tree at a place.
 struct Tree {
     at: Vec3,
     is_birch: bool,
@@ -52,7 +53,7 @@ struct Tree {
     spread: f32,
 }
 
-/// Adds all trees and returns how their boughs sway in the wind.
+/// Adds all trees and returns the animation channels of their boughs.
 pub(super) fn build(builder: &mut Builder) -> Vec<Channel> {
     let meshes = meshes(builder);
     let group = builder.group("trees", Vec3::ZERO, 0.0);
@@ -76,7 +77,8 @@ pub(super) fn build(builder: &mut Builder) -> Vec<Channel> {
     sway
 }
 
-/// Whether a tree may stand here: off the path, in the wood, and neither before the eye nor in the great one.
+/// Returns whether a tree may grow here: off the path, inside the wood, not close to the eye of the start
+/// view and not in the great tree.
 fn grows(x: f32, z: f32) -> bool {
     let round = (x * x + (z + 6.0) * (z + 6.0)).sqrt();
     let from_eye = (x * x + (z - 4.6) * (z - 4.6)).sqrt();
@@ -84,7 +86,7 @@ fn grows(x: f32, z: f32) -> bool {
     path_distance(x, z) > CLEAR && round < 33.0 && from_eye > 3.6 && from_great > 3.0
 }
 
-/// A tree of random kind and size.
+/// Returns a tree of random kind and size.
 fn tree(x: f32, z: f32, dice: &mut Dice) -> Tree {
     let is_birch = dice.roll() < 0.42;
     let girth = if is_birch { dice.between(0.5, 0.95) } else { dice.between(0.6, 1.5) };
@@ -99,7 +101,7 @@ fn tree(x: f32, z: f32, dice: &mut Dice) -> Tree {
     }
 }
 
-/// Adds a tree, and how its boughs sway if it is near.
+/// Adds a tree. If it is near, adds the animation channels of its boughs to `sway`.
 fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice: &mut Dice, sway: &mut Vec<Channel>) {
     let kind = usize::from(tree.is_birch);
     let distance = tree.at.distance(Vec3::new(0.0, 0.0, 4.6));
@@ -108,7 +110,7 @@ fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice
     let size = Vec3::new(across, along, across);
     let rest = turned(tree.at, tree.yaw);
     if distance > FAR {
-        // A far crown is as wide as that of other trees, however thin its trunk.
+        // A far crown is as wide as other crowns, even if its trunk is thin.
         let scale = Vec3::new(across.max(0.8), along, across.max(0.8));
         let name = ["far beech", "far birch"][kind];
         builder.node(name, Some(group), Transform { scale: scale.as_dvec3(), ..rest }, Some(meshes.far[kind][shape]));
@@ -129,14 +131,15 @@ fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice
     }
 }
 
-/// How a bough is turned: around the trunk, and up, more so toward the top (`t` is 1).
+/// Returns the rotation of a bough: around the trunk and upward. Boughs point up more toward the top (`t` is
+/// 1).
 fn bough_turn(index: usize, t: f32, dice: &mut Dice) -> Quat {
     let up = -0.05 + 1.15 * t * t + dice.between(-0.1, 0.1);
     let turn = index as f32 * GOLDEN + dice.between(-0.3, 0.3);
     Quat::from_rotation_y(turn) * Quat::from_rotation_x(-up)
 }
 
-/// A bough that swings with the wind, smaller ones farther and faster.
+/// Returns the animation channel of a bough in the wind. Smaller boughs swing farther and faster.
 fn swaying(node: usize, rest: Quat, size: f32, dice: &mut Dice) -> Channel {
     let (late, beat) = (dice.roll() * TAU, if size < 0.8 { 4.0 } else { 3.0 });
     rotations(node, WIND_TIME, 32, |phase| {
@@ -147,14 +150,14 @@ fn swaying(node: usize, rest: Quat, size: f32, dice: &mut Dice) -> Channel {
     })
 }
 
-/// Middle of a trunk at a share of its height.
+/// Returns the middle of a trunk at a share of its height.
 fn trunk_middle(shape: usize, share: f32) -> Vec3 {
     let bend = [0.16, -0.22][shape];
     let x = bend * (share * 4.2).sin() * share.min(0.7);
     Vec3::new(x, share * HEIGHT, 0.6 * bend * (share * 6.5).cos() * share - 0.6 * bend * share)
 }
 
-/// Makes the shared meshes.
+/// Adds the shared meshes.
 fn meshes(builder: &mut Builder) -> Meshes {
     let kinds = [("beech", Paint::Bark, Paint::Leaves), ("birch", Paint::Birch, Paint::BirchLeaves)];
     let trunks = kinds.map(|(name, bark, _)| {
@@ -179,9 +182,9 @@ fn meshes(builder: &mut Builder) -> Meshes {
     Meshes { trunks, boughs, far }
 }
 
-/// Shares of the height at which a trunk near the view has a ring: closest where the roots spread.
+/// Ring positions of a near trunk, as shares of its height: closest where the roots spread.
 const SHARES: [f32; 13] = [-0.05, -0.01, 0.01, 0.025, 0.05, 0.1, 0.2, 0.32, 0.45, 0.6, 0.75, 0.9, 1.0];
-/// The same for a trunk far off.
+/// Ring positions of a far trunk.
 const FAR_SHARES: [f32; 5] = [-0.04, 0.0, 0.04, 0.4, 1.0];
 
 /// Adds a trunk 10 m tall and 0.3 m thick, with roots that spread where it meets the floor.
@@ -196,7 +199,7 @@ fn trunk(limbs: &mut Limbs, shape: usize, segments: usize, shares: &[f32]) {
     });
 }
 
-/// A whole tree for far off: fewer and larger leaves.
+/// Builds a whole tree for far away, with fewer and larger leaves.
 fn far_tree(shape: usize, bark: Paint, leaves: Paint) -> Vec<Primitive> {
     let mut dice = Dice::new(29 + shape as u32);
     let mut limbs = Limbs::default();
@@ -222,7 +225,7 @@ fn far_tree(shape: usize, bark: Paint, leaves: Paint) -> Vec<Primitive> {
     vec![limbs.primitive(bark), cards.primitive]
 }
 
-/// A bough of about 2 m that grows from the origin along +z: wood, and leaves in flat sprays.
+/// Builds a bough of about 2 m that grows from the origin along +z: wood, and leaves in flat sprays.
 fn bough(leaves: Paint, seed: u32) -> Vec<Primitive> {
     let mut dice = Dice::new(seed);
     let mut limbs = Limbs::default();

@@ -1,4 +1,4 @@
-//! Ferns and grass: cards at the height of the knee.
+//! Ferns and grass: knee-high cards.
 
 use std::f32::consts::TAU;
 
@@ -9,18 +9,19 @@ use super::palette::Paint;
 use crate::Primitive;
 use crate::parts::{Builder, Card, Cards, Dice, GOLDEN_ANGLE, Tuft};
 
-/// Clumps of plants of one kind that are tried; those on the path or in a trunk are left out.
+/// Clumps to place, each of one kind of plant. Plants on or close to the path are skipped.
 const CLUMPS: usize = 150;
-/// Farthest distance of a clump from the start view's foreground, in metres: farther off plants are not seen.
+/// Farthest distance of a clump from the start view's foreground, in metres. Plants farther away would be
+/// invisible.
 const REACH: f32 = 17.0;
-/// Cards of leaves of a bush.
+/// Leaf cards of a bush.
 const BUSH_CARDS: usize = 52;
 /// Bushes between the trees.
 const BUSHES: usize = 70;
-/// Bushes in the ring that ends the wood.
+/// Bushes in the ring around the wood.
 const RING: usize = 64;
 
-/// Adds what grows on the floor.
+/// Adds the plants on the floor.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("undergrowth", Vec3::ZERO, 0.0);
     let (height, wind) = ([0.24, 0.36], Vec3::ZERO);
@@ -56,12 +57,12 @@ pub(super) fn build(builder: &mut Builder) {
     }
 }
 
-/// Whether a plant would stand right before the eye of the start view.
+/// Returns whether a plant would be right in front of the eye of the start view.
 fn is_before_eye(x: f32, z: f32) -> bool {
     (x + 0.7).hypot(z - 4.2) < 1.1
 }
 
-/// A bush of about a metre and a half: leaves around a middle.
+/// Builds a bush about 1.5 m wide: leaves around a middle.
 fn bush() -> Primitive {
     let mut dice = Dice::new(9);
     let mut cards = Cards::new(Paint::Leaves, 1);
@@ -77,7 +78,7 @@ fn bush() -> Primitive {
     cards.primitive
 }
 
-/// A rosette of fronds that rise and bow.
+/// Builds a rosette of fronds that rise and bow.
 fn fern() -> Primitive {
     let mut dice = Dice::new(6);
     let mut cards = Cards::new(Paint::Fern, 2);

@@ -1,4 +1,4 @@
-//! What lies far off: stacks of straw on the fields, farms, rows of poplars, round trees.
+//! Far objects: stacks of straw on the fields, farms, rows of poplars, round trees.
 
 use std::f32::consts::TAU;
 
@@ -8,7 +8,7 @@ use super::land::on_land;
 use super::palette::Paint;
 use crate::parts::{Builder, CRISP, Dice, GOLDEN_ANGLE, SMOOTH, Solid, extrude, gabled, lathe, modulated_lathe, plank};
 
-/// Adds what lies far off.
+/// Adds the far objects.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("far", Vec3::ZERO, 0.0);
     stacks(builder, group);
@@ -16,7 +16,7 @@ pub(super) fn build(builder: &mut Builder) {
     trees(builder, group);
 }
 
-/// Stacks of straw in rows on a stubble field.
+/// Adds stacks of straw in rows on a stubble field.
 fn stacks(builder: &mut Builder, group: usize) {
     let outline = [(1.15, -0.3), (1.3, 0.4), (1.45, 1.3), (1.5, 1.75), (1.1, 2.5), (0.5, 3.2), (0.0, 3.6)];
     let lump = |turn: f32, y: f32| 1.0 + 0.03 * (4.0 * turn + 3.0 * y).sin();
@@ -33,7 +33,7 @@ fn stacks(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Houses and barns, alone and in a village.
+/// Adds houses and barns, alone and in a village.
 fn farms(builder: &mut Builder, group: usize) {
     let walls = gabled(3.2, [-2.0, 3.4, 5.9], 9.5);
     let roof = [(-3.7, 3.15), (-3.5, 2.95), (0.0, 5.75), (3.5, 2.95), (3.7, 3.15), (0.0, 6.15)];
@@ -59,7 +59,7 @@ fn farms(builder: &mut Builder, group: usize) {
     builder.place(group, spire, on_land(96.0, -334.0), 0.2);
 }
 
-/// Poplars along a road, and round trees in hedges, by the farms and on the hills.
+/// Adds poplars along a road, and round trees in hedges, by the farms and on the hills.
 fn trees(builder: &mut Builder, group: usize) {
     let poplar = [(0.12, -1.0), (0.16, 1.4), (0.9, 2.4), (1.3, 5.0), (1.15, 8.5), (0.6, 11.5), (0.0, 13.5)];
     let lump = |turn: f32, y: f32| 1.0 + 0.15 * (3.0 * turn + 1.9 * y).sin();

@@ -1,4 +1,4 @@
-//! The land: a brow where one stands, a plain with fields below, hills on the horizon.
+//! The land: a brow at the start view, a plain with fields below, hills on the horizon.
 
 use glam::Vec3;
 
@@ -9,12 +9,12 @@ use crate::parts::{Builder, ease, graded, ground, hash};
 const HALF: f32 = 1000.0;
 /// Cells along a side of the land.
 const CELLS: usize = 84;
-/// Exponent by which cells grow from where one stands to the edge: 1.7 m there, 120 m at the edge.
+/// Exponent by which cells grow from the start view to the edge: from 1.7 m to 120 m.
 const GROWTH: f32 = 4.9;
 /// Height of the brow above the plain, in metres: enough to look down on shadows 150 m away.
 const BROW: f32 = 13.0;
 
-/// Height of the land, in metres.
+/// Returns the height of the land, in metres.
 pub(super) fn height(x: f32, z: f32) -> f32 {
     let brow =
         BROW * (1.0 - ease(-z + 0.10 * x, -3.0, 46.0)) * (-(x / 170.0).powi(2)).exp() * (1.0 - ease(z, 60.0, 260.0));
@@ -27,14 +27,15 @@ pub(super) fn height(x: f32, z: f32) -> f32 {
     brow + waves * ease(away, 10.0, 90.0) + bumps + hills
 }
 
-/// A point on the land. Never inlined: sines of constant places, folded by the compiler, may differ in their last bit
-/// from those that the program computes, and the scene would depend on how the crate is cut up for compilation.
+/// Returns a point on the land. Never inlined: the compiler may fold sines of constants to values that differ
+/// in the last bit from the sines at run time. The scene would then depend on how the crate is split for
+/// compilation.
 #[inline(never)]
 pub(super) fn on_land(x: f32, z: f32) -> Vec3 {
     Vec3::new(x, height(x, z), z)
 }
 
-/// Where the path runs along x.
+/// Returns the position of the path along x, in metres.
 pub(super) fn path(z: f32) -> f32 {
     -0.35 + 1.5 * (0.085 * (z - 2.0)).sin() + 0.0042 * z * z.min(0.0)
 }
@@ -46,7 +47,7 @@ pub(super) fn build(builder: &mut Builder) {
     builder.lay("land", sheet);
 }
 
-/// Colour of the land: turf on the brow, fields below, woods on the hills.
+/// Returns the colour of the land: turf on the brow, fields below, woods on the hills.
 fn color(at: Vec3) -> Vec3 {
     let turf =
         Vec3::new(0.40, 0.42, 0.15).lerp(Vec3::new(0.62, 0.50, 0.24), 0.5 + 0.5 * (0.35 * at.x + 0.21 * at.z).sin());
@@ -59,7 +60,8 @@ fn color(at: Vec3) -> Vec3 {
     turf.lerp(fields, below.max(ease(away, 90.0, 160.0))).lerp(woods, ease(away, 450.0, 800.0)).lerp(bare, trodden)
 }
 
-/// Colour of the field at a place: strips of crops along the axes, as the cells are, so that their edges are straight.
+/// Returns the colour of the field at a place. Strips of crops follow the axes, like the cells, so that their
+/// edges are straight.
 fn field(x: f32, z: f32) -> Vec3 {
     let strip = ((z + HALF) / 52.0) as u32;
     let plot = ((x + HALF) / (70.0 + 60.0 * hash(strip, 8))) as u32;

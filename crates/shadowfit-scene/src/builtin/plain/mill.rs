@@ -9,16 +9,16 @@ use super::palette::Paint;
 use crate::parts::{Builder, CRISP, SMOOTH, Solid, block, capsule, ellipsoid, lathe, plank, rotations};
 use crate::{Channel, Transform};
 
-/// Time of a whole turn of the sails, in seconds: a steady breeze.
+/// Time of a full turn of the sails in a steady breeze, in seconds.
 pub(super) const TURN_TIME: f32 = 14.0;
-/// Keyframes of a turn: enough for rotations to be interpolated the short way.
+/// Keyframes of a turn: enough for rotations to be interpolated along the shorter arc.
 const TURN_KEYS: usize = 24;
-/// Where the mill stands, along x and z in metres.
+/// Position of the mill along x and z, in metres.
 const AT: [f32; 2] = [-27.0, -102.0];
-/// Direction that the sails face, from +z toward +x, in radians: into the wind, so that the sun behind them throws the
-/// whole wheel on the slope.
+/// Direction that the sails face, from +z toward +x, in radians: into the wind, so that the sun behind them
+/// casts the shadow of the whole wheel on the slope.
 const FACING: f32 = 0.55;
-/// How much larger than modelled the mill is: all other lengths are before that.
+/// Scale of the mill. All other lengths are before scaling.
 const SIZE: f32 = 1.3;
 /// Height of the shaft that the sails turn on, in metres.
 const HUB: f32 = 10.2;
@@ -27,7 +27,7 @@ const SAIL: f32 = 7.2;
 /// Crossbars of a sail.
 const BARS: usize = 14;
 
-/// Adds the mill and returns how its sails turn.
+/// Adds the mill and returns the animation channel of its sails.
 pub(super) fn build(builder: &mut Builder) -> Channel {
     let at = on_land(AT[0], AT[1]);
     let mill = builder.group("mill", at, FACING);
@@ -51,12 +51,13 @@ pub(super) fn build(builder: &mut Builder) -> Channel {
     rotations(node, TURN_TIME, TURN_KEYS, |phase| lean * Quat::from_rotation_z(start - phase))
 }
 
-/// A pole from the end of the cap's tail to the foot of the mill, by which it is turned into the wind.
+/// Builds a pole from the end of the cap's tail to the foot of the mill, which serves to turn the cap into
+/// the wind.
 fn tail_pole(side: f32) -> Solid {
     capsule([side * 0.1, 9.1, -5.2], 0.07, [side * 1.6, 0.4, -6.2], 0.09, 8)
 }
 
-/// A door or window in the round wall, at a turn from the mill's front and a height.
+/// Builds a door or window in the round wall, at an angle from the mill's front and a height.
 fn opening(turn: f32, low: f32) -> Solid {
     let (half, tall) = if low < 1.0 { (0.55, 2.0) } else { (0.32, 0.95) };
     let radius = 3.48 - 0.14 * low;
@@ -64,13 +65,13 @@ fn opening(turn: f32, low: f32) -> Solid {
     slab.transformed(Affine3A::from_rotation_y(turn))
 }
 
-/// `sail` at each of four angles.
+/// Returns `sail` at four angles, a quarter turn apart.
 fn fourfold(sail: &Solid) -> Solid {
     let turned = |quarter: u8| sail.clone().transformed(Affine3A::from_rotation_z(TAU / 4.0 * f32::from(quarter)));
     (0..4).map(turned).collect()
 }
 
-/// Shaft, spars and bars.
+/// Builds the shaft, spars and bars.
 fn frame() -> Solid {
     let spar = plank([-0.10, 0.0, -0.09], [0.10, SAIL, 0.09]);
     let edge = |x: f32, thick: f32| plank([x - thick, 1.25, 0.02], [x + thick, SAIL - 0.05, 0.08]);
@@ -84,7 +85,7 @@ fn frame() -> Solid {
     fourfold(&sail).with(shaft)
 }
 
-/// Cloth on the inner two thirds of each sail.
+/// Builds the cloth on the inner two thirds of each sail.
 fn canvas() -> Solid {
     fourfold(&plank([0.14, 1.45, 0.09], [1.46, 5.2, 0.11]))
 }

@@ -1,8 +1,8 @@
-//! The plain: stones at the feet, a mill below, a tower far off, under a low sun.
+//! The plain: stones in the foreground, a mill below, a far tower, under a low sun.
 //!
-//! One view holds blades of grass and hills a kilometre away, so that a single map is either too coarse in front or
-//! too short behind. The tower's shadow falls 90 m across the fields toward the view. In animation 0, "turn", the
-//! sails of the mill turn, and their shadow sweeps over the slope.
+//! One view contains blades of grass and hills a kilometre away, so a single map is either too coarse in
+//! front or too short behind. The tower's shadow falls 90 m across the fields toward the view. In animation
+//! 0, "turn", the sails of the mill turn, and their shadow sweeps over the slope.
 
 mod far;
 mod land;
@@ -19,9 +19,10 @@ use crate::Scene;
 use crate::parts::{Builder, looped, sunlight};
 use land::on_land;
 
-/// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, just out of sight.
+/// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, just out of
+/// sight.
 const SUN_AZIMUTH: f32 = -2.44;
-/// Height of the sun above the horizon, in radians: shadows are two and a half times as long as things are
+/// Height of the sun above the horizon, in radians: shadows are two and a half times as long as objects are
 /// tall.
 const SUN_ELEVATION: f32 = 0.375;
 /// Vertical field of view of the start view, in radians.
@@ -31,7 +32,7 @@ const FAR: f32 = 1500.0;
 /// Height of the eye, in metres.
 const EYE: f32 = 1.65;
 
-/// The scene.
+/// Builds the scene.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("plain", palette::Paint::all(), textures::Picture::all());
     land::build(&mut builder);

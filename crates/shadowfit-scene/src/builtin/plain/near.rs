@@ -1,4 +1,5 @@
-//! What is near: slabs of the path, a dry wall, a fence, a hut, sheep, tufts of grass, a tree bent by the wind.
+//! Near objects: slabs of the path, a dry wall, a fence, a hut, sheep, tufts of grass, a tree bent by the
+//! wind.
 
 use std::f32::consts::TAU;
 
@@ -17,7 +18,7 @@ use crate::parts::{
 const PIECE: f32 = 2.2;
 /// Pieces of the dry wall.
 const PIECES: usize = 8;
-/// Tufts of grass that are tried.
+/// Tufts of grass to place.
 const TUFTS: usize = 170;
 /// Distance between the posts of the fence, in metres.
 const POSTS: f32 = 2.3;
@@ -35,12 +36,13 @@ pub(super) fn build(builder: &mut Builder) -> usize {
     hut
 }
 
-/// Rotation that stands things upright on a slope, turned by `yaw`.
+/// Returns a rotation that sets objects perpendicular to a slope, turned by `yaw`.
 fn on_slope(at: Vec3, yaw: f32) -> Quat {
     Quat::from_rotation_arc(Vec3::Y, slope_normal(height, at.x, at.z)) * Quat::from_rotation_y(yaw)
 }
 
-/// A rough stone about the origin, about 1 m across: fewer faces than a ball, none alike.
+/// Builds a rough stone around the origin, about 1 m across, with fewer faces than a ball. Each seed gives
+/// another shape.
 fn rock(seed: u32, segments: usize) -> Solid {
     let mut dice = Dice::new(seed);
     let [a, b] = [dice.roll() * TAU, dice.roll() * TAU];
@@ -50,7 +52,7 @@ fn rock(seed: u32, segments: usize) -> Solid {
     })
 }
 
-/// Flat stones, one after the other along the path.
+/// Adds flat stones along the path.
 fn slabs(builder: &mut Builder, group: usize) {
     let slab = |seed: u32| rock(seed, 13).transformed(Affine3A::from_scale(Vec3::new(1.0, 0.12, 0.8)));
     let slabs = [51, 52, 53].map(|seed| builder.solid("slab", &slab(seed), Paint::Slab, 0.95));
@@ -65,7 +67,7 @@ fn slabs(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A wall of field stones without mortar, beside the path.
+/// Adds a wall of field stones without mortar, beside the path.
 fn dry_wall(builder: &mut Builder, group: usize) {
     let pieces = [60, 61].map(|seed| builder.solid("dry wall", &wall_piece(seed), Paint::Stone, 0.95));
     let (mut x, mut z) = (-2.5, 1.9);
@@ -74,7 +76,7 @@ fn dry_wall(builder: &mut Builder, group: usize) {
         let (end_x, end_z) = (x - PIECE * turn.sin(), z - PIECE * turn.cos());
         let (start, end) = (on_land(x, z), on_land(end_x, end_z));
         let ahead = (end - start).normalize();
-        // Along -z, then down the slope.
+        // Turns -z along the wall, then tilts it down the slope.
         let yaw = Quat::from_rotation_arc(Vec3::NEG_Z, ahead.with_y(0.0).normalize());
         let rotation = yaw * Quat::from_rotation_x(ahead.y.asin());
         builder.pose(group, pieces[index % 2], Transform::new(start.midpoint(end), rotation, Vec3::ONE));
@@ -82,7 +84,7 @@ fn dry_wall(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A piece of wall along z: three courses and a row of flat stones on top.
+/// Builds a piece of wall along z: three courses and a row of flat stones on top.
 fn wall_piece(seed: u32) -> Solid {
     let mut dice = Dice::new(seed);
     let mut wall = Solid::default();
@@ -105,7 +107,7 @@ fn wall_piece(seed: u32) -> Solid {
     wall
 }
 
-/// A fence of rough posts with two rails, down the slope.
+/// Adds a fence of rough posts with two rails, down the slope.
 fn fence(builder: &mut Builder, group: usize) {
     let line = |index: usize| {
         let along = POSTS * index as f32;
@@ -123,7 +125,7 @@ fn fence(builder: &mut Builder, group: usize) {
         if index == 18 {
             break;
         }
-        // The rails are as long as their gap: each pair is a mesh of its own.
+        // The rails have the length of their gap, so each pair needs its own mesh.
         let (start, end) = (line(index), line(index + 1));
         let ahead = (end - start).normalize();
         let mut rails = Limbs::default();
@@ -137,7 +139,7 @@ fn fence(builder: &mut Builder, group: usize) {
     }
 }
 
-/// A shepherd's hut of stone under thatch.
+/// Adds a shepherd's hut of stone under thatch.
 fn hut(builder: &mut Builder) -> usize {
     let (half, length, eaves, ridge) = (1.9, 4.6, 2.1, 3.5);
     let walls = gabled(half, [-1.2, eaves, ridge], length);
@@ -164,7 +166,7 @@ fn hut(builder: &mut Builder) -> usize {
     builder.node("hut", None, turned(on_land(8.3, -11.4) + Vec3::Y * 0.25, -0.55), Some(mesh))
 }
 
-/// Sheep on the slope.
+/// Adds sheep on the slope.
 fn sheep(builder: &mut Builder, group: usize) {
     let wool = |turn: f32, y: f32| 1.0 + 0.05 * (9.0 * turn + 14.0 * y).sin() + 0.04 * (6.0 * turn - 21.0 * y).cos();
     let body = modulated_lathe(&egg(0.26, 0.48, 0.7), 12, wool).posed(Quat::from_rotation_x(TAU / 4.0), Vec3::Y * 0.62);
@@ -184,7 +186,7 @@ fn sheep(builder: &mut Builder, group: usize) {
     }
 }
 
-/// Tufts of dry grass, by the wall, the fence and the path.
+/// Adds tufts of dry grass by the wall, the fence and the path.
 fn tufts(builder: &mut Builder, group: usize) {
     let mut dice = Dice::new(80);
     let wind = Vec3::X * 0.12;
@@ -192,7 +194,7 @@ fn tufts(builder: &mut Builder, group: usize) {
     let tuft = builder.mesh("tuft", vec![tuft.primitive(Paint::Grass, &mut dice)]);
     for index in 0..TUFTS {
         let z = 1.4 - 15.0 * dice.roll();
-        // At the foot of the wall and of the fence, at the sides of the path, and here and there.
+        // Places: the foot of the wall, the foot of the fence, the sides of the path, and scattered.
         let (line, spread) = match index % 4 {
             0 => (-2.15 + 0.28 * z.min(0.0), 0.35),
             1 => (2.45 - 0.13 * z, 0.4),

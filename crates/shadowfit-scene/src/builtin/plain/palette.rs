@@ -5,7 +5,7 @@ use crate::Material;
 use crate::parts::{WHITE, cut_out, matt, numbered, tiled, wrapped};
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too.
+    /// A material, by its index in the scene. The first is also the default material.
     Paint: Material {
         Stone = tiled(matt("field stone", [0.86, 0.83, 0.76], 0.95), Picture::Stone.into(), [0.9; 2]),
         Slab = tiled(matt("slab", [0.62, 0.57, 0.49], 0.9), Picture::Stone.into(), [0.7; 2]),

@@ -1,4 +1,4 @@
-//! Images of the plain: turf, stone, masonry, bark, and what leaves and grass are cut from.
+//! Images of the plain: turf, stone, masonry, bark, and cut-outs of leaves and grass.
 
 use glam::Vec3;
 
@@ -17,14 +17,14 @@ numbered! {
     }
 }
 
-/// Metres that the image of the land spans.
+/// Size of the land's image in the scene, in metres.
 pub(super) const LAND_METRES: f32 = 3.2;
-/// Pixels along a side of the image of the land: 6 mm each.
+/// Pixels along a side of the land's image. A pixel is 6 mm wide.
 const LAND_SIZE: u32 = 512;
 /// Pixels along a side of the other images.
 const SIZE: u32 = 256;
 
-/// Short strokes of turf, near white, so that the land's colours tint them.
+/// Draws short strokes of turf, near white, so that the land's vertex colours tint them.
 fn turf() -> Image {
     draw_noisy("turf", LAND_SIZE, [0.5, 2.0, 8.0], |x, y, [clouds, tufts, grains]| {
         let stroke = hash(x / 2 + 7 * (y / 7), 90 + y / 7) - 0.5;
@@ -32,7 +32,7 @@ fn turf() -> Image {
     })
 }
 
-/// Weathered stone with lichen.
+/// Draws weathered stone with lichen.
 fn stone() -> Image {
     draw_noisy("stone", SIZE, [0.25, 2.0], |_, _, [cloud, grain]| {
         let light = 12.0 * cloud + 15.0 * grain;
@@ -40,7 +40,7 @@ fn stone() -> Image {
     })
 }
 
-/// Courses of rough blocks.
+/// Draws courses of rough blocks.
 fn masonry() -> Image {
     let (course, length) = (SIZE as f32 / 8.0, SIZE as f32 / 4.0);
     draw_noisy("masonry", SIZE, [2.0], |x, y, [grain]| {

@@ -6,7 +6,7 @@ use super::land::on_land;
 use super::palette::Paint;
 use crate::parts::{Builder, CRISP, lathe, plank};
 
-/// Where the tower stands, along x and z in metres.
+/// Position of the tower along x and z, in metres.
 const AT: [f32; 2] = [-7.0, -142.0];
 /// Height of the battlements, in metres.
 const CROWN: f32 = 24.5;

@@ -6,9 +6,9 @@ use super::land::on_land;
 use super::palette::Paint;
 use crate::parts::{Builder, Card, Cards, Dice, GOLDEN_ANGLE, Limbs};
 
-/// Branches, and clouds of leaves at their ends.
+/// Branches, each with a cloud of leaves at its end.
 const BRANCHES: usize = 15;
-/// Cards of leaves a branch.
+/// Leaf cards of a branch.
 const CARDS: usize = 30;
 
 /// Adds the tree.
@@ -16,7 +16,7 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
     let mut dice = Dice::new(90);
     let mut wood = Limbs::default();
     let mut leaves = Cards::new(Paint::Leaves, 1);
-    // The trunk leans with the wind, more the higher it is.
+    // The trunk leans with the wind, more toward its top.
     let trunk = |t: f32| Vec3::new(1.15 * t * t + 0.12 * (t * 7.0).sin(), 2.5 * t, 0.15 * (t * 5.0).sin());
     let path: Vec<Vec3> = [-0.08, 0.0, 0.06, 0.15, 0.3, 0.5, 0.75, 1.0].map(trunk).to_vec();
     wood.add(&path, 14, |turn, t| {
@@ -27,7 +27,7 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
         let share = 0.45 + 0.55 * index as f32 / (BRANCHES - 1) as f32;
         let turn = index as f32 * GOLDEN_ANGLE;
         let from = trunk(share);
-        // All branches are swept along with the wind.
+        // The wind bends all branches in its direction.
         let out = Vec3::new(0.45 + 0.6 * turn.sin(), 0.42 + 0.25 * (turn * 1.3).cos(), 0.85 * turn.cos());
         let length = dice.between(1.0, 1.6) * (1.15 - 0.35 * share);
         let bend = Vec3::new(0.25, -0.12, 0.0) * length;

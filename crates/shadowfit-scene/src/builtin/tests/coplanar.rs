@@ -1,4 +1,4 @@
-//! No two surfaces of a scene lie in one place and fight for it.
+//! No two surfaces of a scene are coplanar and overlap, which would cause z-fighting.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -6,15 +6,15 @@ use glam::Vec3;
 
 use super::{Scene, Triangle, every};
 
-/// Steps of a unit normal that count as one direction: a third of a degree.
+/// Rounding steps of a unit normal that count as one direction: a third of a degree.
 const TURNS: f32 = 200.0;
-/// Steps of a plane's distance that count as one, a metre: half a millimetre.
+/// Rounding steps of a plane's distance, per metre: half a millimetre each.
 const STEPS: f32 = 2000.0;
 
 /// A plane, rounded.
 type Plane = [i32; 4];
 
-/// Unit normal of a triangle, and its plane.
+/// Returns the unit normal of a triangle, and its rounded plane.
 fn plane(triangle: &Triangle) -> (Vec3, Plane) {
     let [a, b, c] = triangle.vertices;
     let normal = (b - a).cross(c - a).normalize_or_zero();
@@ -22,10 +22,11 @@ fn plane(triangle: &Triangle) -> (Vec3, Plane) {
     (normal, [x, y, z, (normal.dot(a) * STEPS).round() as i32])
 }
 
-/// Whether the middle of `a` lies in the plane of `b`, whose unit normal is given, and inside it by more than a millimetre.
+/// Returns whether the middle of `a` lies in the plane of `b` and more than a millimetre inside `b`. `normal`
+/// is the unit normal of `b`.
 fn covers(b: &Triangle, normal: Vec3, a: &Triangle) -> bool {
     let middle = a.vertices.iter().sum::<Vec3>() / 3.0;
-    // Planes of almost one direction, far from the origin, may differ more than their rounded distances tell.
+    // Far from the origin, planes of almost one direction may differ more than their rounded distances show.
     let is_in_plane = normal.dot(middle - b.vertices[0]).abs() < 1.0 / STEPS;
     is_in_plane
         && (0..3).all(|corner| {
@@ -48,14 +49,15 @@ impl<'a> Surface<'a> {
         Self { triangle, normal, min: a.min(b).min(c), max: a.max(b).max(c) }
     }
 
-    /// Whether the bounds of two triangles overlap.
+    /// Returns whether the bounds of two triangles overlap.
     fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 }
 
-/// Names of meshes of which one has a triangle in the place of another's. What faces down is left out: the bottoms of
-/// what stands side by side in the ground; and so is what hangs on `jointed`, whose limbs overlap where they meet.
+/// Returns the names of pairs of meshes with coplanar, overlapping triangles. Ignores triangles that face
+/// down (bottoms of neighbouring objects in the ground), double-sided materials, and the descendants of
+/// `jointed`, whose limbs overlap at the joints.
 fn fighting(scene: &Scene, jointed: Option<usize>) -> BTreeSet<[String; 2]> {
     let triangles = scene.pose(None, 0.0).triangles(scene);
     let instances = scene.instances();
@@ -75,7 +77,8 @@ fn fighting(scene: &Scene, jointed: Option<usize>) -> BTreeSet<[String; 2]> {
     }
     let mut found = BTreeSet::new();
     for mut together in planes.into_values() {
-        // In order along x, so that few triangles are compared: the middle of one lies in the box of the other.
+        // Sorting along x keeps the number of compared pairs small: the middle of one triangle must lie in
+        // the box of the other.
         together.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         for (index, a) in together.iter().enumerate() {
             let near = together[index + 1..].iter().take_while(|b| b.min.x <= a.max.x);

@@ -1,4 +1,4 @@
-//! Facts about the courtyard: a sound skeleton, feet on the floor, the view that it is known for.
+//! Facts about the courtyard: a sound skeleton, feet on the floor, its well-known start view.
 
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ use crate::{Lens, Scene};
 /// Index of the animation "walk".
 const WALK: usize = 0;
 
-/// Node with a name.
+/// Returns the node with a name.
 fn node(scene: &Scene, name: &str) -> usize {
     scene.nodes.iter().position(|node| node.name == name).expect(name)
 }
@@ -37,7 +37,7 @@ fn the_figure_stands_at_the_origin_and_faces_z() {
 fn walking_feet_stay_within_a_centimetre_and_a_half_of_the_floor() {
     let scene = default_scene();
     let subject = scene.subject.expect("a subject");
-    // A stride at steps that fall between the keyframes too.
+    // A stride, at steps that also fall between the keyframes.
     for step in 0..100 {
         let low = bounds_below(&scene, subject, Some(WALK), step as f32 * 0.0109).0.y;
         assert!(low.abs() < 0.015, "{low} m at step {step}");

@@ -1,11 +1,11 @@
-//! Facts about scenes that code makes, whatever they show, and short ways to what they hold. The module above says which
-//! scenes `every` one is: those of other crates are checked by the same file.
+//! Facts about any scene that code generates, and helpers that read scenes. The parent module's `every` lists
+//! the scenes, so other crates check their own scenes with the same file.
 
 use glam::Vec3;
 
 use super::{Primitive, Scene, every};
 
-/// World bounds of what hangs below a node, from the vertices themselves.
+/// Returns the world bounds of a node's descendants, computed from their vertices.
 pub(super) fn bounds_below(scene: &Scene, root: usize, animation: Option<usize>, seconds: f32) -> (Vec3, Vec3) {
     let pose = scene.pose(animation, seconds);
     let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -21,17 +21,17 @@ pub(super) fn bounds_below(scene: &Scene, root: usize, animation: Option<usize>,
     bounds
 }
 
-/// All primitives with the names of their meshes.
+/// Returns all primitives with the names of their meshes.
 pub(super) fn primitives(scene: &Scene) -> impl Iterator<Item = (&str, &Primitive)> {
     scene.meshes.iter().flat_map(|mesh| mesh.primitives.iter().map(|primitive| (mesh.name.as_str(), primitive)))
 }
 
-/// Corners of a primitive's triangles.
+/// Returns the vertex indices of a primitive's triangles.
 pub(super) fn triangles(primitive: &Primitive) -> impl Iterator<Item = [usize; 3]> {
     primitive.indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
 }
 
-/// Triangles that the scene draws, below `root` if given.
+/// Returns the number of triangles that the scene draws, below `root` if given.
 pub(super) fn drawn(scene: &Scene, root: Option<usize>) -> usize {
     let instances = scene.instances();
     let counted = instances.iter().filter(|instance| root.is_none_or(|root| scene.is_descendant(instance.node, root)));

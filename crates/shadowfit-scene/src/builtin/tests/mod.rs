@@ -12,12 +12,12 @@ use facts::{bounds_below, drawn};
 use super::BuiltinScene;
 use crate::{AlphaMode, Instance, Primitive, Scene, Triangle};
 
-/// Every built-in scene, built.
+/// Builds every built-in scene.
 fn all() -> impl Iterator<Item = (BuiltinScene, Scene)> {
     BuiltinScene::ALL.into_iter().map(|builtin| (builtin, builtin.build()))
 }
 
-/// Every built-in scene, built, by its id.
+/// Builds every built-in scene, with its id.
 fn every() -> impl Iterator<Item = (&'static str, Scene)> {
     all().map(|(builtin, scene)| (builtin.id(), scene))
 }
@@ -44,6 +44,7 @@ fn triangle_counts_keep_their_budget() {
             BuiltinScene::Plain => (40_000, 60_000),
             BuiltinScene::Arcade => (60_000, 80_000),
             BuiltinScene::Courtyard | BuiltinScene::Forest => (100_000, 150_000),
+            BuiltinScene::Town => (60_000, 120_000),
         };
         let count = drawn(&scene, None);
         assert!((low..=high).contains(&count), "{builtin:?}: {count}");
@@ -58,6 +59,7 @@ fn every_scene_lies_around_the_origin() {
             BuiltinScene::Plain => (2000.0, 60.0),
             BuiltinScene::Arcade => (120.0, 12.0),
             BuiltinScene::Forest => (120.0, 20.0),
+            BuiltinScene::Town => (300.0, 45.0),
         };
         let bounds = scene.bounds(&scene.pose(None, 0.0)).expect("bounds");
         assert!(bounds.min.is_finite() && bounds.max.is_finite());

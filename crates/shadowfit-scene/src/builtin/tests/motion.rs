@@ -6,7 +6,7 @@ use super::all;
 use crate::builtin::BuiltinScene;
 use crate::{ChannelValues, Pose, Scene};
 
-/// Farthest that a vertex of the scene moves from one pose to another, in metres.
+/// Returns the farthest distance that a vertex moves from one pose to another, in metres.
 fn farthest(scene: &Scene, a: &Pose, b: &Pose) -> f32 {
     let distance = |instance: &crate::Instance| {
         let [a, b]: [Mat4; 2] = [a, b].map(|pose| pose.world_from_node[instance.node]);
@@ -19,7 +19,7 @@ fn farthest(scene: &Scene, a: &Pose, b: &Pose) -> f32 {
     scene.instances().iter().map(distance).fold(0.0, f32::max)
 }
 
-/// Whether two rotations agree; a quaternion and its negative are one rotation.
+/// Returns whether two rotations agree. A quaternion and its negative are one rotation.
 fn same_turn(a: Quat, b: Quat) -> bool {
     a.dot(b).abs() > 1.0 - 1e-5
 }
@@ -33,6 +33,7 @@ fn animations_have_the_names_that_are_promised() {
             BuiltinScene::Plain => &["turn"],
             BuiltinScene::Arcade => &["swing"],
             BuiltinScene::Forest => &["wind"],
+            BuiltinScene::Town => &["sway"],
         };
         assert_eq!(names, promised, "{builtin:?}");
     }
@@ -51,7 +52,7 @@ fn animations_end_where_they_begin() {
             match &channel.values {
                 ChannelValues::Translation(values) => assert!(values[0].distance(values[values.len() - 1]) < 1e-4),
                 ChannelValues::Rotation(values) => assert!(same_turn(values[0], values[values.len() - 1])),
-                _ => panic!("{builtin:?}: what moves only moves and turns"),
+                _ => panic!("{builtin:?}: a channel is neither a translation nor a rotation"),
             }
         }
     }
@@ -64,7 +65,8 @@ fn animations_move_something_without_a_jump() {
             let pose = |seconds: f32| scene.pose(Some(index), seconds);
             let moved = (1..6).map(|step| farthest(&scene, &pose(0.0), &pose(0.17 * step as f32 * animation.duration)));
             assert!(moved.fold(0.0, f32::max) > 0.1, "{builtin:?}: {}", animation.name);
-            // A hundredth of a second, over the end of the loop and elsewhere: less than 5 m/s, the tip of a sail.
+            // Steps of 0.01 s across the end of the loop and elsewhere. The limit is 5 m/s, the speed of a
+            // sail's tip.
             for seconds in [animation.duration - 0.005, 0.0, 0.31 * animation.duration] {
                 let step = farthest(&scene, &pose(seconds), &pose(seconds + 0.01));
                 assert!(step < 0.05, "{builtin:?}: {} moves {step} m at {seconds} s", animation.name);

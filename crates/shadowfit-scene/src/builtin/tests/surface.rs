@@ -1,26 +1,30 @@
-//! Surfaces of all scenes: arrays that agree, normals on the outer side, closed solids, textures that exist.
+//! Surfaces of all scenes: arrays of equal length, outward normals, closed solids, textures that exist.
 
 use std::collections::HashMap;
 
 use super::facts::{primitives, triangles};
 use super::{AlphaMode, Primitive, Scene, every};
 
-/// Grounds: open sheets that face up, by the ids of their scenes.
-const GROUNDS: [(&str, &str); 6] = [
+/// Open sheets that face up, with the ids of their scenes.
+const GROUNDS: [(&str, &str); 8] = [
     ("courtyard", "floor"),
     ("plain", "land"),
     ("arcade", "gravel"),
     ("forest", "forest floor"),
+    ("town", "cobbles"),
+    ("town", "meadow"),
     ("shadow-mapping", "grid floor"),
     ("terrain", "land"),
 ];
 
-/// Whether a mesh of a scene is an open sheet that things stand on; that of the street faces sideways too.
+/// Returns whether a mesh is an open sheet under the objects of a scene. The sheet of the street also faces
+/// sideways.
 fn is_ground(id: &str, mesh: &str) -> bool {
     (id, mesh) == ("street", "strip") || GROUNDS.contains(&(id, mesh))
 }
 
-/// Whether a primitive is a sheet of leaves or grass: cut out, with two sides. The courtyard's lattice is solid.
+/// Returns whether a primitive is a sheet of leaves or grass: cut out, with two sides. The courtyard's
+/// lattice is solid.
 pub(super) fn is_foliage(scene: &Scene, primitive: &Primitive) -> bool {
     let material = &scene.materials[primitive.material];
     material.double_sided && material.name != "lattice"
@@ -64,7 +68,7 @@ fn every_triangle_has_area_and_unit_normals_on_its_outer_side() {
             for corners in triangles(primitive) {
                 let [a, b, c] = corners.map(|index| primitive.positions[index]);
                 let area = (b - a).cross(c - a);
-                // A hundredth of a square millimetre, twice.
+                // Twice 0.01 mm².
                 assert!(area.length() > 2e-8, "{id}: {name}: {a} {b} {c}");
                 for index in corners {
                     let normal = primitive.normals[index];
@@ -93,7 +97,7 @@ fn every_solid_is_closed_and_faces_outwards() {
                     *edges.entry((key(to), key(from))).or_default() -= 1;
                 }
             }
-            // Each edge is passed as often one way as the other.
+            // Triangles pass each edge equally often in both directions.
             assert!(edges.values().all(|&count| count == 0), "{id}: {name} has an open edge");
             assert!(volume > 0.0, "{id}: {name} is inside out");
         }

@@ -6,10 +6,11 @@ use super::all;
 use crate::builtin::BuiltinScene;
 use crate::{Lens, Scene};
 
-/// Aspect of the pictures that the views were made for.
+/// Aspect ratio for which the start views were designed.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// World from the space of the scene's first camera, which looks along -z, and its vertical field of view.
+/// Returns the world-from-camera matrix of the scene's first camera, which looks along -z, and its vertical
+/// field of view.
 fn camera(scene: &Scene) -> (Mat4, f32) {
     let camera = &scene.cameras[0];
     let Lens::Perspective { fov_y, near, far } = camera.lens else { panic!("a perspective camera") };
@@ -23,7 +24,7 @@ fn the_start_view_sees_the_subject() {
         let (world_from_camera, fov_y) = camera(&scene);
         let subject = scene.subject.expect("a subject");
         let bounds = scene.node_bounds(&scene.pose(None, 0.0), subject).expect("bounds");
-        // Its middle at the height of the eye: trees are taller than the picture.
+        // The subject's middle, but at the height of the eye: trees are taller than the picture.
         let middle = (bounds.min + bounds.max) / 2.0;
         let height = world_from_camera.w_axis.y.clamp(bounds.min.y, bounds.max.y);
         let seen = world_from_camera.inverse().transform_point3(middle.with_y(height));
@@ -48,7 +49,8 @@ fn the_eye_stands_at_the_height_of_a_person_with_nothing_before_it() {
     }
 }
 
-/// Height of a triangle straight below or above a point.
+/// Returns the height of a triangle at the x and z of a point. Returns `None` if the triangle is not above or
+/// below it.
 fn height_at([a, b, c]: [Vec3; 3], point: Vec3) -> Option<f32> {
     let side = |from: Vec3, to: Vec3| (to.x - from.x) * (point.z - from.z) - (to.z - from.z) * (point.x - from.x);
     let [u, v, w] = [side(b, c), side(c, a), side(a, b)];

@@ -1,7 +1,7 @@
 //! Meshes of the wanderer below the head: clothes, limbs, hands, boots, scarf.
 //!
-//! Each part is rigid and given in the axes of its joint; neighbours overlap in rounded ends, as
-//! in a wooden artist's figure, so that no gap opens when a joint bends.
+//! Each part is rigid and modelled in the axes of its joint. Neighbours overlap with rounded ends, like the
+//! parts of a wooden artist's figure, so that no gap opens when a joint bends.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -14,7 +14,7 @@ use crate::parts::build::{CRISP, SMOOTH};
 use crate::parts::shapes::{Section, capsule, ellipsoid, limb, loft, rounded_box, section, torus, tube};
 use crate::parts::solid::Solid;
 
-/// All meshes below the head.
+/// Builds all meshes below the head.
 pub(super) fn meshes() -> Vec<Part> {
     vec![
         (&[Joint::Hips], "hips", hips()),
@@ -32,19 +32,19 @@ pub(super) fn meshes() -> Vec<Part> {
     ]
 }
 
-/// A rounded solid in one colour.
+/// Converts a rounded solid to a primitive of one colour.
 fn smooth(solid: &Solid, paint: Wear) -> Primitive {
     solid.primitive(paint.into(), SMOOTH)
 }
 
-/// An elliptical ring about y at `height`: a hem, belt or cuff.
+/// Builds an elliptical ring about y at `height`: a hem, belt or cuff.
 fn band(height: f32, rx: f32, rz: f32, thick: f32, tall: f32) -> Solid {
     let scale = Affine3A::from_scale(Vec3::new(rx, 1.0, rz));
     let ring = torus(1.0, thick / rx.min(rz), tall, 28, 6);
     ring.transformed(scale).moved(Vec3::Y * height)
 }
 
-/// Trousers' seat, the jacket's skirt, the belt and its pouch.
+/// Builds the trousers' seat, the jacket's skirt, the belt and its pouch.
 fn hips() -> Vec<Primitive> {
     let seat =
         [section(-0.10, 0.115, 0.085, 0.0), section(-0.03, 0.158, 0.108, -0.004), section(0.06, 0.148, 0.1, 0.0)];
@@ -70,7 +70,7 @@ fn hips() -> Vec<Primitive> {
     ]
 }
 
-/// The jacket from the waist to the collar, with buttons, and the scarf around the neck.
+/// Builds the jacket from the waist to the collar, with buttons, and the scarf around the neck.
 fn chest() -> Vec<Primitive> {
     let jacket = [
         section(-0.15, 0.144, 0.099, 0.0),
@@ -99,7 +99,7 @@ fn neck() -> Solid {
     loft(&sections, 2.0, 2, 28)
 }
 
-/// A third of the hanging end of the scarf.
+/// Builds a third of the hanging end of the scarf.
 fn scarf_end() -> Solid {
     rounded_box([0.046, 0.083, 0.010], 0.0095, 2).moved([0.0, -0.072, 0.0])
 }
@@ -108,13 +108,13 @@ fn upper_arm() -> Solid {
     limb(0.27, &[0.060, 0.060, 0.055, 0.05, 0.05], 24)
 }
 
-/// Sleeve with its cuff, and the wrist.
+/// Builds the sleeve with its cuff, and the wrist.
 fn forearm() -> Vec<Primitive> {
     let sleeve = limb(0.215, &[0.051, 0.05, 0.045, 0.041], 24).with(band(-0.215, 0.037, 0.037, 0.012, 0.018));
     vec![smooth(&sleeve, Wear::Jacket), smooth(&limb(0.25, &[0.03, 0.028, 0.027], 16), Wear::Skin)]
 }
 
-/// The left hand, hanging at ease: palm toward the body (-x), thumb ahead (+z).
+/// Builds the left hand, hanging at ease: palm toward the body (-x), thumb forward (+z).
 fn hand() -> Solid {
     let palm = [
         section(-0.095, 0.014, 0.038, 0.003),
@@ -141,7 +141,7 @@ fn thigh() -> Solid {
     limb(0.43, &[0.080, 0.088, 0.081, 0.069, 0.062], 26)
 }
 
-/// Trousers to below the knee and the boot's shaft with its turned-down top.
+/// Builds the trousers below the knee and the boot's shaft with its turned-down top.
 fn shin() -> Vec<Primitive> {
     let shaft = [
         section(-0.425, 0.045, 0.052, 0.004),
@@ -156,7 +156,7 @@ fn shin() -> Vec<Primitive> {
     ]
 }
 
-/// A loft along +z instead of +y; its sections' `cz` is the depth of the centre below the joint.
+/// Builds a loft along +z instead of +y. The `cz` of its sections is the depth of the centre below the joint.
 fn along_z(sections: &[Section], floor: f32) -> Solid {
     let mut solid = loft(sections, 2.3, 3, 28).transformed(Affine3A::from_rotation_x(FRAC_PI_2));
     for position in &mut solid.positions {
@@ -165,7 +165,8 @@ fn along_z(sections: &[Section], floor: f32) -> Solid {
     solid
 }
 
-/// A sole between two heights, from `back` to `front` along z, `half` wide, wider ahead by `flare`.
+/// Builds a sole between two heights, from `back` to `front` along z. It is `half` wide, and wider in front
+/// by `flare`.
 fn sole([low, high]: [f32; 2], [back, front]: [f32; 2], half: f32, flare: f32) -> Solid {
     let (middle, reach) = (f32::midpoint(back, front), (front - back) / 2.0);
     let ring = |y: f32, inset: f32| {
@@ -182,7 +183,7 @@ fn sole([low, high]: [f32; 2], [back, front]: [f32; 2], half: f32, flare: f32) -
     tube(&rings, Vec3::new(0.0, low, middle), Vec3::new(0.0, high, middle))
 }
 
-/// The boot behind the toes.
+/// Builds the boot behind the toes.
 fn foot() -> Vec<Primitive> {
     let upper = [
         section(-0.055, 0.034, 0.044, 0.045),
@@ -196,7 +197,7 @@ fn foot() -> Vec<Primitive> {
     vec![smooth(&along_z(&upper, -ANKLE + 0.012), Wear::Leather), sole.with(heel).primitive(Wear::Sole.into(), CRISP)]
 }
 
-/// The boot's cap, around the toe joint.
+/// Builds the boot's cap, around the toe joint.
 fn toes() -> Vec<Primitive> {
     let ground = -ANKLE - TOE.y;
     let upper =

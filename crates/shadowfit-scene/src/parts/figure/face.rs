@@ -1,7 +1,7 @@
 //! The wanderer's head: skull, brow, nose, jaw, eyes, ears, hair and cap.
 //!
-//! The head is one smooth surface: bodies blended by the polynomial smooth minimum of Inigo Quilez
-//! ("smooth minimum", 2013), met along rays from inside. Left and right are mirror images.
+//! The head is one smooth surface. Rays from inside find the surface of bodies that are blended by the
+//! polynomial smooth minimum of Inigo Quilez ("smooth minimum", 2013). Left and right are mirror images.
 
 use std::f32::consts::{PI, TAU};
 
@@ -13,9 +13,9 @@ use crate::parts::build::SMOOTH;
 use crate::parts::shapes::{capsule, ellipsoid, loft, section, torus, tube};
 use crate::parts::solid::Solid;
 
-/// Point that the rays start from, in the head's axes: between the temples.
+/// Origin of the rays, in the head's axes: between the temples.
 const CENTRE: Vec3 = Vec3::new(0.0, 0.14, 0.0);
-/// Vertices around the head; even, so that it can be mirrored.
+/// Vertices around the head. An even number, so that it can be mirrored.
 const AROUND: usize = 76;
 /// Rings from chin to crown.
 const RINGS: usize = 50;
@@ -24,7 +24,7 @@ const EYE: Vec3 = Vec3::new(0.0375, 0.125, 0.0735);
 /// Radius of the eyes.
 const EYE_RADIUS: f32 = 0.0215;
 
-/// The head with all that is fixed to it.
+/// Builds the head with its fixed parts.
 pub(super) fn mesh() -> Part {
     let piece = |solid: &Solid, paint: Wear| solid.primitive(paint.into(), SMOOTH);
     let primitives = vec![
@@ -38,7 +38,7 @@ pub(super) fn mesh() -> Part {
     (&[Joint::Head], "head", primitives)
 }
 
-/// Smooth minimum: blends two distances over `k` metres.
+/// Returns the smooth minimum of two distances, blended over `k` metres.
 fn blend(a: f32, b: f32, k: f32) -> f32 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k * 0.25
@@ -49,25 +49,25 @@ fn carve(a: f32, b: f32, k: f32) -> f32 {
     -blend(-a, b, k)
 }
 
-/// Distance to a ball.
+/// Returns the distance to a ball.
 fn ball(p: Vec3, centre: Vec3, radius: f32) -> f32 {
     p.distance(centre) - radius
 }
 
-/// Approximate distance to an ellipsoid.
+/// Returns the approximate distance to an ellipsoid.
 fn egg(p: Vec3, centre: Vec3, radii: Vec3) -> f32 {
     let q = (p - centre) / radii;
     let length = q.length();
     length * (length - 1.0) / (q / radii).length().max(1e-6)
 }
 
-/// Distance to a round cone from `a` to `b`, without its end corrections.
+/// Returns the distance to a round cone from `a` to `b`, without its end corrections.
 fn cone(p: Vec3, a: Vec3, ra: f32, b: Vec3, rb: f32) -> f32 {
     let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
     p.distance(a.lerp(b, t)) - (ra + (rb - ra) * t)
 }
 
-/// Distance-like field of the head: negative inside. `p.x` must not be negative.
+/// Returns a distance-like field of the head, negative inside. `p.x` must not be negative.
 fn field(p: Vec3) -> f32 {
     let skull = egg(p, Vec3::new(0.0, 0.168, -0.014), Vec3::new(0.097, 0.112, 0.115));
     let jaw = egg(p, Vec3::new(0.0, 0.072, 0.028), Vec3::new(0.074, 0.088, 0.074));
@@ -81,12 +81,13 @@ fn field(p: Vec3) -> f32 {
     let bridge = cone(p, Vec3::new(0.0, 0.142, 0.088), 0.011, Vec3::new(0.0, 0.094, 0.129), 0.0165);
     d = blend(d, bridge, 0.014);
     d = blend(d, ball(p, Vec3::new(0.015, 0.087, 0.109), 0.0115), 0.010);
-    // Lips stand out a little around the mouth line.
+    // Lips protrude a little around the mouth line.
     let lips = cone(p, Vec3::new(0.0, 0.051, 0.088), 0.013, Vec3::new(0.02, 0.051, 0.080), 0.007);
     blend(d, lips, 0.014)
 }
 
-/// Distance from the centre to the surface along `direction`: Illinois regula falsi.
+/// Returns the distance from the centre to the surface along `direction`, by the Illinois variant of regula
+/// falsi.
 fn reach(direction: Vec3) -> f32 {
     let at = |r: f32| field(CENTRE + direction * r);
     let (mut low, mut high) = (0.05, 0.21);
@@ -108,7 +109,7 @@ fn reach(direction: Vec3) -> f32 {
     f32::midpoint(low, high)
 }
 
-/// Point of the face at `x` and `y`, seen from the front.
+/// Returns the front-most point of the face at `x` and `y`.
 fn on_face(x: f32, y: f32) -> Vec3 {
     let (mut inside, mut outside) = (0.03, 0.18);
     for _ in 0..16 {
@@ -118,12 +119,12 @@ fn on_face(x: f32, y: f32) -> Vec3 {
     Vec3::new(x, y, inside)
 }
 
-/// The skin of the head: rings about y, denser over the face than behind.
+/// Builds the skin of the head: rings about y, denser over the face than at the back.
 fn head() -> Solid {
     let half = AROUND / 2;
     let ring = |ring: usize| {
         let height = ring as f32 / RINGS as f32;
-        // Denser where brow, eyes and nose are: a little below the horizon of the centre.
+        // Denser at brow, eyes and nose, which are slightly below the centre's height.
         let height = height + 0.055 * (TAU * height).sin() * 0.9;
         let (up, flat) = (-(PI * height).cos(), (PI * height).sin());
         let point = |index: usize| {
@@ -146,19 +147,19 @@ fn eyes() -> Solid {
     ellipsoid(Vec3::splat(EYE_RADIUS), 24, 14).moved(EYE).and_mirrored()
 }
 
-/// Upper lids: balls a little larger than the eyes, higher and farther back.
+/// Builds the upper lids: balls slightly larger than the eyes, higher and farther back.
 fn lids() -> Solid {
     let lid = ellipsoid(Vec3::splat(EYE_RADIUS + 0.0012), 22, 12);
     lid.moved(EYE + Vec3::new(0.0005, 0.0105, -0.0015)).and_mirrored()
 }
 
-/// Irises: flat lenses on the eyeballs, looking ahead.
+/// Builds the irises: flat lenses on the eyeballs, facing forward.
 fn irises() -> Solid {
     let lens = ellipsoid([0.0105, 0.012, 0.004], 24, 12);
     lens.moved(EYE + Vec3::new(-0.001, -0.001, EYE_RADIUS - 0.0022)).and_mirrored()
 }
 
-/// Ears: cups leaning forward from the head.
+/// Builds the ears: cups that lean forward from the head.
 fn ears() -> Solid {
     let rim = torus(0.021, 0.0065, 0.008, 22, 8).transformed(Affine3A::from_scale(Vec3::new(0.8, 1.0, 1.25)));
     let bowl = ellipsoid([0.017, 0.006, 0.024], 24, 10);
@@ -168,7 +169,7 @@ fn ears() -> Solid {
     rim.with(bowl).transformed(flat).and_mirrored()
 }
 
-/// Hair around the back and the temples, and the eyebrows.
+/// Builds the hair around the back and the temples, and the eyebrows.
 fn hair() -> Solid {
     let sections = [
         section(0.062, 0.072, 0.062, -0.058),
@@ -183,7 +184,7 @@ fn hair() -> Solid {
     loft(&sections, 2.1, 3, 36).with(brow)
 }
 
-/// The line of the mouth.
+/// Builds the line of the mouth.
 fn mouth() -> Solid {
     let corner = |x: f32| on_face(x, 0.0485 + 7.0 * x * x);
     let mut mouth = Solid::default();
@@ -195,7 +196,7 @@ fn mouth() -> Solid {
     mouth.and_mirrored()
 }
 
-/// A knitted cap: ribbed crown, rolled rim and bobble.
+/// Builds a knitted cap: ribbed crown, rolled rim and bobble.
 fn cap() -> Solid {
     let sections = [
         section(0.197, 0.091, 0.104, -0.013),

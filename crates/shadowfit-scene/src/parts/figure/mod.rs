@@ -13,15 +13,16 @@ use posture::{Posture, at_ease, standing};
 use rig::{JOINTS, Joints, RIG};
 pub(crate) use wear::Wear;
 
-/// Adds the figure to a scene, standing at the origin and facing +z, a hand on its hip, with the materials that `paint`
-/// gives for those of [`Wear`]. Returns its root and its animations, "walk" and "turn".
+/// Adds the figure to a scene, standing at the origin and facing +z, a hand on its hip. `paint` returns the
+/// scene's material for each material of [`Wear`]. Returns the figure's root and its animations, "walk" and
+/// "turn".
 pub(crate) fn wanderer(builder: &mut Builder, paint: impl Fn(usize) -> usize) -> (usize, Vec<Animation>) {
     let joints = build(builder, &standing(), |_, wear| paint(wear));
     (joints.root(), walk::animations(&joints))
 }
 
-/// Adds the figure alone to another scene, with the materials that it needs: standing at the origin with its arms
-/// hanging, about 1.8 m tall, facing +z. Returns its root.
+/// Adds the figure and its materials to another scene: standing at the origin with its arms hanging, about
+/// 1.8 m tall, facing +z. Returns its root.
 pub fn figure_at_ease(builder: &mut Builder) -> usize {
     let materials = Wear::all();
     let mut added = vec![None; materials.len()];
@@ -34,7 +35,8 @@ pub fn figure_at_ease(builder: &mut Builder) -> usize {
     joints.root()
 }
 
-/// Adds nodes and meshes of the figure in a posture, painted with what `paint` gives for each of [`Wear`].
+/// Adds nodes and meshes of the figure in a posture. `paint` returns the scene's material for each material
+/// of [`Wear`].
 fn build(builder: &mut Builder, posture: &Posture, mut paint: impl FnMut(&mut Scene, usize) -> usize) -> Joints {
     let rest = posture.transforms();
     let mut nodes = [0; JOINTS];

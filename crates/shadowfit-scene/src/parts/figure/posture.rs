@@ -1,11 +1,11 @@
-//! Postures: where root and hips are and how each joint is turned, with legs and arms that reach for a place.
+//! Postures: positions of root and hips, rotations of the joints, and inverse kinematics of legs and arms.
 
 use glam::{EulerRot, Mat3, Quat, Vec3};
 
 use super::rig::{ANKLE, FOREARM, HIP, JOINTS, Joint, RIG, SHIN, SHOULDER, Side, THIGH, UPPER_ARM};
 use crate::Transform;
 
-/// A pose: where root and hips are, and how every joint is turned.
+/// A pose: positions of root and hips, and the rotation of every joint.
 #[derive(Clone, Debug)]
 pub(super) struct Posture {
     pub(super) root: Vec3,
@@ -14,12 +14,12 @@ pub(super) struct Posture {
 }
 
 impl Posture {
-    /// Upright above the root, every joint straight.
+    /// Returns an upright posture above the root, every joint straight.
     pub(super) fn upright(hips: impl Into<Vec3>) -> Self {
         Self { root: Vec3::ZERO, hips: hips.into(), rotations: [Quat::IDENTITY; JOINTS] }
     }
 
-    /// Rest transforms of the joints, relative to their parents.
+    /// Returns the rest transforms of the joints, relative to their parents.
     pub(super) fn transforms(&self) -> [Transform; JOINTS] {
         let mut transforms = [Transform::default(); JOINTS];
         for (joint, bone) in RIG.iter().enumerate() {
@@ -35,7 +35,7 @@ impl Posture {
         self.rotations[joint as usize] = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
     }
 
-    /// Position and orientation of a joint relative to the root.
+    /// Returns the position and orientation of a joint relative to the root.
     fn frame(&self, joint: Joint) -> (Vec3, Quat) {
         match RIG[joint as usize].parent {
             None => (Vec3::ZERO, Quat::IDENTITY),
@@ -47,8 +47,8 @@ impl Posture {
         }
     }
 
-    /// Sets a leg so that its ankle is at `ankle` and its foot turned by `foot`, in the root's
-    /// axes; the knee points where the foot does.
+    /// Poses a leg so that its ankle is at `ankle` and its foot has the rotation `foot`, in the root's axes.
+    /// The knee points in the foot's direction.
     pub(super) fn reach_foot(&mut self, side: Side, ankle: Vec3, foot: Quat, toes: f32) {
         let (hips, hips_turn) = self.frame(Joint::Hips);
         let start = hips + hips_turn * side.mirror(HIP);
@@ -60,10 +60,9 @@ impl Posture {
         self.turn(toe, toes, 0.0, 0.0);
     }
 
-    /// Sets an arm so that its wrist is at `wrist`, in the chest's axes, with the elbow toward
-    /// `elbow`.
+    /// Poses an arm so that its wrist is at `wrist`, in the chest's axes, with the elbow toward `elbow`.
     fn reach_hand(&mut self, side: Side, wrist: Vec3, elbow: Vec3) {
-        // The elbow bends the other way round than the knee: its hollow faces ahead.
+        // The elbow bends opposite to the knee: its inner side faces forward.
         let [upper, lower] = two_bones(wrist - side.mirror(SHOULDER), UPPER_ARM, FOREARM, elbow);
         let flip = Quat::from_rotation_y(std::f32::consts::PI);
         let [arm, forearm, _] = side.arm();
@@ -72,8 +71,8 @@ impl Posture {
     }
 }
 
-/// Orientations of two bones that hang along -y, so that their end is at `reach` from their start,
-/// as far as they are long enough; the joint between them is pushed toward `pole`, which becomes
+/// Returns the orientations of two bones that hang along -y, so that their end is at `reach` from their
+/// start, or as close as their lengths allow. The joint between them points toward `pole`, which becomes
 /// their +z.
 fn two_bones(reach: Vec3, upper: f32, lower: f32, pole: Vec3) -> [Quat; 2] {
     let distance = reach.length().clamp(0.05, (upper + lower) * 0.9995);
@@ -89,7 +88,7 @@ fn two_bones(reach: Vec3, upper: f32, lower: f32, pole: Vec3) -> [Quat; 2] {
     [hang(middle), hang(along * distance - middle)]
 }
 
-/// Standing at ease: weight on the left leg, a hand on the hip, the head turned aside.
+/// Returns the posture at ease: weight on the left leg, a hand on the hip, the head turned aside.
 pub(super) fn standing() -> Posture {
     let mut posture = Posture::upright([0.035, 0.938, 0.0]);
     posture.turn(Joint::Hips, 0.0, 0.08, 0.075);
@@ -110,7 +109,8 @@ pub(super) fn standing() -> Posture {
     posture
 }
 
-/// Standing upright with the arms hanging, a little apart from the body, so that the sun passes between.
+/// Returns an upright posture with hanging arms slightly apart from the body, so that sunlight passes
+/// between.
 pub(super) fn at_ease() -> Posture {
     let mut posture = Posture::upright([0.012, 0.937, 0.0]);
     posture.turn(Joint::Hips, 0.0, 0.04, 0.03);

@@ -1,5 +1,5 @@
-//! The figure's skeleton. At rest every bone hangs or stands straight in its parent's axes: x to the figure's left, y
-//! up, z ahead.
+//! The figure's skeleton. At rest every bone points straight down or up in its parent's axes: x to the
+//! figure's left, y up, z forward.
 
 use std::sync::LazyLock;
 
@@ -25,7 +25,7 @@ pub(super) const HIP: Vec3 = Vec3::new(0.092, -0.02, 0.0);
 pub(super) const SHOULDER: Vec3 = Vec3::new(0.160, 0.136, -0.008);
 
 numbered! {
-    /// A joint of the figure; its number is its index in [`RIG`].
+    /// A joint of the figure. Its number is its index in [`RIG`].
     Joint: Bone {
         Root = Bone { name: "wanderer", parent: None, offset: Vec3::ZERO },
         Hips = bone("hips", Self::Root, [0.0, 0.95, 0.0]),
@@ -71,7 +71,7 @@ fn bone(name: &'static str, parent: Joint, offset: [f32; 3]) -> Bone {
     Bone { name, parent: Some(parent), offset: offset.into() }
 }
 
-/// Left or right, seen by the figure.
+/// Left or right of the figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Left,
@@ -79,7 +79,7 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// Sign of x on this side.
+    /// Returns the sign of x on this side.
     pub(super) const fn sign(self) -> f32 {
         match self {
             Self::Left => 1.0,
@@ -87,12 +87,12 @@ impl Side {
         }
     }
 
-    /// `v` given for the left side, on this side.
+    /// Mirrors `v`, given for the left side, to this side.
     pub(super) fn mirror(self, v: Vec3) -> Vec3 {
         Vec3::new(v.x * self.sign(), v.y, v.z)
     }
 
-    /// Upper arm, forearm and hand.
+    /// Returns the upper arm, forearm and hand.
     pub(super) const fn arm(self) -> [Joint; 3] {
         match self {
             Self::Left => [Joint::ArmL, Joint::ForearmL, Joint::HandL],
@@ -100,7 +100,7 @@ impl Side {
         }
     }
 
-    /// Thigh, shin, foot and toes.
+    /// Returns the thigh, shin, foot and toes.
     pub(super) const fn leg(self) -> [Joint; 4] {
         match self {
             Self::Left => [Joint::ThighL, Joint::ShinL, Joint::FootL, Joint::ToeL],
@@ -113,17 +113,17 @@ impl Side {
 pub(super) struct Joints([usize; JOINTS]);
 
 impl Joints {
-    /// Nodes in the order of [`Joint`].
+    /// Stores the nodes in the order of [`Joint`].
     pub(super) fn new(nodes: [usize; JOINTS]) -> Self {
         Self(nodes)
     }
 
-    /// Node of the joint of a number.
+    /// Returns the node of a joint, by the joint's number.
     pub(super) fn node(&self, joint: usize) -> usize {
         self.0[joint]
     }
 
-    /// Node that carries the whole figure.
+    /// Returns the root node of the figure.
     pub(super) fn root(&self) -> usize {
         self.node(Joint::Root as usize)
     }

@@ -1,8 +1,8 @@
-//! How the wanderer walks and turns.
+//! Animations of the wanderer: walk and turn.
 //!
-//! The walk starts from the feet: each is planted at a fixed point of a circular path and rolls
-//! from heel to toe there, so that it cannot slide; thighs and shins follow by two-bone inverse
-//! kinematics. Hips, shoulders and arms swing by sines in step with the feet.
+//! The walk starts from the feet. Each is planted at a fixed point of a circular path and rolls from heel to
+//! toe there, so it cannot slide. Two-bone inverse kinematics compute thighs and shins. Hips, shoulders and
+//! arms swing by sines in step with the feet.
 
 use std::f32::consts::TAU;
 
@@ -15,30 +15,30 @@ use crate::{Animation, Channel, ChannelValues, Interpolation};
 
 /// Radius of the path, in metres.
 const PATH_RADIUS: f32 = 2.0;
-/// Strides (two steps) a lap.
+/// Strides (two steps) per lap.
 const STRIDES: usize = 11;
 /// Length of a stride along the path, in metres.
 const STRIDE: f32 = TAU * PATH_RADIUS / STRIDES as f32;
 /// Time of a stride, in seconds.
 const STRIDE_TIME: f32 = 1.08;
-/// Keyframes a stride.
+/// Keyframes per stride.
 const STRIDE_KEYS: usize = 36;
-/// Share of a stride for which a foot is on the ground.
+/// Share of a stride during which a foot is on the ground.
 const STANCE: f32 = 0.62;
 /// Half of the distance between the feet's tracks, in metres.
 const TRACK: f32 = 0.075;
-/// How far behind the body's centre a planted foot is at the middle of its stance, in metres.
+/// Distance of a planted foot behind the body's centre in the middle of its stance, in metres.
 const LAG: f32 = 0.035;
 /// Angle by which the feet point outwards, in radians.
 const TOE_OUT: f32 = 0.1;
-/// Point that the heel rolls over, from the ankle.
+/// Point that the heel rolls over, relative to the ankle.
 const HEEL: Vec3 = Vec3::new(0.0, -ANKLE, -0.055);
 /// Time of a turn on the spot, in seconds.
 const TURN_TIME: f32 = 12.0;
 /// Keyframes of a turn on the spot.
 const TURN_KEYS: usize = 72;
 
-/// Both animations: "walk" and "turn".
+/// Returns both animations: "walk" and "turn".
 pub(super) fn animations(joints: &Joints) -> Vec<Animation> {
     let stride: Vec<Posture> = (0..STRIDE_KEYS).map(|key| walking(key as f32 / STRIDE_KEYS as f32)).collect();
     let lap = (0..=STRIDES * STRIDE_KEYS).map(|key| {
@@ -70,19 +70,19 @@ fn breathe(posture: &mut Posture, phase: f32) {
     posture.rotations[Joint::Neck as usize] *= breath.inverse();
 }
 
-/// Root's position and heading after `strides` strides: a circle through the origin, to the left.
+/// Returns the root's position and heading after `strides` strides: a circle through the origin, to the left.
 fn path(strides: f32) -> (Vec3, Quat) {
     path_at(strides * STRIDE)
 }
 
-/// Root's position and heading after `length` metres of path.
+/// Returns the root's position and heading after `length` metres of path.
 fn path_at(length: f32) -> (Vec3, Quat) {
     let angle = length / PATH_RADIUS;
     let (sin, cos) = angle.sin_cos();
     (Vec3::new(1.0 - cos, 0.0, sin) * PATH_RADIUS, Quat::from_rotation_y(angle))
 }
 
-/// Where a foot is: ankle, orientation, bend of the toes.
+/// State of a foot: ankle, orientation, bend of the toes.
 #[derive(Clone, Copy)]
 struct Foot {
     ankle: Vec3,
@@ -90,20 +90,21 @@ struct Foot {
     toes: f32,
 }
 
-/// Ankle and pitch of a foot planted at the origin, `stance` from heel strike (0) to toe-off (1).
+/// Returns the ankle, the pitch and the toes' bend of a foot planted at the origin. `stance` goes from heel
+/// strike (0) to toe-off (1).
 fn roll(stance: f32) -> (Vec3, f32, f32) {
     let strike = -0.34 * (1.0 - ease(stance, -0.12, 0.2));
     if strike < 0.0 {
         let pitch = Quat::from_rotation_x(strike);
         return (Vec3::new(0.0, ANKLE, 0.0) + HEEL - pitch * HEEL, strike, 0.0);
     }
-    // Above a half, so that the heel leaves fastest at toe-off.
+    // Starts near half of the stance and ends beyond it, so that the heel still rises fast at toe-off.
     let lift = 0.80 * ease(stance, 0.45, 1.25);
     let pitch = Quat::from_rotation_x(lift);
     (Vec3::new(0.0, ANKLE, 0.0) + TOE - pitch * TOE, lift, -lift)
 }
 
-/// The foot of a side when planted for the `step`-th time, in the axes of the scene.
+/// Returns the foot of a side during its `step`-th contact, in the scene's axes.
 fn planted(side: Side, step: f32, stance: f32) -> (Foot, f32) {
     let (at, heading) = path_at((step + 0.5 * STANCE) * STRIDE - LAG);
     let turn = heading * Quat::from_rotation_y(side.sign() * TOE_OUT);
@@ -112,7 +113,7 @@ fn planted(side: Side, step: f32, stance: f32) -> (Foot, f32) {
     (Foot { ankle: at + turn * ankle, turn: turn * Quat::from_rotation_x(pitch), toes }, pitch)
 }
 
-/// The foot of a side after `strides` strides, in the axes of the scene.
+/// Returns the foot of a side after `strides` strides, in the scene's axes.
 fn foot(side: Side, strides: f32) -> Foot {
     let shift = if side == Side::Left { 0.0 } else { 0.5 };
     let step = (strides - shift).floor() + shift;
@@ -130,20 +131,20 @@ fn foot(side: Side, strides: f32) -> Foot {
     let ankle = hermite([from.ankle, leave, to.ankle, arrive], swing) + lift;
     let (heading_from, heading_to) =
         (from.turn * Quat::from_rotation_x(-pitch_from), to.turn * Quat::from_rotation_x(-pitch_to));
-    // The foot hangs for a moment, then the toes are drawn up for the next heel strike.
+    // The foot hangs briefly, then the toes lift for the next heel strike.
     let hang = pitch_from + 0.12 * (swing / 0.3).min(1.0) * (1.0 - ease(swing, 0.1, 0.5));
     let pitch = hang * (1.0 - ease(swing, 0.05, 0.62)) + pitch_to * ease(swing, 0.5, 1.0);
     let turn = heading_from.slerp(heading_to, swing) * Quat::from_rotation_x(pitch);
     Foot { ankle, turn, toes: from.toes * (1.0 - ease(swing, 0.0, 0.35)) }
 }
 
-/// Cubic Hermite curve from value and slope at its start, value and slope at its end.
+/// Evaluates a cubic Hermite curve, given value and slope at its start, then value and slope at its end.
 fn hermite([a, slope_a, b, slope_b]: [Vec3; 4], t: f32) -> Vec3 {
     let (t2, t3) = (t * t, t * t * t);
     a * (2.0 * t3 - 3.0 * t2 + 1.0) + slope_a * (t3 - 2.0 * t2 + t) + b * (3.0 * t2 - 2.0 * t3) + slope_b * (t3 - t2)
 }
 
-/// The figure after `phase` of a stride; the left heel strikes at 0.
+/// Returns the posture at `phase` of a stride. The left heel strikes at 0.
 fn walking(phase: f32) -> Posture {
     let mut posture = Posture::upright(Vec3::ZERO);
     let turn = TAU * phase;
@@ -166,7 +167,7 @@ fn walking(phase: f32) -> Posture {
     posture
 }
 
-/// Swings the arms against the legs, elbows bending as the hands come forward.
+/// Swings the arms opposite to the legs. The elbows bend as the hands come forward.
 fn swing_arms(posture: &mut Posture, turn: f32) {
     for side in [Side::Left, Side::Right] {
         let [arm, forearm, hand] = side.arm();
@@ -178,7 +179,7 @@ fn swing_arms(posture: &mut Posture, turn: f32) {
     }
 }
 
-/// Lets the end of the scarf trail behind, each piece later than the one above.
+/// Lets the end of the scarf trail behind. Each piece follows the one above with a delay.
 fn swing_scarf(posture: &mut Posture, turn: f32) {
     for (index, joint) in [Joint::TailA, Joint::TailB, Joint::TailC].into_iter().enumerate() {
         let late = index as f32 * 0.9;
@@ -188,7 +189,7 @@ fn swing_scarf(posture: &mut Posture, turn: f32) {
     }
 }
 
-/// Channels for every joint that moves, from poses at even times.
+/// Returns an animation with a channel for every joint that moves, from poses at even times.
 fn animation(name: &str, duration: f32, poses: &[Posture], joints: &Joints) -> Animation {
     let last = (poses.len() - 1) as f32;
     let times: Vec<f32> = (0..poses.len()).map(|key| key as f32 / last * duration).collect();

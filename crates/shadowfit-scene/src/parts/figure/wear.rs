@@ -1,11 +1,11 @@
-//! What the figure is covered with, and the form of its parts.
+//! Materials of the figure, and the type of its parts.
 
 use super::rig::Joint;
 use crate::parts::finish::matt;
 use crate::parts::numbered::numbered;
 use crate::{Material, Primitive};
 
-/// A mesh of the figure: the joints that carry it, its name, its primitives, whose materials are of [`Wear`].
+/// A mesh of the figure: the joints that carry it, its name, and its primitives with materials of [`Wear`].
 pub(super) type Part = (&'static [Joint], &'static str, Vec<Primitive>);
 
 numbered! {

@@ -6,7 +6,7 @@ use crate::parts::pixels::{NOISE_CELLS, Noise, draw};
 /// Pixels along a side of the image.
 const SIZE: u32 = 256;
 
-/// Furrowed grey-brown bark with a breath of green.
+/// Draws furrowed grey-brown bark with a hint of green.
 pub fn bark() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / SIZE as f32;

@@ -6,13 +6,13 @@ use crate::Primitive;
 
 /// Cards under construction.
 pub struct Cards {
-    /// What is built so far.
+    /// Cards built so far.
     pub primitive: Primitive,
     /// Quads along each card.
     quads: usize,
 }
 
-/// A card: a strip from its stem, where the image's lower edge lies, to its tip.
+/// A card: a strip from its stem, at the image's lower edge, to its tip.
 #[derive(Clone, Copy, Debug)]
 pub struct Card {
     /// Middle of the end at the stem.
@@ -21,18 +21,18 @@ pub struct Card {
     pub reach: Vec3,
     /// Across, half of the width, in metres.
     pub half: Vec3,
-    /// How far the tip is moved by bending, in metres.
+    /// Displacement of the tip by bending, in metres.
     pub droop: Vec3,
 }
 
 impl Cards {
-    /// No cards yet, of a material, each to be made of as many quads along it: one is flat, two let it bend.
+    /// Starts without cards. Each card will consist of `quads` quads: one quad is flat, two let it bend.
     pub fn new(material: impl Into<usize>, quads: usize) -> Self {
         Self { primitive: Primitive { material: material.into(), ..Primitive::default() }, quads }
     }
 
-    /// Adds a card whose normals lean toward `out` (unit) by the share `lean`, which makes a crown of flat cards look
-    /// round.
+    /// Adds a card. Its normals lean toward `out` (unit) by the share `lean`, which makes a crown of flat
+    /// cards look round.
     pub fn add(&mut self, card: &Card, out: Vec3, lean: f32) {
         let first = self.primitive.positions.len() as u32;
         for step in 0..=self.quads {

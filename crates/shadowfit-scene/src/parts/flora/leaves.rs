@@ -1,24 +1,24 @@
-//! Images of twigs, ferns and grass, drawn leaf by leaf: what the cards of plants are cut from.
+//! Cut-out images of twigs, ferns and grass, drawn leaf by leaf, for the cards of plants.
 
 use glam::{Vec2, Vec3};
 
 use crate::Image;
 use crate::parts::dice::Dice;
 
-/// Pixels along a side of the images. At half a metre a card that is two millimetres a pixel.
+/// Pixels along a side of the images. On a card of half a metre, a pixel is 2 mm wide.
 const SIZE: u32 = 256;
 /// Straight pieces of a leaf's midrib.
 const PIECES: usize = 6;
-/// Change of alpha a pixel across an outline, of 255: an edge about a pixel and a half wide.
+/// Change of alpha per pixel across an outline, of 255: an edge about 1.5 pixels wide.
 const EDGE: f32 = 170.0;
 
-/// A leaf in image units: (0, 0) is the middle of the lower edge, (0, 1) that of the upper.
+/// A leaf in image units: (0, 0) is the middle of the lower edge, (0, 1) the middle of the upper edge.
 struct Leaf {
-    /// Where it begins.
+    /// Start.
     base: Vec2,
-    /// Where it ends.
+    /// End.
     tip: Vec2,
-    /// How far its middle is pushed aside.
+    /// Sideways displacement of its middle.
     bow: Vec2,
     /// Half of its greatest width.
     half: f32,
@@ -29,12 +29,13 @@ struct Leaf {
 }
 
 impl Leaf {
-    /// Point of the midrib at a share of its length.
+    /// Returns the point of the midrib at a share of the leaf's length.
     fn rib(&self, t: f32) -> Vec2 {
         self.base.lerp(self.tip, t) + self.bow * 4.0 * t * (1.0 - t)
     }
 
-    /// Half width at a share of its length: a round end at the base, a pointed one at the tip.
+    /// Returns the half width at a share of the leaf's length: a round end at the base, a pointed one at the
+    /// tip.
     fn half_width(&self, t: f32) -> f32 {
         let toward = if t < self.widest { t / self.widest } else { (1.0 - t) / (1.0 - self.widest) };
         let power = if t < self.widest { 0.6 } else { 0.85 };
@@ -42,7 +43,7 @@ impl Leaf {
     }
 }
 
-/// Share of the length, and signed distance from the midrib, of the point of it that is nearest to `at`.
+/// Finds the point of the midrib nearest to `at`. Returns its share of the length, and the signed distance.
 fn nearest(ribs: &[Vec2; PIECES + 1], at: Vec2) -> (f32, f32) {
     let mut nearest = (0.0, f32::MAX);
     for piece in 0..PIECES {
@@ -67,13 +68,13 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// Nothing but gaps, whose colour shows at the edges of what is filtered.
+    /// Starts with gaps only. Their colour bleeds into filtered edges.
     fn new(gap: Vec3) -> Self {
         let pixels = (SIZE * SIZE) as usize;
         Self { colors: vec![gap; pixels], alphas: vec![0.0; pixels] }
     }
 
-    /// Draws a leaf over what is there.
+    /// Draws a leaf over earlier ones.
     fn draw(&mut self, leaf: &Leaf) {
         let ribs = std::array::from_fn(|piece| leaf.rib(piece as f32 / PIECES as f32));
         let edge = Vec2::splat(leaf.half + 2.0 / SIZE as f32);
@@ -95,7 +96,7 @@ impl Sheet {
         }
     }
 
-    /// The finished image.
+    /// Returns the finished image.
     fn image(&self, name: &str) -> Image {
         let encode = |value: f32| (value.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8;
         let pixel = |(color, alpha): (&Vec3, &f32)| {
@@ -107,7 +108,7 @@ impl Sheet {
     }
 }
 
-/// Colour of a leaf: a pale midrib, side veins, one half a little darker than the other.
+/// Returns the colour of a leaf: a pale midrib, side veins, one half slightly darker than the other.
 fn shaded(leaf: &Leaf, t: f32, side: f32) -> Vec3 {
     let across = side.abs() / leaf.half;
     let vein = ((t * 26.0 - across * 5.0).fract() - 0.5).abs();
@@ -121,12 +122,12 @@ fn shaded(leaf: &Leaf, t: f32, side: f32) -> Vec3 {
     leaf.color * (light * (0.86 + 0.22 * t))
 }
 
-/// A green between `a` and `b`, lighter or darker.
+/// Returns a green between `a` and `b`, lighter or darker.
 fn green(dice: &mut Dice, a: Vec3, b: Vec3) -> Vec3 {
     a.lerp(b, dice.roll()) * dice.between(0.8, 1.2)
 }
 
-/// A twig with broad pointed leaves, as of a beech.
+/// Draws a twig with broad pointed leaves like a beech's.
 pub fn twig() -> Image {
     let mut dice = Dice::new(71);
     let [deep, fresh] = [Vec3::new(0.075, 0.19, 0.026), Vec3::new(0.20, 0.34, 0.05)];
@@ -139,7 +140,7 @@ pub fn twig() -> Image {
         let t = 0.08 + 0.92 * index as f32 / count as f32;
         let side = if index % 2 == 0 { 1.0 } else { -1.0 };
         let base = rib.rib(t);
-        // The twig's first leaves stand out, its last ones point ahead.
+        // The twig's first leaves point sideways, its last ones forward.
         let turn = side * (1.15 - 0.6 * t + dice.between(-0.16, 0.16));
         let length = 0.27 + 0.09 * (t * 3.0).sin() + dice.between(-0.03, 0.03);
         let ahead = Vec2::new(turn.sin(), turn.cos());
@@ -154,7 +155,7 @@ pub fn twig() -> Image {
     sheet.image("twig")
 }
 
-/// A fern's frond: leaflets at both sides of a rib, shorter toward the tip.
+/// Draws a fern's frond: leaflets at both sides of a rib, shorter toward the tip.
 pub fn fern() -> Image {
     let mut dice = Dice::new(72);
     let [deep, fresh] = [Vec3::new(0.06, 0.17, 0.03), Vec3::new(0.15, 0.31, 0.05)];
@@ -182,7 +183,7 @@ pub fn fern() -> Image {
     sheet.image("fern")
 }
 
-/// A tuft of grass: long bent blades from one root, from `fresh` to `dry` linear colours.
+/// Draws a tuft of grass: long bent blades from one root, from `fresh` to `dry` linear colours.
 pub fn grass(fresh: Vec3, dry: Vec3) -> Image {
     let mut dice = Dice::new(73);
     let mut sheet = Sheet::new(fresh.lerp(dry, 0.5));

@@ -9,7 +9,8 @@ use crate::parts::build::SMOOTH;
 use crate::parts::shapes::tube;
 use crate::parts::solid::Solid;
 
-/// Closed limbs with texture coordinates of their own: metres around, there and back, and metres along.
+/// Closed limbs with their own texture coordinates, in metres: around the limb to its back and back again,
+/// and along it.
 #[derive(Default)]
 pub struct Limbs {
     solid: Solid,
@@ -17,8 +18,8 @@ pub struct Limbs {
 }
 
 impl Limbs {
-    /// Adds a limb along `path`, with the radius that `radius(turn, share)` gives at an angle around it and a share of
-    /// its path.
+    /// Adds a limb along `path`. `radius(turn, share)` returns the radius at an angle around it and a share
+    /// of its path.
     pub fn add(&mut self, path: &[Vec3], segments: usize, radius: impl Fn(f32, f32) -> f32) {
         let last = path.len() - 1;
         let along = |ring: usize| (path[(ring + 1).min(last)] - path[ring.saturating_sub(1)]).normalize();
@@ -36,7 +37,7 @@ impl Limbs {
                 centre + (aside * turn.cos() + across * turn.sin()) * radius(turn, ring as f32 / last as f32)
             };
             rings.push((0..segments).map(point).collect::<Vec<_>>());
-            // Half of the way around the bark is mirrored, so that there is no seam.
+            // The bark is mirrored on half of the circumference, so that there is no seam.
             let around = |index: usize| 1.0 - (index as f32 / segments as f32 * 2.0 - 1.0).abs();
             self.uvs.extend((0..segments).map(|index| Vec2::new(around(index) * girth, -length)));
         }
@@ -46,7 +47,7 @@ impl Limbs {
         self.solid = std::mem::take(&mut self.solid).with(tube(&rings, poles[0], poles[1]));
     }
 
-    /// All limbs in one primitive.
+    /// Returns all limbs in one primitive.
     pub fn primitive(&self, material: impl Into<usize>) -> Primitive {
         self.solid.primitive_with(material.into(), SMOOTH, |vertex, _| self.uvs[vertex])
     }

@@ -1,5 +1,4 @@
-//! Plants: limbs of wood, cards of cut-out leaves, the images that these are cut from, and plants that several scenes
-//! have.
+//! Plants: wooden limbs, cards of cut-out leaves with their images, and plants that several scenes share.
 
 mod bark;
 mod cards;

@@ -1,4 +1,4 @@
-//! Plants that several scenes have.
+//! Plants that several scenes share.
 
 use std::f32::consts::{PI, TAU};
 
@@ -10,8 +10,8 @@ use crate::parts::dice::Dice;
 use crate::parts::shapes::modulated_lathe;
 use crate::parts::solid::Solid;
 
-/// The crown of a cypress, with lumps that wind around it: `width` of it as a share of 0.85 m, from a height of `low`
-/// metres over the next `tall`, in as many steps up and segments around.
+/// Builds the crown of a cypress with lumps that wind around it. `width` is a factor on 0.85 m. The crown
+/// starts at a height of `low` metres and is `tall` metres high, with `steps` rings and `segments` around.
 pub fn cypress(width: f32, [low, tall]: [f32; 2], steps: usize, segments: usize) -> Solid {
     let ring = |step: usize| {
         let t = step as f32 / steps as f32;
@@ -24,8 +24,8 @@ pub fn cypress(width: f32, [low, tall]: [f32; 2], steps: usize, segments: usize)
     })
 }
 
-/// Outline of a rounded lump about the origin, for lathes: a half circle whose radius at each height is raised to
-/// `power` (below 1 it is blunter), stretched to a radius and a half height in metres.
+/// Returns the outline of a rounded lump about the origin, for lathes: a half circle whose radius at each
+/// height is raised to `power` (below 1 is blunter), stretched to a radius and a half height in metres.
 pub fn egg(radius: f32, half_height: f32, power: f32) -> Vec<(f32, f32)> {
     const STEPS: usize = 8;
     let ring = |step: usize| {
@@ -35,27 +35,27 @@ pub fn egg(radius: f32, half_height: f32, power: f32) -> Vec<(f32, f32)> {
     (0..=STEPS).map(ring).collect()
 }
 
-/// A tuft of grass: cards through one root. All lengths are in metres.
+/// A tuft of grass: cards that share one root. All lengths are in metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Tuft {
     /// Number of cards.
     pub cards: usize,
     /// Least and greatest height of a card.
     pub height: [f32; 2],
-    /// How deep the root is in the ground.
+    /// Depth of the root in the ground.
     pub sunk: f32,
     /// Farthest distance of a card from the root.
     pub spread: f32,
-    /// How far the wind bends the tips.
+    /// Displacement of the tips by the wind.
     pub wind: Vec3,
-    /// How far tips bend outwards or inwards at most.
+    /// Greatest displacement of tips outwards or inwards.
     pub bend: f32,
     /// Share by which normals lean upwards.
     pub lean: f32,
 }
 
 impl Tuft {
-    /// The tuft, of a material.
+    /// Builds the tuft with a material.
     pub fn primitive(&self, material: impl Into<usize>, dice: &mut Dice) -> Primitive {
         let mut cards = Cards::new(material, 2);
         for index in 0..self.cards {
