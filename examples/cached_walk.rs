@@ -1,8 +1,8 @@
 //! Caching without a graphics API: the decisions of `MapCache` while a camera walks past houses and people.
 //!
-//! For each frame and map it prints the reuse of the map, the share that is redrawn, the number of rectangles, of static
-//! and of moving casters, and the texel offset of the layer. The frame after a new map draws its static casters once more,
-//! into a separate layer. No GPU, no window.
+//! For each frame and map it prints the reuse of the map, the redrawn share, the number of rectangles, static
+//! casters and moving casters, and the texel offset of the layer. In the frame after a new map, its static
+//! casters are drawn once more, into a separate layer. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example cached_walk
@@ -13,9 +13,10 @@ use shadowfit::glam::{DVec3, IVec2, Vec3};
 use shadowfit::{Aabb, Boxes, FitError, FitInput, PerspectiveCamera, ShadowFitter, Technique};
 
 const FRAMES: u16 = 24;
-/// Metres between two frames: many more than in a game, so that a short table shows every decision.
+/// Distance walked per frame, in metres. It is much longer than in a game, so that a short table shows every
+/// decision.
 const STEP: f32 = 1.0;
-/// The sun's direction of travel.
+/// Direction of travel of the sunlight.
 const SUN: Vec3 = Vec3::new(0.3, -0.8, 0.2);
 
 fn main() -> Result<(), FitError> {
@@ -60,7 +61,7 @@ fn reuse(reuse: MapReuse) -> String {
     }
 }
 
-/// The work of a frame on one map.
+/// The work of one frame for one map.
 #[derive(Default)]
 struct Work {
     /// Texels into which static casters are drawn.
@@ -100,7 +101,7 @@ fn camera(frame: u16) -> PerspectiveCamera {
     }
 }
 
-/// People, who walk along the street and back; houses and ground follow them in the list.
+/// Number of people that walk along the street and back. Houses and ground follow them in the list of boxes.
 const PEOPLE: u8 = 12;
 
 fn street(frame: u16) -> Vec<Aabb> {

@@ -1,6 +1,6 @@
-//! A small wgpu engine of its own that takes its sun shadows from `shadowfit-wgpu`: four maps, placed by what the picture
-//! shows, drawn once and kept where nothing moves. It walks a few frames without a window, and the last one is the
-//! picture.
+//! A small wgpu engine that uses `shadowfit-wgpu` for its sun shadows: four maps, placed where they improve
+//! the most visible pixels and cached where nothing moves. It renders a short camera walk without a window
+//! and saves the last frame.
 //!
 //! ```sh
 //! cargo run --example engine_integration              # writes out/engine_integration.png
@@ -8,14 +8,16 @@
 //! cargo run --example engine_integration -- --exact   # writes out/engine_integration_exact.png
 //! ```
 //!
-//! The engine is not made for shadowfit: its maths is the crate ultraviolet, whose types pass through mint; its shaders
-//! take f32 positions relative to the kilometre of the world that the camera is in; its depth is reversed and without a
-//! far plane; it draws four samples a pixel of HDR colours, which a pass of its own maps to the screen. The scene stands
-//! 50 km from the world's origin, to show that shadows stand still there.
+//! The engine does not know shadowfit. It uses the maths crate ultraviolet, whose types are converted through
+//! mint. Its shaders use f32 positions relative to the kilometre cell of the world that contains the camera.
+//! Its depth buffer is reversed and has no far plane. It renders HDR colours with 4× MSAA, and a separate
+//! pass maps them to the screen. The scene is 50 km from the world's origin, to show that shadows do not
+//! jitter there.
 //!
-//! What the engine has to do for its shadows is marked with STEP 1 to STEP 10: each part begins at its comment and ends at
-//! the next empty line. With `--exact` edges are exact, by rays where the maps are not sure; what that takes is marked with
-//! EXACT, most of it in `engine_integration/exact.rs`. A test counts the lines of both.
+//! STEP 1 to STEP 10 mark the code that the engine needs for its shadows. Each part begins at its comment and
+//! ends at the next empty line. The option `--exact` turns on exact edges: rays decide the pixels where the
+//! maps are unsure. EXACT marks the code for it; most of it is in `engine_integration/exact.rs`. A test
+//! counts the lines of both.
 
 #[path = "engine_integration/exact.rs"]
 mod exact;
@@ -34,24 +36,25 @@ use exact::Exact;
 use gpu::{DEPTH, Gpu, HDR, Pipeline, SAMPLES, SIZE, SRGB};
 use scene::{PLACE, Scene, relative};
 
-// STEP 1: take the two crates; the first one with its feature `mint`, if the engine's maths is not glam.
+// STEP 1: use the two crates. If the engine's maths is not glam, enable the feature `mint` of the first one.
 use shadowfit::mint::{dvec3, frustum_from_eye_from_clip, mat4, vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, Technique};
 use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
 
-// EXACT edges: name the setting.
+// EXACT edges: import the setting.
 use shadowfit::settings::Edges;
 
-/// Word of the command line for exact edges.
+/// Command-line option for exact edges.
 const EXACT: &str = "--exact";
-/// Frames until the picture.
+/// Number of frames before the picture is saved.
 const FRAMES: u32 = 12;
-/// The way the sun's light travels.
+/// Direction of travel of the sunlight.
 const SUNLIGHT: Vec3 = Vec3 { x: 0.72, y: -0.55, z: -0.28 };
-/// View depth up to which the sun's light is blocked, in metres.
+/// View depth up to which shadows are drawn, in metres.
 const DISTANCE: f32 = 90.0;
 
-/// The engine's vertices: a mesh, placed and scaled by its instance, relative to the cell of the world.
+/// WGSL of the engine's vertices: a mesh, placed and scaled by its instance, relative to the cell of the
+/// world.
 const VERTEX: &str = "
 struct Vertex {
     @location(0) corner: vec3<f32>,
@@ -62,14 +65,14 @@ struct Vertex {
 }
 ";
 
-// STEP 3: a vertex shader for the casters; all that is asked of it is the position.
+// STEP 3: write a vertex shader for the casters. It only has to output the position.
 const CASTER: &str = "
 @vertex fn vs(vertex: Vertex) -> @builtin(position) vec4<f32> {
     return shadowfit_caster_position(vertex.center + vertex.corner * vertex.half_size);
 }
 ";
 
-/// Draws HDR colours; alpha is where something is.
+/// WGSL that draws HDR colours. Alpha is 1 where a surface was drawn.
 const SHADED: &str = "
 struct Camera {
     clip_from_cell: mat4x4<f32>,
@@ -98,7 +101,7 @@ struct Varyings {
     let contrast = in.color.a * exp(-distance / 40.0) * step(0.5, normal.y);
     let color = in.color.rgb * (1.0 + contrast * f32(((tile.x + tile.y) & 1) * 2 - 1));
     var sun = vec3<f32>(9.5, 7.6, 5.2) * saturate(dot(normal, camera.to_light.xyz));
-    // STEP 6: the sun's part of the light is multiplied by what of it arrives.
+    // STEP 6: multiply the sun's light by the shadow factor.
     sun *= shadowfit_factor(in.position, normal);
 
     let sky = mix(vec3<f32>(0.55, 0.42, 0.30), vec3<f32>(0.75, 1.05, 1.70), normal.y * 0.5 + 0.5);
@@ -107,7 +110,8 @@ struct Varyings {
 }
 ";
 
-/// Maps HDR colours to the screen, over a sky. The curve is Krzysztof Narkowicz's fit of ACES, 2015.
+/// WGSL that maps HDR colours to the screen, over a sky. The curve is Krzysztof Narkowicz's fit of ACES,
+/// 2015.
 const TONE: &str = "
 @group(0) @binding(0) var hdr: texture_2d<f32>;
 
@@ -132,19 +136,20 @@ struct Camera {
 }
 
 impl Camera {
-    /// Clip space from positions relative to the eye.
+    /// Returns the matrix from positions relative to the eye to clip space.
     fn clip_from_eye(&self) -> Mat4 {
         let turn = Mat4::look_at(Vec3::zero(), self.forward, Vec3::unit_y());
         perspective(0.75, SIZE.width as f32 / SIZE.height as f32, 0.1) * turn
     }
 
-    /// The kilometre of the world that the camera is in: what positions in shaders are relative to.
+    /// Returns the origin of the kilometre cell that contains the camera. Positions in shaders are relative
+    /// to it.
     fn cell(&self) -> DVec3 {
         self.eye.map(|x| (x / 1024.0).floor() * 1024.0)
     }
 }
 
-/// What is drawn into.
+/// Render targets.
 struct Targets {
     multisampled: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -156,12 +161,12 @@ struct Engine {
     gpu: Gpu,
     scene: Scene,
     targets: Targets,
-    /// The camera's uniform, and the group that binds it.
+    /// The camera's uniform buffer and its bind group.
     camera: (wgpu::Buffer, wgpu::BindGroup),
     scene_pipeline: wgpu::RenderPipeline,
     tone: (wgpu::RenderPipeline, wgpu::BindGroup),
     exact: Option<Exact>,
-    // STEP 2: one object for each sun, and a pipeline for what blocks its light.
+    // STEP 2: store one object for each sun, and the pipeline for casters.
     sun: SunShadows,
     caster_pipeline: wgpu::RenderPipeline,
 }
@@ -183,7 +188,7 @@ fn main() -> Result<()> {
         }
     }
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     }
     let pixels = engine.gpu.read(&engine.targets.picture)?;
     image::save_buffer(&path, &pixels, SIZE.width, SIZE.height, image::ColorType::Rgba8)
@@ -215,23 +220,25 @@ impl Engine {
         let tone_group = gpu.group(&tone_layout, wgpu::BindingResource::TextureView(&targets.hdr));
         let tone = (tone_pipeline(&gpu, &tone_layout), tone_group);
 
-        // STEP 2: choose a technique. The recommended one has four maps of 2048² texels and a tent of 5×5.
+        // STEP 2: choose a technique. The recommended one has four maps of 2048² texels and a 5×5 tent
+        // filter.
         let technique = Technique::default().with_max_distance(DISTANCE);
         let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
 
         if is_exact {
-            // EXACT edges: choose traced edges before pipelines are made. Four rays for a pixel make them smooth.
+            // EXACT edges: choose traced edges before creating pipelines. Four rays per pixel make the edges
+            // smooth.
             sun.set_technique(&technique.with_edges(Edges::Traced { samples: 4 }))?;
         }
 
-        // STEP 4: a pipeline for the casters, with the engine's own vertices and the map's states. The map's matrix is
-        // at a bind group of the engine's choice, and nothing but depth is written.
+        // STEP 4: create a pipeline for the casters, with the engine's vertices and the map's states. The
+        // engine chooses the bind group of the map's matrix. The pass writes only depth.
         let map = sun.map();
         let wgsl = [&caster_wgsl(map.descriptor(), &WgslOptions::group(0)), VERTEX, CASTER].concat();
         let states = (map.primitive_state(), map.depth_stencil_state());
         let caster_pipeline = gpu.depth_pipeline(wgsl, map.caster_layout(), &Scene::LAYOUT, states);
 
-        // STEP 5: paste the look-up into the engine's own shader, and put the maps' layout into its pipeline.
+        // STEP 5: paste the look-up into the engine's shader, and add the maps' layout to its pipeline.
         let look_up = receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
         let groups = [Some(&camera_layout), Some(sun.map().receiver_layout())];
 
@@ -243,17 +250,17 @@ impl Engine {
             None => (wgsl, groups.to_vec()),
         };
         let scene_pipeline = gpu.pipeline(shaded(wgsl, &groups));
-        // STEP 2: the engine keeps both.
+        // STEP 2: store both in the engine.
         Ok(Self { gpu, scene, targets, camera, scene_pipeline, tone, exact, sun, caster_pipeline })
     }
 
-    /// Draws a frame, and returns the number of draws into the maps.
+    /// Draws a frame and returns the number of draws into the maps.
     fn draw(&mut self, camera: &Camera, number: u32) -> Result<usize> {
         let (cell, clip_from_eye) = (camera.cell(), camera.clip_from_eye());
         self.scene.update(&self.gpu.queue, cell, number);
         self.write_camera(camera);
-        // STEP 7: each frame, tell the sun what is seen, what casts and receives shadows, and what of it moves: boxes
-        // with an origin. Positions in the shaders are relative to the cell.
+        // STEP 7: in each frame pass the views, the bounding boxes of casters and receivers, and flags for
+        // the boxes that move. Boxes have an origin. Positions in the shaders are relative to the cell.
         let eye_from_clip = clip_from_eye.inversed();
         let views = [frustum_from_eye_from_clip(eye_from_clip, camera.eye, DepthConvention::Reversed, DISTANCE)?];
         let boxes: Vec<Aabb> = self.scene.bounds(cell).map(|[min, max]| Aabb::new(vec3(min), vec3(max))).collect();
@@ -265,8 +272,8 @@ impl Engine {
 
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut drawn = 0;
-        // STEP 8: draw casters by number, where a map is new or something moves. Passes come cleared, with the map's
-        // matrix bound.
+        // STEP 8: draw the casters by number, where a map is new or a caster moves. The pass is already
+        // cleared, and the map's matrix is bound.
         self.sun.render(&mut encoder, 0, |pass, region| {
             pass.set_pipeline(&self.caster_pipeline);
             drawn += self.scene.draw(pass, region.casters.iter().copied());
@@ -274,7 +281,8 @@ impl Engine {
 
         self.record_exact(&mut encoder, camera)?;
         self.scene_pass(&mut encoder);
-        // STEP 10: count what the depth buffer shows, for the next frames. Nothing waits for it.
+        // STEP 10: record the visible demand from the depth buffer, for the next frames. The CPU does not wait
+        // for it.
         self.sun.record_demand(&mut encoder, &self.targets.depth, mat4(clip_from_eye), DepthConvention::Reversed)?;
 
         self.tone_pass(&mut encoder);
@@ -293,7 +301,7 @@ impl Engine {
     }
 
     fn scene_pass(&self, encoder: &mut wgpu::CommandEncoder) {
-        // EXACT pre-pass: the picture takes up the depths.
+        // EXACT pre-pass: reuse its depths in the shaded pass.
         let depths = if self.exact.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
 
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -312,7 +320,7 @@ impl Engine {
         });
         pass.set_pipeline(&self.scene_pipeline);
         pass.set_bind_group(0, &self.camera.1, &[]);
-        // STEP 9: bind the maps where the pasted WGSL looks for them.
+        // STEP 9: bind the maps at the group that the pasted WGSL uses.
         pass.set_bind_group(1, self.sun.receiver_group(), &[]);
 
         if let Some(exact) = &self.exact {
@@ -338,7 +346,8 @@ impl Engine {
     }
 }
 
-/// The shaded pass's pipeline. It draws what is at the depth that is there, too.
+/// Returns the shaded pass's pipeline. Its depth test accepts equal depths, so that it can follow a depth
+/// pre-pass.
 fn shaded<'a>(wgsl: String, groups: &'a [Option<&'a wgpu::BindGroupLayout>]) -> Pipeline<'a> {
     Pipeline {
         wgsl,

@@ -1,5 +1,5 @@
-//! The core alone: a camera, a sun and boxes of the scene in, four shadow maps and the casters of each out, frame by
-//! frame. No GPU, no window.
+//! The core crate alone: pass in a camera, a sun and the scene's boxes, and get four shadow maps and the
+//! casters of each one, frame by frame. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example fit_once

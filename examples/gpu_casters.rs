@@ -1,6 +1,6 @@
-//! An engine that keeps its casters on the GPU: the maps are fitted to coarse boxes, a compute shader finds the casters
-//! of each region of a shadow pass, and each region is one indirect draw. It walks through a town of 3,600 blocks
-//! without a window, and says in each second what was drawn.
+//! An engine that keeps its casters on the GPU. The maps are fitted to coarse boxes, a compute shader culls
+//! the casters for each region of a shadow pass, and each region is drawn with one indirect draw. The example
+//! walks through a town of 3,600 blocks without a window and prints the draws of each second.
 //!
 //! ```sh
 //! cargo run --release --example gpu_casters
@@ -23,13 +23,13 @@ use town::Town;
 
 const SECONDS: u32 = 4;
 const FRAMES_PER_SECOND: u32 = 60;
-/// Metres a second, as people walk.
+/// Walking speed of a person, in metres per second.
 const WALKING_SPEED: f32 = 1.4;
-/// The way the sun's light travels.
+/// Direction of travel of the sunlight.
 const SUNLIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 
 fn main() -> Result<()> {
-    // The adapter that the environment variable `SHADOWFIT_ADAPTER` names, or the fastest one.
+    // Use the adapter that the environment variable `SHADOWFIT_ADAPTER` names, or the fastest one.
     let gpu = pollster::block_on(Gpu::headless(&AdapterChoice::from_env().unwrap_or_default()))?;
     let technique = Technique::default().with_max_distance(80.0);
     let mut sun = SunShadows::new(&gpu.device, &gpu.queue, &technique.into())?;
@@ -49,7 +49,7 @@ fn main() -> Result<()> {
         println!("{second:>6}  {regions:>6}  {drawn:>13}");
     }
     let all = SECONDS * FRAMES_PER_SECOND * technique.maps.count() * town.blocks.len() as u32;
-    println!("All casters into all maps in each frame would be {all}.");
+    println!("Without culling and caching it would be {all} casters.");
     Ok(())
 }
 
@@ -85,7 +85,7 @@ fn camera(frame: u32) -> PerspectiveCamera {
     }
 }
 
-/// Waits for the number of casters that the compute shader found for each region.
+/// Waits for the GPU and returns the number of casters that the compute shader found for each region.
 fn counts(gpu: &Gpu, draws: &Draws) -> Result<Vec<u32>> {
     let size = draws.arguments.size();
     let read = gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -1,6 +1,6 @@
-//! Proofs instead of pictures: every map of every frame of a camera flight is proven to have no holes. Of maps that are
-//! cascades, the depths that the last frame showed make splits sharper without putting that at risk, and fewer
-//! are taken where they are as good. No GPU, no window.
+//! Proves that no map of any frame of a camera flight has holes. Then it fits cascades without boxes, from
+//! the depth range of the last frame, and proves these too: the range makes the splits sharper and causes no
+//! holes. It also finds the smallest number of cascades that is sharp enough. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example prove_it
@@ -17,7 +17,7 @@ use shadowfit::{
 };
 
 const FRAMES: u32 = 120;
-/// The way the sun's light travels.
+/// Direction of travel of the sunlight.
 const SUN: Vec3 = Vec3::new(0.55, -0.6, -0.4);
 
 fn main() -> Result<(), FitError> {
@@ -41,20 +41,20 @@ fn main() -> Result<(), FitError> {
         }
     }
     println!(
-        "{FRAMES} frames of {} maps: least free texels at the sides {:?}",
+        "{FRAMES} frames of {} maps: smallest margins at the sides, in texels: {:?}",
         technique.maps.count(),
         &least.planes[..4]
     );
-    println!("least metres free at the far plane {}, before the first caster {}", least.planes[4], least.casters);
+    println!("smallest margin at the far plane: {} m, before the first caster: {} m", least.planes[4], least.casters);
 
     let views = [camera(0).frustum()?];
     let input = input(&views, boxes);
     let cascades = Cascades::default();
     let count = fewest_maps(&input, &technique.with_maps(cascades), 1.5, &mut scratch)?;
-    println!("{count} cascades instead of {} make texels at most 1.5 times as coarse", cascades.count);
+    println!("with {count} cascades instead of {}, texels are at most 1.5 times coarser", cascades.count);
 
-    // Where no boxes say what is visible: without bounds, with those that a reduction of the last depth buffer gives,
-    // and with wrong ones, as after a camera cut.
+    // Without receiver boxes: first without depth bounds, then with the bounds that a reduction of the last
+    // depth buffer gives, then with wrong bounds, as after a camera cut.
     let logarithmic = technique.with_maps(cascades.with_splits(SplitScheme::Logarithmic));
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
@@ -68,8 +68,8 @@ fn main() -> Result<(), FitError> {
     Ok(())
 }
 
-/// What is proven of each map: all receivers that it serves are in it with all that the filter reads, and no caster is
-/// lost.
+/// Returns a proof for each map: the map and the filter's footprint cover all receivers that the map serves,
+/// and no caster is missing.
 fn proofs(
     input: &FitInput,
     technique: &Technique,
@@ -97,7 +97,7 @@ fn input<'a>(views: &'a [ViewFrustum], boxes: Boxes<'a>) -> FitInput<'a> {
     FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(views, SUN) }
 }
 
-/// A flight around the scene.
+/// Returns the camera at a frame of its flight around the scene.
 fn camera(frame: u32) -> PerspectiveCamera {
     let angle = f64::from(frame) * 0.03;
     let eye = DVec3::new(30.0 * angle.sin(), 4.0 + angle, 30.0 * angle.cos());
@@ -105,7 +105,7 @@ fn camera(frame: u32) -> PerspectiveCamera {
     PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y: 0.8, aspect: 16.0 / 9.0, near: 0.1, far: 200.0 }
 }
 
-/// A floor with columns on it, in metres.
+/// Returns the boxes of a floor and the columns on it, in metres.
 fn columns() -> Vec<Aabb> {
     let mut objects = vec![Aabb::new(Vec3::new(-40.0, -0.5, -40.0), Vec3::new(40.0, 0.0, 40.0))];
     for column in 0..25_u8 {

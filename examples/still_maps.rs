@@ -1,7 +1,8 @@
-//! Maps that are kept: how little has to be drawn again while the camera walks and the sun moves.
+//! Cached maps: prints how few texels are redrawn while the camera walks and the sun moves.
 //!
-//! `LightStepState` moves the sun in steps, and `Scroll` says which texels of a map are already there from the last
-//! frame. A minute is walked through at 10 frames a second; each line is a second of it. No GPU, no window.
+//! `LightStepState` moves the sun in steps, and `Scroll` returns the texels of a map that the previous frame
+//! already drew. The walk lasts one minute at 10 frames per second, and each output line covers one second.
+//! No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example still_maps
@@ -15,9 +16,9 @@ use shadowfit_params::tool::LightSettings;
 
 const SECONDS: u32 = 60;
 const FRAMES_PER_SECOND: u32 = 10;
-/// Metres a second, as people walk.
+/// Walking speed of a person, in metres per second.
 const WALKING_SPEED: f64 = 1.4;
-/// Radians a second: a turn a day.
+/// Angular speed of the sun, in radians per second: one turn per day.
 const SUN_SPEED: f32 = std::f32::consts::TAU / 86_400.0;
 
 fn main() -> Result<(), FitError> {
@@ -26,7 +27,7 @@ fn main() -> Result<(), FitError> {
     let (mut fitter, mut light_steps) = (ShadowFitter::new(&Technique::default()), LightStepState::default());
     let mut before = FittedMaps::default();
     let mut total = Redrawn::default();
-    println!("second  texels drawn anew  whole maps  sun");
+    println!("second     texels redrawn  whole maps  sun");
     for second in 0..SECONDS {
         let (mut redrawn, mut steps) = (Redrawn::default(), 0);
         for frame in 0..FRAMES_PER_SECOND {
@@ -41,7 +42,7 @@ fn main() -> Result<(), FitError> {
             redrawn.add(&before, maps);
             before = *maps;
         }
-        let note = if steps > 0 { "steps" } else { "stands still" };
+        let note = if steps > 0 { "steps" } else { "does not move" };
         println!("{second:>6}  {:>16.2}%  {:>10}  {note}", redrawn.percent(), redrawn.whole);
         total = Redrawn {
             texels: total.texels + redrawn.texels,
@@ -49,17 +50,21 @@ fn main() -> Result<(), FitError> {
             whole: total.whole + redrawn.whole,
         };
     }
-    println!("In a minute {:.2}% of all texels were drawn anew, {} maps as a whole.", total.percent(), total.whole);
+    println!(
+        "In one minute, {:.2}% of all texels were redrawn, and {} maps were redrawn completely.",
+        total.percent(),
+        total.whole
+    );
     Ok(())
 }
 
-/// What had to be drawn of some maps.
+/// Number of redrawn texels and maps, summed over several maps.
 #[derive(Default)]
 struct Redrawn {
     texels: u64,
-    /// Texels of all maps.
+    /// Number of texels of all maps.
     all: u64,
-    /// Maps that nothing could be kept of.
+    /// Number of maps that had to be redrawn completely.
     whole: u32,
 }
 
@@ -83,7 +88,7 @@ impl Redrawn {
     }
 }
 
-/// A walk along the street that looks around.
+/// Returns the camera at a time of the walk along the street. It looks around while it walks.
 fn camera(seconds: f64) -> PerspectiveCamera {
     let turn = 0.3 * (seconds * 0.2).sin() as f32;
     PerspectiveCamera {
@@ -97,12 +102,12 @@ fn camera(seconds: f64) -> PerspectiveCamera {
     }
 }
 
-/// The sun's direction of travel.
+/// Returns the direction of travel of the sunlight.
 fn sun(seconds: f64) -> Vec3 {
     LightSettings { azimuth: 0.6 + SUN_SPEED * seconds as f32, ..LightSettings::default() }.direction()
 }
 
-/// Ground and two rows of houses, in metres.
+/// Returns the boxes of the ground and of two rows of houses, in metres.
 fn street() -> Vec<Aabb> {
     let mut objects = vec![Aabb::new(Vec3::new(-60.0, -0.1, -120.0), Vec3::new(60.0, 0.0, 80.0))];
     for house in 0..8_u8 {

@@ -1,6 +1,6 @@
-//! The three demonstrations in the default scene, as numbers: each artefact is unmistakable, and
-//! its cure leaves next to nothing of it, with several maps as with one. Judged against rays, which
-//! need no shadow map.
+//! The three demonstrations in the default scene, as numbers: each artefact is unmistakable, and its cure
+//! removes nearly all of it, with several maps and with a single one. Judged against rays, which need no
+//! shadow map.
 
 use shadowfit::Technique;
 use shadowfit::{Maps, SingleMap};
@@ -13,13 +13,13 @@ use crate::support::test_gpu;
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [320, 180];
 
-/// Size of pictures whose texels or stripes are compared with pixels.
+/// Size of pictures for comparing texels or stripes with pixels.
 const FINE: [u32; 2] = [640, 360];
 
-/// The recommended technique, one whose maps are cascades, and one of a single map.
+/// The recommended technique, a technique with cascades, and one with a single map.
 const TECHNIQUES: [&str; 3] = ["windows-4", "calm-4", "xna-1"];
 
-/// Share of what is left after a cure, of the base that the artefact was measured on.
+/// Greatest share of the artefact that may remain after a cure, relative to the same base.
 const CURED: f64 = 0.001;
 
 fn stage(technique: &str) -> Stage {
@@ -28,7 +28,7 @@ fn stage(technique: &str) -> Stage {
     stage
 }
 
-/// The settings that an artefact is shown with keep the technique's maps, but for windows, which show none.
+/// Shows an artefact. Its settings keep the technique's maps, except windows, which show no artefacts.
 fn show(stage: &mut Stage, artefact: Artefact) {
     let before = stage.settings.technique;
     stage.show_artefact(artefact);
@@ -47,13 +47,13 @@ fn judged(stage: &mut Stage, size: [u32; 2], subject_only: bool) -> Judged {
     judged
 }
 
-/// Share of the facing pixels that are wrong.
+/// Returns the share of the facing pixels that are wrong.
 fn wrong(stage: &mut Stage) -> f64 {
     let tally = judged(stage, SIZE, false).tally;
     tally.share(tally.all.wrong)
 }
 
-/// Share of all pixels, sky included.
+/// Returns the share of all pixels, including the sky.
 fn share_of_picture(judged: &Judged, class: Class) -> f64 {
     judged.classes.iter().filter(|other| **other == class).count() as f64 / judged.classes.len() as f64
 }
@@ -79,7 +79,7 @@ fn gpu_acne_covers_the_character_and_its_fix_clears_it() {
     }
 }
 
-/// Share of the picture that a shadow map darkens.
+/// Returns the share of the picture that a shadow map darkens.
 fn shadowed(stage: &mut Stage) -> f64 {
     let target = stage.target(SIZE);
     let [with, without] = [true, false].map(|shadows| {
@@ -145,8 +145,8 @@ fn gpu_aliasing_magnifies_the_shadow_edge_and_its_fix_sharpens_it() {
     }
 }
 
-/// Median, over the pixels at a change of the true shadow, of the pixels per texel along the worse
-/// axis.
+/// Returns the median of pixels per texel along the worse axis, over the pixels at a change of the true
+/// shadow.
 fn median_at_edges(stage: &mut Stage) -> f32 {
     let mut figures = stage.pixels_per_texel_at_edges(FINE);
     assert!(figures.len() > 100, "the shadow's edge is in the picture: {} pixels", figures.len());

@@ -1,5 +1,5 @@
-//! Conventions across the crates, from settings to uniforms: what one crate writes is what the next one reads. The
-//! crates' own tests have the conventions of each.
+//! Conventions across the crates, from settings to uniforms: the output of one crate is valid input of the
+//! next. Each crate's own tests check its own conventions.
 
 use shadowfit::Preset;
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
@@ -16,10 +16,10 @@ use shadowfit_wgpu::{MAX_MAPS, MapView, RESOLUTIONS, ShadowMapDescriptor};
 
 use crate::support::test_gpu;
 
-/// The depth conventions that wgpu draws.
+/// The depth conventions that wgpu supports.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
 
-/// A few roundings of f32 coordinates of about 1.
+/// Tolerance: a few roundings of f32 coordinates of about 1.
 const CLOSE: f32 = 1e-5;
 
 fn fly() -> FlyCamera {
@@ -59,7 +59,7 @@ fn the_caster_and_the_receiver_uniform_of_a_fit_meet_in_the_same_texel_and_depth
             let point = (fit.origin + corner.as_dvec3() - origin).as_vec3();
             let clip = clip_from_world.transform_point3(point);
             let uv = uv_from_world.transform_point3(point);
-            // wgpu's viewport: x right, y up in clip space, v down in the texture, depth as it is.
+            // wgpu's viewport: x right, y up in clip space, v down in the texture, depth unchanged.
             let expected = Vec3::new(clip.x * 0.5 + 0.5, 0.5 - clip.y * 0.5, clip.z);
             assert!(uv.abs_diff_eq(expected, CLOSE), "{depth:?}: {uv}, not {expected}");
         }
@@ -99,7 +99,7 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
         assert!(lifted * toward_light > 0.0, "{depth:?}");
         assert!(map.constant_depth * toward_light > 0.0 && map.slope_depth * toward_light > 0.0, "{depth:?}: {map:?}");
         assert!(map.normal_offset > 0.0, "an offset along the normal leaves the surface: {map:?}");
-        // One texel of constant bias is what one texel of height along the light is.
+        // One texel of constant bias equals one texel of height along the light.
         let texel = fit.texel_size.max_element();
         assert!((map.constant_depth - lifted * texel).abs() <= 1e-3 * map.constant_depth.abs(), "{depth:?}: {map:?}");
     }
@@ -137,7 +137,8 @@ fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }
 
-/// A technique with the distance and the resolution of another, which depend on the scene and on what may be spent.
+/// Returns a technique with the distance and the resolution of another one, which depend on the scene and the
+/// budget.
 fn with_extent_of(technique: &Technique, other: &Technique) -> Technique {
     let fit = technique.fit.with_max_distance(other.fit.max_distance).with_resolution(other.fit.resolution);
     (*technique).with_fit(fit)
@@ -172,8 +173,8 @@ fn every_resolution_of_the_panel_is_one_that_a_map_can_have() {
     }
 }
 
-/// What rays say and what the map says about the same floor under the same caster: the light's direction has one sign
-/// in both.
+/// Compares rays and map for the same floor under the same caster: the light's direction must have the same
+/// sign in both.
 #[test]
 fn rays_and_the_map_put_a_shadow_on_the_same_side() {
     // A square metre, 2 m above the ground at the origin.

@@ -1,5 +1,5 @@
-//! The fits in the viewer, on the default scene: whichever is chosen, no shadow has a hole once the casters have a
-//! place in the map, and knowing the scene makes texels finer. Judged against rays, which need no shadow map.
+//! All fits in the viewer, on the default scene. No shadow has a hole if the casters are in the map, and fits
+//! that use the scene's boxes have finer texels. Pictures are judged against rays, which need no shadow map.
 
 use shadowfit::settings::{CasterPolicy, FitKind, Shape, Stabilise};
 use shadowfit::{Cascades, Maps, SingleMap};
@@ -17,14 +17,14 @@ const STRAY: f32 = 0.001;
 
 const KINDS: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-/// The default scene where a caster stands between the sun and the view.
+/// Returns the default scene with a caster between the sun and the view.
 fn stage() -> Stage {
     let mut stage = Stage::new(test_gpu(), default_scene(), 1).expect("the default scene");
     stage.show_artefact(Artefact::ClippingHole);
     stage
 }
 
-/// Shares of the picture that are holes, and that are wrong in the midst of light or shadow.
+/// Returns the shares of the picture that are holes, and that are wrong away from shadow edges.
 fn wrong(stage: &mut Stage) -> [f32; 2] {
     let classes = stage.judge(SIZE, false).expect("an adapter that tells triangles apart").classes;
     assert_eq!(stage.problem(), None);

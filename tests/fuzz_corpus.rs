@@ -1,5 +1,5 @@
-//! The files of `tests/fuzz/corpus`, and what fuzzing found: the bodies of its targets run over them. Targets that reach
-//! into a crate have their test there.
+//! Runs the fuzz targets over `tests/fuzz/corpus`, which also contains the findings of fuzzing. Targets that
+//! need private parts of a crate have their test in that crate.
 
 #![expect(unreachable_pub, reason = "the package of the fuzz targets makes them public")]
 

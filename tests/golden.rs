@@ -1,7 +1,9 @@
-//! Golden pictures: the default scene's views at 320×180, and the classic samples in the aspect of their sources, drawn by the software adapter whatever GPU is present.
+//! Golden pictures: the default scene's views at 320×180, and the classic samples in the aspect of their
+//! sources. They are always drawn with the software adapter, even if there is a GPU.
 //!
-//! A missing or mis-sized golden fails. `cargo xtask golden` (`SHADOWFIT_UPDATE_GOLDENS=1`) writes them anew. On a
-//! failure `NAME.actual.png` and `NAME.diff.png` (the difference, amplified) lie beside `NAME.png`.
+//! A missing or mis-sized golden fails. `cargo xtask golden` (`SHADOWFIT_UPDATE_GOLDENS=1`) rewrites them. On
+//! a failure, `NAME.actual.png` and `NAME.diff.png` (the amplified difference) are written next to
+//! `NAME.png`.
 
 use std::path::{Path, PathBuf};
 
@@ -21,10 +23,10 @@ use crate::support::workspace;
 /// Size of every golden, in pixels.
 const SIZE: [u32; 2] = [320, 180];
 
-/// Most bytes that a golden may have.
+/// Size limit of a golden, in bytes.
 const MAX_BYTES: u64 = 128 * 1024;
 
-/// Samples per pixel, as the headless mode has them.
+/// Samples per pixel, the same number as in the headless mode.
 const SAMPLES_PER_PIXEL: u32 = 4;
 
 /// Every golden.
@@ -54,21 +56,22 @@ const NAMES: [&str; 20] = [
 /// Angular radius of the sun of the filters' pictures, in radians: 2°, so that soft edges show.
 const LARGE_SUN: f32 = 0.035;
 
-/// Width and height of the maps of the filters' pictures, in texels: a texel is a few pixels, so that filters differ.
+/// Width and height of the maps of the filters' pictures, in texels: a texel is a few pixels, so that filters
+/// differ.
 const COARSE: u32 = 512;
 
-/// Mean difference allowed, in levels of 255 over all channels. The same driver draws the same bits; another version of
-/// it may round a shaded value the other way, which is one level, in some pixels.
+/// Greatest mean difference, in levels of 255 over all channels. The same driver draws the same bits. Another
+/// version of it may round a shaded value the other way, which is one level, in some pixels.
 const MEAN: f64 = 0.5;
 
-/// A pixel counts as different from this many levels on: an edge or a texel that fell to the other side, not rounding.
+/// Difference in levels from which a pixel counts as different: an edge or texel that moved, not rounding.
 const DIFFERENT: u8 = 24;
 
-/// Share of pixels that may be different: along edges another rounding of coverage moves single pixels. The least
-/// artefact that a golden shows covers several times as many.
+/// Greatest share of different pixels: along edges, another rounding of coverage moves single pixels. The
+/// smallest artefact in a golden covers several times this share.
 const DIFFERENT_SHARE: f64 = 0.005;
 
-/// Factor by which the difference picture is amplified, so that one level can be seen.
+/// Amplification of the difference picture, which makes a single level visible.
 const AMPLIFIED: u8 = 8;
 
 #[test]
@@ -107,7 +110,7 @@ fn shadows_by_each_filter_are_as_they_were() {
         name.trim_start_matches("filter-").replace(['-', '_'], "")
     });
     let drawn: Vec<String> = drawn.collect();
-    // Each name is that of its filter, and none is left out.
+    // The names equal the names of all filters, in order.
     assert_eq!(drawn, FilterKind::ALL.map(|filter| format!("{filter:?}").to_lowercase()));
 }
 
@@ -163,7 +166,7 @@ fn the_comparison_sees_a_missing_shadow_and_forgives_rounding() {
     rounded.pixels_mut().step_by(2).for_each(|pixel| pixel.0[1] += 1);
     assert_eq!(Difference::between(&plain, &rounded).verdict(), Ok(()));
     let mut changed = plain.clone();
-    // One pixel more than the share that is allowed.
+    // One pixel more than the allowed share.
     let allowed = (f64::from(SIZE[0] * SIZE[1]) * DIFFERENT_SHARE) as usize;
     changed.pixels_mut().take(allowed + 1).for_each(|pixel| pixel.0[2] += DIFFERENT);
     assert!(Difference::between(&plain, &changed).verdict().is_err());
@@ -180,9 +183,9 @@ fn stage() -> Stage {
     stage
 }
 
-/// The figure's shadow on the floor, from its feet, where edges are hard, to its head, and behind it that of the upper
-/// half of a pole of seven metres: by a sun large enough for soft edges to show, in maps coarse enough for filters to
-/// differ.
+/// Returns a stage with the figure's shadow on the floor, from its feet, where edges are hard, to its head,
+/// and behind it the shadow of the upper half of a pole of seven metres. The sun is large enough for soft
+/// edges, and the maps are coarse enough that filters differ.
 fn stage_of_a_long_shadow() -> Stage {
     let mut stage = stage();
     stage.settings.view.inset = InsetMaps::Off;
@@ -204,18 +207,18 @@ fn check_artefact(artefact: Artefact, [shown, fixed]: [&str; 2]) {
     check(&mut stage, fixed);
 }
 
-/// The golden of a sample.
+/// Returns the file name of a sample's golden.
 fn sample_golden(sample: &Sample) -> String {
     format!("sample-{}", sample.id)
 }
 
-/// Size of a sample's golden, in pixels: in the aspect of its source's window.
+/// Returns the size of a sample's golden, in pixels, with the aspect of its source's window.
 fn sample_size(sample: &Sample) -> [u32; 2] {
     let [width, height] = sample.size;
     [(width * SIZE[1]).div_ceil(height), SIZE[1]]
 }
 
-/// Whether this run writes the goldens.
+/// Returns whether this run writes the goldens.
 fn updates() -> bool {
     std::env::var_os("SHADOWFIT_UPDATE_GOLDENS").is_some_and(|value| value != "0")
 }
@@ -275,7 +278,7 @@ fn save(picture: &RgbImage, path: &Path) {
     picture.save(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }
 
-/// Absolute difference of two pictures of one size, by channel.
+/// Absolute difference of two pictures of the same size, per channel.
 struct Difference(RgbImage);
 
 impl Difference {

@@ -1,18 +1,18 @@
-//! The code that an engine writes for its shadows: the number of its lines in the example `engine_integration`, and the
-//! blocks of the guide, which are copies from the examples.
+//! The code that an engine writes for its shadows: the number of lines in the example `engine_integration`,
+//! and the code blocks of the guide, which are copies from the examples.
 //!
-//! The lines of a step begin after a comment with its number (`// STEP 3: ...`), those of a part of exact edges after one
-//! with its name (`// EXACT triangles: ...`), and both end at the next empty line, or where a brace closes that was opened
-//! before them. Comments do not count.
+//! The lines of a step follow a comment with its number (`// STEP 3: ...`). The lines of a part of exact
+//! edges follow a comment with its name (`// EXACT triangles: ...`). Both end at the next empty line, or
+//! where a brace closes that was opened before them. Comments do not count.
 
 use std::path::Path;
 
 use crate::support::workspace;
 
-/// Most lines that the steps may have together.
+/// Greatest number of lines of all steps together.
 const MOST_LINES: usize = 35;
 
-/// Most lines that exact edges may have beside the steps.
+/// Greatest number of lines of exact edges, in addition to the steps.
 const MOST_EXACT_LINES: usize = 40;
 
 /// Files of the example.
@@ -23,7 +23,7 @@ const FILES: [&str; 4] = [
     "engine_integration/scene.rs",
 ];
 
-/// Words of code that has to do with shadows.
+/// Words that occur only in code for shadows.
 const WORDS: [&str; 7] = ["shadow", "caster", "self.sun", "sun.", "sun:", "receiver", "rays."];
 
 fn read(path: impl AsRef<Path>) -> String {
@@ -31,7 +31,7 @@ fn read(path: impl AsRef<Path>) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Whether a line holds nothing but a comment.
+/// Returns whether a line contains only a comment.
 fn is_comment(line: &str) -> bool {
     line.trim_start().starts_with("//")
 }
@@ -40,13 +40,14 @@ fn indentation(line: &str) -> usize {
     line.len() - line.trim_start().len()
 }
 
-/// What a comment begins: a step, by its number, or a part of exact edges, by its name.
+/// Returns the name after the marker of a comment: the number of a step, or the name of a part of exact
+/// edges.
 fn beginning(line: &str) -> Option<&str> {
     let rest = line.split_once("// STEP ").or_else(|| line.split_once("// EXACT "))?.1;
     rest.split_once(':').map(|(name, _)| name)
 }
 
-/// Lines of code of the steps and parts, with their names, and all other lines of code.
+/// Returns the code lines of the steps and parts, with their names, and all other code lines.
 fn marked(text: &str) -> (Vec<(&str, &str)>, Vec<&str>) {
     let (mut inside, mut outside) = (Vec::new(), Vec::new());
     let mut current: Option<(&str, usize)> = None;
@@ -88,14 +89,14 @@ fn no_line_outside_of_the_steps_has_to_do_with_shadows() {
     for file in FILES {
         let text = example(file);
         for line in marked(&text).1 {
-            // The choice of the adapter has nothing to do with shadows but its crate's name.
+            // Code that chooses the adapter contains the word only in its crate's name.
             let lower = line.to_lowercase().replace("shadowfit_adapter", "");
             assert!(!WORDS.iter().any(|word| lower.contains(word)), "{file}: {line}");
         }
     }
 }
 
-/// The fenced blocks of a document, with their languages and trimmed lines.
+/// Returns the fenced blocks of a document, with their languages and trimmed lines.
 fn blocks(text: &str) -> Vec<(String, Vec<String>)> {
     let mut blocks: Vec<(String, Vec<String>)> = Vec::new();
     let mut is_open = false;
@@ -113,7 +114,7 @@ fn blocks(text: &str) -> Vec<(String, Vec<String>)> {
     blocks
 }
 
-/// Whether lines stand one after another in a text.
+/// Returns whether a text contains these consecutive lines.
 fn stands_in(lines: &[String], text: &[String]) -> bool {
     !lines.is_empty() && text.windows(lines.len()).any(|window| window == lines)
 }

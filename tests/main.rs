@@ -1,8 +1,8 @@
-//! Scratch-level tests: facts that no crate can prove alone.
+//! Tests of facts that need several crates.
 //!
-//! Tests that need a graphics device have `gpu` or `golden` in their path, by which `cargo xtask test` leaves them out
-//! where there is none, and runs them in one process where there is one. Tests with `own_process` in their path get a
-//! process of their own.
+//! Tests that need a graphics device have `gpu` or `golden` in their path. `cargo xtask test` skips them if
+//! there is no device, and otherwise runs them in one process. Tests with `own_process` in their path get
+//! their own process.
 
 mod artefacts;
 mod conventions;

@@ -1,19 +1,19 @@
-//! The recipes of `docs/ARCHITECTURE.md` against the code: the files that a recipe lists are those whose code names the
-//! example that it follows, and no others.
+//! Compares the recipes of `docs/ARCHITECTURE.md` with the code: a recipe must list exactly the files whose
+//! code names its example.
 //!
-//! A recipe is a row of the table: what is added, the names of the example, and the files, each in backticks. `crate/a.rs`
-//! stands for `crates/crate/src/a.rs`; a folder with a slash at its end for what is in it. Comments and tests do not
-//! count, and a file that is called after the example counts as one that names it.
+//! A recipe is a row of the table: the kind of addition, the names of the example, and the files, each in
+//! backticks. `crate/a.rs` means `crates/crate/src/a.rs`, and a folder with a trailing slash means its
+//! content. Comments and tests do not count. A file that has the example's name counts as naming it.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::support::{files_below, workspace};
 
-/// What has a recipe.
+/// Kinds of additions with a recipe.
 const KINDS: [&str; 6] = ["a fit", "a filter", "a parameter", "a view", "a scene", "a sample"];
 
-/// How a file's tests begin, which stand at its end.
+/// Start of a file's tests, which are at its end.
 const TESTS: &str = "#[cfg(test)]\nmod tests {";
 
 /// A row of the table.
@@ -38,7 +38,7 @@ fn recipes(page: &str) -> Vec<Recipe> {
     section.lines().filter(|line| line.starts_with("| a ")).map(row).collect()
 }
 
-/// A file of the crates as recipes write it, if it is code that people who add something may have to touch.
+/// Returns the name of a file in the form of recipes, or `None` for files that additions never touch.
 fn short_name(file: &Path) -> Option<String> {
     let parts: Vec<_> =
         file.strip_prefix(workspace().join("crates")).ok()?.iter().map(|p| p.to_string_lossy()).collect();
@@ -49,7 +49,7 @@ fn short_name(file: &Path) -> Option<String> {
         .then(|| format!("{name}/{}", rest.join("/")))
 }
 
-/// Whether a name stands in code as whole words, before the tests and outside of comments.
+/// Returns whether a name occurs in code as whole words, before the tests and outside comments.
 fn is_named(name: &str, code: &str) -> bool {
     let is_part_of_word = |c: char| c.is_alphanumeric() || c == '_';
     let code = code.split(TESTS).next().unwrap_or_default();
@@ -60,7 +60,7 @@ fn is_named(name: &str, code: &str) -> bool {
     })
 }
 
-/// Whether a file or a folder that it is in is called as the last word of a name says.
+/// Returns whether a file or one of its folders has the last word of a name as its name.
 fn is_called(name: &str, path: &str) -> bool {
     path.split(['/', '.']).any(|part| name.split(' ').next_back() == Some(part))
 }

@@ -1,5 +1,5 @@
-//! What people can throw at the viewer: real scenes, broken files, absurd flags and absurd settings. Everything ends in
-//! a picture or in words, never in a panic.
+//! Robustness of the viewer: real scenes, broken files, absurd flags and absurd settings. Everything ends in
+//! a picture or a message, never in a panic.
 
 mod command_line_gpu;
 mod device_classes_gpu;

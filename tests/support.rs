@@ -1,4 +1,4 @@
-//! What several of these tests need: the device, the viewer as a program, the collection of scenes.
+//! Shared parts of these tests: the device, the viewer as a program, the collection of scenes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,10 +8,10 @@ use shadowfit::glam::Vec3;
 use shadowfit_scene::{Lens, Scene};
 use shadowfit_study::View;
 use shadowfit_testing::package_folder;
-/// The tests' device, lent to one test after another, and the name of its adapter for programs.
+/// The tests' device, which successive tests share, and the name of its adapter for programs.
 pub(crate) use shadowfit_testing::{adapter_name, renderer_gpu as test_gpu};
 
-/// The view from a scene's own camera under its own sun, in pictures of this size.
+/// Returns the view from a scene's own camera under its own sun, in pictures of this size.
 pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {
     let camera = scene.cameras.first().expect("a camera");
     let Lens::Perspective { fov_y, near, far } = camera.lens else { panic!("a perspective camera") };
@@ -29,12 +29,12 @@ pub(crate) fn start_view(scene: &Scene, size: [u32; 2]) -> View {
     View { camera: camera.into(), direction: scene.sun.expect("a sun").direction, is_first: true }
 }
 
-/// The folder of the workspace.
+/// Returns the folder of the workspace.
 pub(crate) fn workspace() -> PathBuf {
     package_folder(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The collection of scenes beside the workspace, or `None` with a word about it.
+/// Returns the collection of scenes next to the workspace. Prints a note and returns `None` if it is missing.
 pub(crate) fn assets() -> Option<PathBuf> {
     let folder = workspace().join("../shared/assets");
     if folder.is_dir() {
@@ -44,7 +44,7 @@ pub(crate) fn assets() -> Option<PathBuf> {
     None
 }
 
-/// Every file below a folder, sorted.
+/// Returns every file below a folder, sorted.
 pub(crate) fn files_below(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut files = Vec::new();
@@ -56,28 +56,29 @@ pub(crate) fn files_below(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The folder of this build's profile, such as `target/debug`: this test runs from its `deps`.
+/// Returns the folder of this build's profile, such as `target/debug`. This test runs from its `deps`.
 fn profile_folder() -> PathBuf {
     let test = std::env::current_exe().expect("the test knows its own path");
     test.ancestors().nth(2).expect("the test lies in target/<profile>/deps").to_owned()
 }
 
-/// Where cargo builds.
+/// Returns cargo's target folder.
 pub(crate) fn target_folder() -> PathBuf {
     profile_folder().parent().expect("the profile's folder lies in the target folder").to_owned()
 }
 
-/// The viewer beside this test.
+/// Returns the viewer's program next to this test.
 pub(crate) fn viewer_program() -> PathBuf {
     example_program("viewer")
 }
 
-/// An example beside this test; `cargo test` builds examples, but a filtered run may have left it out.
+/// Returns an example's program next to this test. `cargo test` builds examples, but a filtered run may not
+/// have.
 pub(crate) fn example_program(name: &str) -> PathBuf {
     let program = profile_folder().join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {
         let mut build = Command::new(env!("CARGO"));
-        // The viewer is one of its own package.
+        // The viewer is an example of another package.
         build.args(["build", "--workspace", "--example", name]).current_dir(workspace());
         build.env("CARGO_TARGET_DIR", target_folder());
         if profile_folder().ends_with("release") {

@@ -1,5 +1,5 @@
-//! Rendered pictures judged against rays: artefacts that are made on purpose are found and named, and the GPU's
-//! verdicts are those of the CPU.
+//! Rendered pictures judged against rays: artefacts that are made on purpose are found and named, and the
+//! GPU's verdicts equal the CPU's.
 
 mod agreement_gpu;
 mod artefacts_gpu;

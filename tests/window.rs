@@ -1,8 +1,8 @@
-//! The viewer in a real window, driven as a person would drive it: an X server without a screen (Xvfb), keys pressed
-//! by xdotool, screenshots by `ImageMagick`. There is no window manager, which an empty X server does without: the test
-//! gives the window its focus, moves and resizes it, and "minimises" by unmapping it, which is what iconifying does to
-//! an X11 window. What is asserted is that pictures change, come back or stay; every wait is for something to be seen,
-//! with a generous limit. The tests that wait longest run by `cargo xtask test --all` alone.
+//! The viewer in a real window, driven like a user would: on an X server without a screen (Xvfb), with keys
+//! pressed by xdotool and screenshots by `ImageMagick`. There is no window manager. The test itself gives the
+//! window its focus, moves and resizes it, and "minimises" it by unmapping, as iconifying does on X11. The
+//! assertions are that pictures change, come back or stay the same. Every wait is for a visible change, with
+//! a generous limit. The slowest tests run only with `cargo xtask test --all`.
 
 mod desktop;
 mod hours;
@@ -13,28 +13,30 @@ use std::time::{Duration, Instant};
 use desktop::{Desktop, Viewer, missing_tools};
 use shot::{Area, Shot};
 
-/// Size of the window at the start, in pixels; smaller than the [`desktop::SCREEN`] so that a resize can grow it.
+/// Size of the window at the start, in pixels; smaller than the [`desktop::SCREEN`] so that a resize can grow
+/// it.
 const SIZE: (u32, u32) = (960, 600);
 
-/// What the viewer is started with: the driver that every machine has, a scene that stands still, and its progress told
-/// on the standard error.
+/// Start options of the viewer: the driver that every machine has, a scene without movement, and progress
+/// messages on standard error.
 const ARGUMENTS: [&str; 6] = ["--size", "960x600", "--software", "--no-play", "--no-state", "--log-frames"];
 
 /// The part of the window that shows the scene, between the bars above and below it and the panel beside it.
 const PICTURE: Area = Area { x: 24, y: 120, width: 500, height: 380 };
 
-/// Mean difference, in levels of 255, from which on a picture counts as another one. A software driver draws a scene
-/// that stands still to the same bits each time, and a move of a few pixels shifts every edge of the picture by far
-/// more than this.
+/// Mean difference, in levels of 255, from which two pictures count as different. A software driver draws a
+/// still scene with the same bits each time, and a move of a few pixels shifts every edge of the picture by
+/// far more than this.
 const CHANGED: f32 = 1.0;
 
 /// Mean difference, in levels of 255, up to which two pictures count as the same.
 const SAME: f32 = 0.1;
 
-/// How long a picture must stay the same to count as at rest: some frames of a software driver on a busy machine.
+/// Time without a change after which a picture counts as settled: some frames of a software driver on a busy
+/// machine.
 const STILL: Duration = Duration::from_millis(2500);
 
-/// How long a frame, or a change that takes some frames, may take: a software driver, two cores, a cold shader cache.
+/// Time limit of a frame or a change of some frames: for a software driver, two cores, a cold shader cache.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 #[test]
@@ -52,7 +54,7 @@ fn the_real_window_flies_shows_an_artefact_resizes_and_quits() {
 fn the_real_window_obeys_every_key_at_every_size_and_after_it_was_hidden() {
     let Some(desktop) = desktop("by-hand") else { return };
     let mut viewer = started(&desktop);
-    // In pairs that undo each other, so that the camera stays where there is something to see.
+    // In pairs that undo each other, so that the scene stays visible.
     every_key_moves_the_picture(&desktop, &viewer, &["w", "s", "a", "d", "Left", "Right", "Up", "Down"]);
     every_artefact_has_a_picture_of_its_own(&desktop, &viewer, &[("z", "acne"), ("x", "aliasing"), ("c", "hole")]);
     for size in [(860, 520), (1, 1), (1120, 700)] {
@@ -79,7 +81,7 @@ fn quit(viewer: &mut Viewer) {
     assert_eq!(viewer.exit_code(PATIENCE), Some(0), "Escape must end the viewer with success\n{}", viewer.log());
 }
 
-/// An empty desktop; `None` where the machine lacks the programs for it.
+/// Starts an empty desktop. Returns `None` if the machine lacks the programs for it.
 fn desktop(test: &str) -> Option<Desktop> {
     let missing = missing_tools();
     if missing.is_empty() {
@@ -111,10 +113,10 @@ fn a_lost_device_is_told_once_and_the_window_comes_back_as_it_was() {
     let script = script.display().to_string();
     let mut viewer = Viewer::start(&desktop, &[&ARGUMENTS[..], &["--script", &script]].concat());
     viewer.wait_for_line("lost", PATIENCE * 2);
-    // The second loss comes so soon after the first one that there would be no end of them.
+    // The second loss follows the first one so soon that the viewer must give up.
     assert_eq!(viewer.exit_code(PATIENCE * 2), Some(2), "{}", viewer.log());
     let log = viewer.log();
-    assert_eq!(log.matches("it is made anew").count(), 1, "{log}");
+    assert_eq!(log.matches("opening a new one").count(), 1, "{log}");
     assert!(log.contains("lost again") && log.contains("--software") && !log.contains("panicked"), "{log}");
     let [before, after] = [before, after].map(|path| image::open(path).expect("a picture").to_rgb8());
     assert!(before == after, "the picture is another one after the loss");
@@ -126,7 +128,7 @@ fn a_surface_that_has_no_texture_for_a_frame_has_one_later() {
     let (script, before, after) = (desktop.file("refuse.txt"), desktop.file("before.png"), desktop.file("after.png"));
     let still = "await loaded\nset view.judge off\ntechnique stable-4\nframes 4\n";
     let refused = ["lost", "outdated", "timeout", "occluded", "lost"].map(|answer| {
-        // What the surface is made anew with is not what it had when it was made first.
+        // The surface is recreated with another size than at the start.
         format!("refuse-frame {answer}\nframes 3\nresize 700 500\nrefuse-frame {answer}\nresize 960 600\nframes 4\n")
     });
     let (refused, [shown, later]) = (refused.concat(), [&before, &after].map(|path| path.display()));
@@ -157,7 +159,7 @@ fn settings_that_cannot_be_saved_are_told_once_and_the_viewer_goes_on() {
     let Some(desktop) = desktop("unsaved") else { return };
     let (script, state) = (desktop.file("wait.txt"), desktop.file("folder"));
     std::fs::create_dir_all(&state).expect("a folder");
-    // Longer than it takes until it has tried twice.
+    // Longer than the viewer needs for two attempts.
     std::fs::write(&script, "await loaded\nwait 12\nquit\n").expect("the script is written");
     let (script, state) = (script.display().to_string(), state.display().to_string());
     let mut viewer = Viewer::start(&desktop, &["--software", "--state", &state, "--script", &script]);
@@ -189,7 +191,7 @@ fn every_artefact_has_a_picture_of_its_own(desktop: &Desktop, viewer: &Viewer, a
             let shown = desktop.wait_for(PATIENCE, |shot| shot.difference(&previous, PICTURE) > SAME);
             assert!(shown.is_some(), "{key} ({name}) changes nothing since {}\n{}", previous.file(), viewer.log());
             let settled = settled(desktop, &name);
-            // What was seen first may be the card that says that the view is being looked for.
+            // The first change may be only the card that announces the search for a view.
             let difference = settled.difference(&previous, PICTURE);
             assert!(difference > SAME, "{key} ({name}) shows the same as {}\n{}", previous.file(), viewer.log());
             previous = settled;
@@ -197,7 +199,8 @@ fn every_artefact_has_a_picture_of_its_own(desktop: &Desktop, viewer: &Viewer, a
     }
 }
 
-/// Gives the window another size, which its picture fills. A window too small for its picture loses it.
+/// Resizes the window, and asserts that its picture fills it. A window that is too small for the picture
+/// loses it.
 fn a_resized_window_is_filled(desktop: &Desktop, viewer: &Viewer, size: (u32, u32)) {
     viewer.resize(size);
     let name = format!("resized-{}x{}", size.0, size.1);
@@ -206,7 +209,7 @@ fn a_resized_window_is_filled(desktop: &Desktop, viewer: &Viewer, size: (u32, u3
         assert!(gone.is_some(), "the window does not become {size:?}: {}", desktop.shoot(&name).file());
         return;
     }
-    // The right edge and the lower edge: a surface that kept its old size leaves them unpainted.
+    // The right edge and the lower edge: a surface with the old size leaves them unpainted.
     let (right, below) = (Area::new(size.0 - 12, 40, 8, size.1 - 80), Area::new(40, size.1 - 12, 200, 8));
     let filled = desktop.wait_for(PATIENCE, |shot| shot.is_painted(right) && shot.is_painted(below));
     assert!(filled.is_some(), "a window of {size:?} is not filled: {}", desktop.shoot(&name).file());
@@ -215,7 +218,7 @@ fn a_resized_window_is_filled(desktop: &Desktop, viewer: &Viewer, size: (u32, u3
     assert!(!shot.is_painted(outside), "the window is larger than {size:?}: {}", shot.file());
 }
 
-/// Takes the window off the screen and brings it back.
+/// Hides the window and shows it again.
 fn a_hidden_window_comes_back_unchanged(desktop: &Desktop, viewer: &mut Viewer) {
     let before = settled(desktop, "before-hiding");
     viewer.hide();
@@ -228,7 +231,7 @@ fn a_hidden_window_comes_back_unchanged(desktop: &Desktop, viewer: &mut Viewer) 
     assert!(viewer.is_running(), "the viewer ended while its window was hidden\n{}", viewer.log());
 }
 
-/// A screenshot that no longer changes.
+/// Returns a screenshot that no longer changes.
 fn settled(desktop: &Desktop, name: &str) -> Shot {
     let mut last: Option<(Shot, Instant)> = None;
     let still = desktop.wait_for(PATIENCE, |shot| {

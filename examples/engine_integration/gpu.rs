@@ -1,38 +1,38 @@
-//! What this engine has of wgpu: a device, targets, pipelines, and pixels that are read back.
+//! The engine's wgpu code: a device, targets, pipelines and read-back of pixels.
 
 use anyhow::Result;
 use shadowfit_adapter::{AdapterChoice, instance};
 use wgpu::util::DeviceExt;
 
-/// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
+/// Size of the picture, in pixels. The width is a multiple of 64, so that rows are read back without padding.
 pub(crate) const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 960, height: 540, depth_or_array_layers: 1 };
 
-/// Samples of a pixel.
+/// Number of MSAA samples per pixel.
 pub(crate) const SAMPLES: u32 = 4;
 
-/// Linear colours of any brightness.
+/// Format of the linear HDR colours.
 pub(crate) const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// What the picture is written as.
+/// Format of the final picture.
 pub(crate) const SRGB: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Depth is reversed: 1 near, 0 far.
+/// Format of the depth buffer. Depth is reversed: 1 near, 0 far.
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A device.
+/// Device and queue.
 pub(crate) struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
 }
 
-/// A pipeline from one text of WGSL with the entry points `vs` and, with a colour, `fs`.
+/// Description of a pipeline from one WGSL text with the entry point `vs` and, if it writes a colour, `fs`.
 pub(crate) struct Pipeline<'a> {
     pub(crate) wgsl: String,
     pub(crate) groups: &'a [Option<&'a wgpu::BindGroupLayout>],
     pub(crate) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(crate) primitive: wgpu::PrimitiveState,
     pub(crate) depth: Option<wgpu::DepthStencilState>,
-    /// `None` for depth alone.
+    /// `None` for a depth-only pipeline.
     pub(crate) color: Option<wgpu::TextureFormat>,
     pub(crate) samples: u32,
 }
@@ -80,7 +80,7 @@ impl Gpu {
         })
     }
 
-    /// A pipeline that writes nothing but depth, of one sample.
+    /// Creates a depth-only pipeline with one sample per pixel.
     pub(crate) fn depth_pipeline(
         &self,
         wgsl: String,
@@ -92,7 +92,7 @@ impl Gpu {
         self.pipeline(Pipeline { wgsl, groups, vertices, primitive, depth: Some(depth), color: None, samples: 1 })
     }
 
-    /// A layout of one binding, at 0.
+    /// Creates a layout with a single binding, number 0.
     pub(crate) fn layout(&self, ty: wgpu::BindingType) -> wgpu::BindGroupLayout {
         self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
@@ -115,7 +115,7 @@ impl Gpu {
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
     }
 
-    /// A view of a new target of the picture's size.
+    /// Creates a target of the picture's size and returns a view of it.
     pub(crate) fn target(&self, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::TextureView {
         let read = if format == SRGB { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::TEXTURE_BINDING };
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
@@ -131,7 +131,7 @@ impl Gpu {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Waits for all work, and copies the pixels of the picture.
+    /// Waits for all work and returns the pixels of the picture.
     pub(crate) fn read(&self, picture: &wgpu::TextureView) -> Result<Vec<u8>> {
         let row = SIZE.width * 4;
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {

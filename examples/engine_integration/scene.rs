@@ -1,4 +1,4 @@
-//! What this engine draws: boxes, columns and balls, placed in f64, 50 km from the world's origin.
+//! The engine's scene: boxes, columns and balls, placed in f64, 50 km from the world's origin.
 
 use core::f32::consts::{PI, TAU};
 use core::ops::Range;
@@ -7,13 +7,13 @@ use ultraviolet::{DVec3, Vec3, Vec4};
 
 use crate::gpu::Gpu;
 
-/// Middle of the scene in world space, in metres.
+/// Centre of the scene in world space, in metres.
 pub(crate) const PLACE: DVec3 = DVec3 { x: 50_000.0, y: 0.0, z: -20_000.0 };
 
-/// Segments around columns and balls.
+/// Number of segments around columns and balls.
 const SEGMENTS: u32 = 48;
 
-/// A mesh from -1 to 1.
+/// A mesh with coordinates from -1 to 1.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Mesh {
     Cube,
@@ -21,36 +21,36 @@ pub(crate) enum Mesh {
     Ball,
 }
 
-/// A mesh somewhere.
+/// An instance of a mesh.
 pub(crate) struct Object {
     mesh: Mesh,
     /// World space, in metres.
     center: DVec3,
-    /// Half its size, in metres.
+    /// Half of its size along each axis, in metres.
     half_size: Vec3,
-    /// Linear colour, and the contrast of its tiles.
+    /// Linear colour. The fourth component is the contrast of its tile pattern.
     color: Vec4,
 }
 
-/// A position relative to a place in world space, in metres.
+/// Returns a world-space position relative to a world-space origin, in metres.
 pub(crate) fn relative(position: DVec3, origin: DVec3) -> Vec3 {
     let difference = position - origin;
     Vec3::new(difference.x as f32, difference.y as f32, difference.z as f32)
 }
 
-/// All objects, and their buffers.
+/// All objects and their buffers.
 pub(crate) struct Scene {
     pub(crate) objects: Vec<Object>,
-    /// Whether each of them moves.
+    /// Whether each object moves.
     pub(crate) moves: Vec<bool>,
     vertices: wgpu::Buffer,
     instances: wgpu::Buffer,
-    /// Vertices of each mesh.
+    /// Vertex range of each mesh.
     ranges: [Range<u32>; 3],
 }
 
 impl Scene {
-    /// Vertices from one buffer, instances from another.
+    /// Layout of the two vertex buffers: vertices and instances.
     pub(crate) const LAYOUT: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
         Some(wgpu::VertexBufferLayout {
             array_stride: 24,
@@ -82,13 +82,13 @@ impl Scene {
         }
     }
 
-    /// Triangles of each mesh, by their corners.
+    /// Returns the triangles of each mesh as corner positions.
     pub(crate) fn triangles() -> [Vec<[[f32; 3]; 3]>; 3] {
         let corners = |triangle: &[Vertex; 3]| triangle.map(|[position, _]| position);
         meshes().map(|mesh| mesh.as_chunks().0.iter().map(corners).collect())
     }
 
-    /// Rolls the ball, and writes where all objects are, relative to `origin`.
+    /// Rolls the ball, and uploads the positions of all objects relative to `origin`.
     pub(crate) fn update(&mut self, queue: &wgpu::Queue, origin: DVec3, frame: u32) {
         if let Some(ball) = self.objects.last_mut() {
             ball.center.x = PLACE.x - 0.6 + 0.1 * f64::from(frame);
@@ -102,18 +102,19 @@ impl Scene {
         queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&instances));
     }
 
-    /// Least and greatest corner of each object relative to a place in world space, in metres.
+    /// Returns the minimum and maximum corner of each object's box, relative to a world-space origin, in
+    /// metres.
     pub(crate) fn bounds(&self, origin: DVec3) -> impl Iterator<Item = [Vec3; 2]> {
         self.placed(origin).map(|(_, center, half_size)| [center - half_size, center + half_size])
     }
 
-    /// Mesh, middle and half the size of each object relative to a place in world space, in metres. The difference is
-    /// taken in f64.
+    /// Returns mesh, centre and half size of each object, in metres. The centre is relative to a world-space
+    /// origin. The subtraction is done in f64.
     pub(crate) fn placed(&self, origin: DVec3) -> impl Iterator<Item = (Mesh, Vec3, Vec3)> {
         self.objects.iter().map(move |object| (object.mesh, relative(object.center, origin), object.half_size))
     }
 
-    /// Draws objects by number, and returns how many.
+    /// Draws the objects with these numbers and returns their count.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, numbers: impl IntoIterator<Item = u32>) -> usize {
         let mut count = 0;
         pass.set_vertex_buffer(0, self.vertices.slice(..));
@@ -127,7 +128,8 @@ impl Scene {
     }
 }
 
-/// A square with a colonnade, trees around it, a tower out of the picture whose shadow is in it, and the ball that rolls.
+/// Returns a square with a colonnade, trees around it, a tower outside the picture that casts a shadow into
+/// it, and the rolling ball.
 fn objects() -> Vec<Object> {
     let (stone, red, wood) = ([0.62, 0.56, 0.46], [0.62, 0.09, 0.06], [0.30, 0.17, 0.08]);
     let mut objects = Vec::new();
@@ -159,7 +161,7 @@ fn objects() -> Vec<Object> {
     for tree in 0..26 {
         let angle = f64::from(tree) * 2.4;
         let (x, z) = (angle.cos() * (16.0 + 1.6 * f64::from(tree)), -26.0 + angle.sin() * (17.0 + f64::from(tree)));
-        // None between the camera and the colonnade.
+        // No tree between the camera and the colonnade.
         if z > 0.0 && x > -14.0 && x < 20.0 {
             continue;
         }
@@ -171,7 +173,7 @@ fn objects() -> Vec<Object> {
     objects
 }
 
-/// All meshes, in the order of [`Mesh`].
+/// Returns all meshes, in the order of [`Mesh`].
 fn meshes() -> [Vec<Vertex>; 3] {
     [cube(), column(), ball()]
 }
@@ -179,7 +181,7 @@ fn meshes() -> [Vec<Vertex>; 3] {
 /// Position and normal.
 type Vertex = [[f32; 3]; 2];
 
-/// Two triangles of a quadrilateral, counter-clockwise seen from outside.
+/// Returns the two triangles of a quadrilateral, counter-clockwise seen from outside.
 fn quad(corners: [Vertex; 4]) -> [Vertex; 6] {
     [0, 1, 2, 0, 2, 3].map(|corner| corners[corner])
 }
@@ -215,7 +217,8 @@ fn ball() -> Vec<Vertex> {
     })
 }
 
-/// A surface around the vertical axis, from its lines at any angle, from below.
+/// Returns a surface of revolution around the vertical axis. `line` returns its profile at an angle, from
+/// bottom to top.
 fn around(line: impl Fn(f32) -> Vec<Vertex>) -> Vec<Vertex> {
     let angle = |segment: u32| TAU * segment as f32 / SEGMENTS as f32;
     let strip = |segment: u32| {

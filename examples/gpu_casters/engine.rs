@@ -1,12 +1,12 @@
-//! The part of an engine that keeps its casters on the GPU: a compute shader finds those of each region of a shadow pass,
-//! and fills the arguments of one indirect draw for each.
+//! The part of an engine that keeps its casters on the GPU: a compute shader culls the casters for each
+//! region of a shadow pass, and writes the arguments of one indirect draw per region.
 
 use shadowfit_wgpu::{CullingRegion, DrawRegion, SunShadows, WgslOptions, caster_wgsl, culling_wgsl};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, DrawIndexedIndirectArgs};
 
 use super::town::Block;
 
-/// What a caster is in the buffer.
+/// WGSL of a caster in the storage buffer.
 const CASTER: &str = "
 struct Caster {
     centre: vec3<f32>,
@@ -16,7 +16,7 @@ struct Caster {
 }
 ";
 
-/// Finds the casters of each region: a thread for each of both.
+/// WGSL that culls the casters: one thread for each pair of region and caster.
 const CULL: &str = "
 struct Draw {
     index_count: u32,
@@ -44,7 +44,7 @@ struct Draw {
 }
 ";
 
-/// Draws an instance by the caster's number.
+/// WGSL that draws an instance by its caster number.
 const VERTEX: &str = "
 @group(1) @binding(0) var<storage, read> casters: array<Caster>;
 
@@ -54,15 +54,15 @@ const VERTEX: &str = "
 }
 ";
 
-/// Indices of the mesh of all blocks.
+/// Indices of the mesh that all blocks share.
 const INDICES: [u16; 36] =
     [0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6];
 
-/// The buffers of a frame that the compute shader fills.
+/// The buffers of a frame that the compute shader writes.
 pub(crate) struct Draws {
     /// Arguments of an indirect draw for each region.
     pub(crate) arguments: wgpu::Buffer,
-    /// Numbers of the casters to draw, room for all of them in each region.
+    /// Numbers of the casters to draw. Each region has room for all casters.
     numbers: wgpu::Buffer,
 }
 
@@ -75,7 +75,7 @@ pub(crate) struct GpuCasters {
     indices: wgpu::Buffer,
     cull: wgpu::ComputePipeline,
     draw: wgpu::RenderPipeline,
-    /// The casters, for the vertex shader.
+    /// Bind group of the casters for the vertex shader.
     group: wgpu::BindGroup,
 }
 
@@ -102,7 +102,8 @@ impl GpuCasters {
         (self.casters.size() / size_of::<Block>() as u64) as u32
     }
 
-    /// Records the compute pass that finds the casters of each region of the frame. Frames may have no region.
+    /// Records the compute pass that culls the casters of each region. Returns `None` if the frame has no
+    /// region.
     pub(crate) fn cull(&self, encoder: &mut wgpu::CommandEncoder, sun: &SunShadows) -> Option<Draws> {
         let regions: Vec<CullingRegion> = sun.culling_regions().collect();
         if regions.is_empty() {
@@ -135,7 +136,7 @@ impl GpuCasters {
         Some(draws)
     }
 
-    /// Bytes of the numbers of a region.
+    /// Returns the size of a region's caster numbers, in bytes.
     fn numbers_of_a_region(&self) -> u64 {
         u64::from(self.count()) * size_of::<u32>() as u64
     }
@@ -147,7 +148,7 @@ impl GpuCasters {
         pass.draw_indexed_indirect(&draws.arguments, number * size_of::<DrawIndexedIndirectArgs>() as u64);
     }
 
-    /// Binds all that a draw of some casters, by their numbers, needs.
+    /// Binds everything that is needed to draw the casters with these numbers.
     pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>, numbers: wgpu::BufferSlice<'_>) {
         pass.set_pipeline(&self.draw);
         pass.set_bind_group(1, &self.group, &[]);

@@ -1,18 +1,18 @@
-//! A town of blocks, some of which bob up and down, and the coarse boxes that the maps are fitted to.
+//! A town of blocks, some of which bob up and down, and the coarse boxes for fitting the maps.
 
 use glam::Vec3;
 use shadowfit::Aabb;
 
-/// Blocks along a side of the town.
+/// Number of blocks along a side of the town.
 const SIDE: u32 = 60;
 
-/// Metres from block to block.
+/// Distance between neighbouring blocks, in metres.
 const APART: f32 = 3.0;
 
-/// Blocks along a side of a cell, whose blocks share a coarse box.
+/// Number of blocks along a side of a cell. The blocks of a cell share a coarse box.
 const CELL: u32 = 6;
 
-/// Metres by which blocks bob, up and down.
+/// Amplitude of the bobbing, in metres up and down.
 const BOB: f32 = 0.5;
 
 /// A caster as the shaders read it: `Caster` in WGSL.
@@ -21,9 +21,9 @@ const BOB: f32 = 0.5;
 pub(crate) struct Block {
     /// Relative to the origin of positions in the shaders, in metres.
     pub(crate) centre: [f32; 3],
-    /// 1 for one that moves.
+    /// 1 if the caster moves, else 0.
     pub(crate) moves: u32,
-    /// Half its size along each axis, in metres; a negative one is not there.
+    /// Half of its size along each axis, in metres. A negative size removes the caster.
     pub(crate) half_size: [f32; 3],
     /// Keeps the struct a multiple of 16 bytes.
     pub(crate) padding: u32,
@@ -36,7 +36,8 @@ impl Block {
     }
 }
 
-/// The casters, and a coarse box around those of each cell: those that stand still, and those that move.
+/// The casters, and two coarse boxes per cell: one around its static casters and one around its moving
+/// casters.
 #[derive(Debug)]
 pub(crate) struct Town {
     pub(crate) blocks: Vec<Block>,
@@ -46,7 +47,7 @@ pub(crate) struct Town {
 }
 
 impl Town {
-    /// Thousands of blocks on a ground. Every `moving`-th bobs; with 0 none does.
+    /// Creates thousands of blocks on a ground. Every `moving`-th block bobs, or none if `moving` is 0.
     pub(crate) fn new(moving: u32) -> Self {
         let mut blocks = vec![Block { centre: [0.0, -0.5, 0.0], moves: 0, half_size: [100.0, 0.5, 100.0], padding: 0 }];
         for i in 0..SIDE * SIDE {
@@ -62,7 +63,7 @@ impl Town {
         town
     }
 
-    /// The boxes hold blocks wherever they bob.
+    /// Makes the coarse boxes. They contain the blocks at every height of their bobbing.
     fn make_cells(&mut self) {
         let across = SIDE / CELL;
         let cells = (across * across) as usize;
@@ -81,7 +82,7 @@ impl Town {
         self.cells_move.push(false);
     }
 
-    /// Moves what moves, once up and down in a second of 60 frames.
+    /// Moves the bobbing blocks, with a period of one second at 60 frames per second.
     pub(crate) fn bob(&mut self, frame: u32) {
         for (number, (block, height)) in self.blocks.iter_mut().zip(&self.heights).enumerate() {
             if block.moves == 1 {

@@ -1,5 +1,5 @@
-// Prints the hash of all fits as the core has it in WebAssembly, and fails where it is not the pinned one.
-// Run it by `node hash.mjs shadowfit_determinism.wasm`; `cargo xtask ci` does.
+// Prints the hashes of the fits that the core computes in WebAssembly. Fails if a hash differs from the expected one.
+// `cargo xtask ci` runs `node hash.mjs shadowfit_determinism.wasm`.
 import { readFileSync } from 'node:fs';
 
 const { instance } = await WebAssembly.instantiate(readFileSync(process.argv[2]), {});

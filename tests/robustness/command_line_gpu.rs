@@ -1,4 +1,4 @@
-//! The viewer as a program: what it says and how it ends when it is given nonsense.
+//! The viewer as a program: its messages and exit codes for bad input.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -8,10 +8,10 @@ use shadowfit_testing::scene_notes::{NOTES, SCENE_WITH_NOTES};
 
 use crate::support::{adapter_name, assets, files_below, viewer_program};
 
-/// The exit code of every refusal.
+/// Exit code after refused input.
 const REFUSED: i32 = 2;
 
-/// Files that cannot be shown, and a word of the reason that must be told.
+/// Files that cannot be shown, and a word of the expected reason.
 const BROKEN_FILES: [(&str, &str); 14] = [
     ("edge_shared/refuse/arch_gate_draco.glb", "KHR_draco_mesh_compression"),
     ("edge_shared/refuse/tree_dead_large_meshopt.glb", "EXT_meshopt_compression"),
@@ -46,7 +46,7 @@ impl Scratch {
         path
     }
 
-    /// Every file in it.
+    /// Returns all files in it.
     fn files(&self) -> Vec<PathBuf> {
         files_below(&self.0)
     }
@@ -68,7 +68,8 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     command.output().expect("the viewer starts")
 }
 
-/// Runs the viewer, which must refuse and say every one of `words`. Nothing may be written into `scratch`.
+/// Runs the viewer, which must refuse with a message that contains all `words` and must not write into
+/// `scratch`.
 fn assert_refused(scratch: &Scratch, arguments: &[&str], words: &[&str]) {
     let before = scratch.files();
     let output = run(&scratch.0, arguments);
@@ -124,8 +125,8 @@ fn missing_empty_and_foreign_files_end_in_exit_code_2_with_their_name() {
     }
 }
 
-// Draws maps in all filters and formats, a walk and six judged pictures: half a minute on the software adapter. No other
-// test runs the checks one after the other on one device.
+// Draws maps in all filters and formats, a walk and six judged pictures: half a minute on the software
+// adapter. It is the only test that runs all checks in sequence on one device.
 #[test]
 fn the_check_of_the_software_adapter_passes_and_reports_every_row() {
     let scratch = Scratch::new("check");
@@ -213,7 +214,7 @@ fn a_folder_that_cannot_be_written_is_named_and_left_as_it_was() {
     scratch.file("occupied", b"a file, not a folder");
     assert_refused(&scratch, &["--headless", "occupied"], &["occupied"]);
     assert_refused(&scratch, &["--headless", "occupied/below"], &["occupied/below"]);
-    // A name that a picture needs is taken by a folder.
+    // The file name of a picture is taken by a folder.
     std::fs::create_dir_all(scratch.0.join("taken/final.png/inside")).expect("new folders");
     let output = run(&scratch.0, &["--headless", "taken"]);
     let message = String::from_utf8_lossy(&output.stderr);

@@ -1,5 +1,5 @@
-//! Every view, artefact, filter, format and sample on devices that lack what others have: nothing is refused by the
-//! device, and what cannot be done is said.
+//! Every view, artefact, filter, format and sample on devices that lack common features. The device refuses
+//! nothing, and impossible requests give a message.
 
 use shadowfit::Technique;
 use shadowfit::settings::{Edges, FilterKind, MapFormat};
@@ -14,7 +14,7 @@ use crate::support::test_gpu;
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [64, 36];
 
-/// The devices, by what they lack: a single feature, or all of them with ever lower limits.
+/// Returns the devices by their missing parts: a single feature, or all features with lower and lower limits.
 fn classes() -> [(&'static str, Wanted); 6] {
     let all = Wanted::default().features;
     let without = |feature| Wanted { features: all - feature, limits: None };
@@ -46,7 +46,7 @@ impl Class {
         Self { lacks, stage, target }
     }
 
-    /// Draws a picture, which must be one and none of one colour; returns what is said about it.
+    /// Draws a picture, which must not be of a single colour. Returns the stage's message about it.
     fn draw(&mut self, what: &str) -> Option<String> {
         self.stage.draw(&self.target);
         let pixels = self.target.read(self.stage.gpu()).expect("a device that works");
@@ -57,7 +57,7 @@ impl Class {
         said
     }
 
-    /// The same for what every device can do.
+    /// Draws a picture that every device must be able to draw.
     fn draw_well(&mut self, what: &str) {
         assert_eq!(self.draw(what), None, "without {}: {what}", self.lacks);
     }
@@ -66,11 +66,11 @@ impl Class {
 /// Classes that lack a single feature.
 const SINGLE: usize = 3;
 
-/// The class that can do least: WebGL2's limits.
+/// The weakest class: WebGL2's limits.
 const LEAST: usize = 5;
 
-/// Returns a function that picks, for each thing to draw, the class with the least limits and one other class from
-/// `first` on. Most shaders are the same on all classes.
+/// Returns a function that selects two classes for each item: the class with the least limits, and one other
+/// class from `first` on. Most shaders are the same on all classes.
 fn in_turn(first: usize) -> impl Fn(usize, usize) -> bool {
     move |class, thing| class == LEAST || first + thing % (LEAST - first) == class
 }
@@ -86,7 +86,8 @@ fn every_view_and_artefact_is_shown_on_every_class_of_device() {
     assert_shown(|_, _| true);
 }
 
-/// Asserts that classes of devices show the views and artefacts that a function of both indices picks, and all else.
+/// Asserts that classes of devices show the selected views and artefacts, and everything else. `is_shown`
+/// gets both indices.
 fn assert_shown(is_shown: impl Fn(usize, usize) -> bool) {
     for (number, (lacks, wanted)) in classes().into_iter().enumerate() {
         let mut class = Class::new(lacks, &wanted);
@@ -124,7 +125,7 @@ fn every_filter_and_format_is_drawn_on_every_bare_class_of_device_or_refused_in_
     assert_drawn_or_refused(|_, _| true);
 }
 
-/// Asserts that bare classes of devices draw the filters and formats that a function of both indices picks.
+/// Asserts that bare classes of devices draw the selected filters and formats. `is_drawn` gets both indices.
 fn assert_drawn_or_refused(is_drawn: impl Fn(usize, usize) -> bool) {
     for (number, (lacks, wanted)) in classes().into_iter().enumerate().skip(SINGLE) {
         let mut class = Class::new(lacks, &wanted);
@@ -137,7 +138,7 @@ fn assert_drawn_or_refused(is_drawn: impl Fn(usize, usize) -> bool) {
         let formats = MapFormat::ALL.into_iter().enumerate().filter(|(format, _)| is_drawn(number, *format));
         for (_, format) in formats {
             class.stage.settings.technique.format = format;
-            // Colours are not rendered to by every device.
+            // Not every device can render to colours.
             if let Some(said) = class.draw(&format!("{format:?}")) {
                 assert!(said.contains(&format!("{format:?}")), "without {lacks}: {said}");
             }
@@ -167,7 +168,7 @@ fn every_sample_is_drawn_on_every_bare_class_of_device() {
     assert_drawn(|_, _| true);
 }
 
-/// Asserts that bare classes of devices draw the samples that a function of both indices picks.
+/// Asserts that bare classes of devices draw the selected samples. `is_drawn` gets both indices.
 fn assert_drawn(is_drawn: impl Fn(usize, usize) -> bool) {
     for (number, (lacks, wanted)) in classes().into_iter().skip(SINGLE).enumerate() {
         let mut class = Class::new(lacks, &wanted);

@@ -1,4 +1,4 @@
-//! What the viewer says of places where they cannot write, and what is left of their files when they are killed.
+//! The viewer's messages about places where it cannot write, and the files that remain when it is killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,9 +7,10 @@ use std::time::Duration;
 
 use crate::support::{adapter_name, files_below, viewer_program};
 
-/// The exit code of every refusal.
+/// Exit code after refused input.
 const REFUSED: i32 = 2;
-/// How often the viewer is killed; its own tests do so with what writes the files, and much more often.
+/// Number of times that the viewer is killed. Its own tests kill the code that writes the files much more
+/// often.
 const KILLS: u64 = 3;
 
 /// Folder of one test, removed at the end.
@@ -30,11 +31,11 @@ impl Drop for Scratch {
     }
 }
 
-/// A file system of its own in a folder, until it is dropped.
+/// A separate file system in a folder, until it is dropped.
 struct Mounted(PathBuf);
 
 impl Mounted {
-    /// `None` with a word about it where this user may not mount.
+    /// Mounts the file system. Prints a note and returns `None` if this user may not mount.
     fn new(folder: PathBuf, options: &str) -> Option<Self> {
         fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
         let mut mount = Command::new("mount");
@@ -103,7 +104,7 @@ fn folders_and_files_that_are_in_the_way_are_named() {
     }
     let script = "await loaded\nwindow folder\n";
     fs::write(scratch.0.join("script.txt"), script).expect("written");
-    let words = ["script.txt:2: window folder", "a folder of this name is there"];
+    let words = ["script.txt:2: window folder", "a folder of this name exists"];
     assert_refused(viewer(&scratch.0, &["--headless", ".", "--script", "script.txt"]), &words);
 }
 

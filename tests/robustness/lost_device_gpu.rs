@@ -1,4 +1,5 @@
-//! A device that is lost: reading is an error, not a picture of zeros that passes for sky and is judged to be right.
+//! A lost device: reading returns an error, not a picture of zeros that would pass as sky and be judged
+//! right.
 
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, ProbeError, ProbeTargets, ReadError, Renderer};
 use shadowfit_scene::builtin::{default_camera, default_scene};
@@ -9,7 +10,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [64, 36];
 
-/// The default scene from its own place.
+/// Returns the default scene's own camera.
 fn camera() -> shadowfit::PerspectiveCamera {
     let (eye, target) = default_camera();
     shadowfit_render::FlyCamera::look_at(eye.as_dvec3(), target.as_dvec3())

@@ -1,4 +1,5 @@
-//! Every scene of the collection beside the workspace: loaded, drawn, judged, its artefacts shown and fixed.
+//! Every scene of the collection next to the workspace: loaded, drawn and judged, with its artefacts shown
+//! and fixed.
 
 use std::path::{Path, PathBuf};
 
@@ -13,8 +14,8 @@ use crate::support::{assets, files_below, test_gpu};
 /// Size of the pictures, in pixels: small, since the driver draws on the CPU.
 const SIZE: [u32; 2] = [64, 36];
 
-/// Scenes that have all three artefacts shown and fixed: one textured and animated, one of many nodes, one with
-/// cut-outs, one in a size of its own, one that morphs.
+/// Scenes whose three artefacts are shown and fixed: one textured and animated, one of many nodes, one with
+/// cut-outs, one of an unusual size, one that morphs.
 const WITH_ARTEFACTS: [&str; 5] = [
     "fox/Fox.glb",
     "kenney_city/building-garage.glb",
@@ -23,7 +24,7 @@ const WITH_ARTEFACTS: [&str; 5] = [
     "edge_shared/simple_morph/glTF/SimpleMorph.gltf",
 ];
 
-/// Every glTF file that is meant to load; those that are meant to be refused lie in folders of their own.
+/// Returns every glTF file that must load. Files that must be refused are in separate folders.
 fn scenes(folder: &Path) -> Vec<PathBuf> {
     let is_scene = |path: &PathBuf| {
         let is_gltf = path.extension().is_some_and(|extension| extension == "glb" || extension == "gltf");
@@ -39,7 +40,7 @@ fn load(path: &Path) -> Scene {
 
 fn is_sound(tally: &PictureTally) -> bool {
     let classes = tally.all.false_shadow + tally.all.false_light + tally.all.hole + tally.all.edge;
-    // Not a number is what was not there to be measured, such as crawl in a single picture.
+    // NaN means that a value could not be measured, such as crawl in a single picture.
     let possible = tally.columns().iter().all(|(_, value)| value.is_nan() || (value.is_finite() && *value >= 0.0));
     possible
         && classes == tally.all.wrong
@@ -47,7 +48,7 @@ fn is_sound(tally: &PictureTally) -> bool {
         && tally.error <= tally.all.facing as f64
 }
 
-/// Draws and judges the present view.
+/// Draws and judges the current view.
 fn draw_and_judge(stage: &mut Stage, name: &str) {
     let picture = stage.target(SIZE);
     stage.draw(&picture);
@@ -71,7 +72,7 @@ fn every_scene_of_the_collection_is_drawn_and_judged() {
         let name = file.strip_prefix(&folder).unwrap_or(&file).display().to_string();
         let scene = match load_gltf(&file) {
             Ok(scene) => scene,
-            // Files that hold a light, points or lines only.
+            // Files that contain only a light, points or lines.
             Err(SceneError::Empty { .. }) => {
                 empty.push(name);
                 continue;
@@ -98,7 +99,7 @@ fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
     let mut stage = Stage::new(test_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
     for name in WITH_ARTEFACTS {
         stage.set_scene(load(&folder.join(name))).unwrap_or_else(|error| panic!("{name}: {error}"));
-        // Animations move on before anything is shown.
+        // Advance animations first.
         stage.set_time(0.3);
         for artefact in [Artefact::Acne, Artefact::Aliasing, Artefact::ClippingHole] {
             stage.show_artefact(artefact);
@@ -111,7 +112,7 @@ fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
     }
 }
 
-/// Whether the picture of a time of the animation differs from that of its start.
+/// Returns whether the picture at a time of the animation differs from its start.
 fn moves(stage: &mut Stage, seconds: f32) -> bool {
     stage.settings.view.inset = InsetMaps::Off;
     let picture = stage.target(SIZE);

@@ -15,17 +15,17 @@ use crate::support::test_gpu;
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [64, 36];
 
-/// Most triangles of a mesh that is drawn.
+/// Triangle limit of a mesh in the scene for these tests.
 const MOST_TRIANGLES: usize = 300;
 
-/// Techniques that are drawn at random.
+/// Number of random techniques.
 const ROUNDS: usize = 24;
 
-/// What each number becomes.
+/// Test values of each number.
 const ABSURD: [f32; 9] =
     [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, f32::MIN_POSITIVE, f32::MAX, f32::MIN, 1e-20];
 
-/// Name of a number of the settings, and what writes it.
+/// Name of a number of the settings, and a function that sets it.
 type Field = (&'static str, fn(&mut Settings, f32));
 
 /// Every number that is a float.
@@ -61,11 +61,11 @@ const FIELDS: [Field; 26] = [
     ("camera.near", |s, x| s.camera.near = x),
     ("camera.far", |s, x| s.camera.far = x),
     ("camera.speed", |s, x| s.camera.speed = x),
-    // Both at once, so that the fit is refused whichever it looks at first.
+    // Both at once, so that the fit is refused independent of the order of its checks.
     ("camera.near and far", |s, x| (s.camera.near, s.camera.far) = (x, x)),
 ];
 
-/// The fields whose NaN cannot be fitted or looked up with, so that the stage has to say so.
+/// Fields whose NaN makes fitting or look-ups impossible, so that the stage must report a problem.
 const REFUSED: [&str; 24] = [
     "fit.max_distance",
     "fit.margin",
@@ -93,13 +93,13 @@ const REFUSED: [&str; 24] = [
     "camera.near and far",
 ];
 
-/// The softness of settings with a filter.
+/// Sets a filter and returns the softness of the settings.
 fn soft(settings: &mut Settings, filter: FilterKind) -> &mut Softness {
     settings.technique = settings.technique.with_filter(filter);
     &mut settings.technique.softness
 }
 
-/// The default scene without what has many triangles: hundreds of frames are drawn here.
+/// Returns the default scene without meshes of many triangles, since hundreds of frames are drawn here.
 fn light_scene() -> Scene {
     let mut scene = default_scene();
     let triangles = |mesh: &Mesh| mesh.primitives.iter().map(|primitive| primitive.indices.len() / 3).sum::<usize>();
@@ -112,13 +112,13 @@ fn light_scene() -> Scene {
 
 fn stage() -> Stage {
     let mut stage = Stage::new(test_gpu(), light_scene(), 1).expect("the default scene");
-    // Small maps: what is tested here does not depend on their size.
+    // Small maps: these tests do not depend on the map size.
     stage.settings.technique.fit.resolution = UVec2::splat(256);
     stage.set_home();
     stage
 }
 
-/// Draws, and everything else that a frame of the window does.
+/// Draws, and calls everything else that a frame of the window does.
 fn frame(stage: &mut Stage) {
     let picture = stage.target(SIZE);
     stage.draw(&picture);
@@ -183,11 +183,12 @@ fn random_soft_filters_fades_and_formats_are_drawn_or_refused_with_a_reason() {
             None => drawn += 1,
         }
     }
-    // If next to nothing were possible, the test would say little.
+    // If hardly any technique were drawn, the test would prove little.
     assert!(drawn * 4 > ROUNDS, "{drawn} of {ROUNDS}");
 }
 
-/// Any filter and format, with a softness, a fade and a least texel out of, at and beyond their ranges.
+/// Returns a technique with random filter and format, and with softness, fade and least texel inside, at and
+/// beyond their ranges.
 fn random_technique(random: &mut Random, technique: &Technique) -> Technique {
     let mut technique = technique
         .with_filter(random.one_of(&FilterKind::ALL))
@@ -213,12 +214,12 @@ fn random_technique(random: &mut Random, technique: &Technique) -> Technique {
     technique
 }
 
-/// As many maps that a rule fits, or windows.
+/// Returns the same number of maps with a kind of fit, or windows.
 fn of_kind(maps: Maps, kind: Option<FitKind>) -> Maps {
     kind.map_or(maps.as_windows().into(), |kind| maps.with_kind(kind))
 }
 
-/// Numbers that look random and are the same in every run (G. Marsaglia, "Xorshift RNGs", 2003).
+/// Pseudo-random numbers that are the same in every run (G. Marsaglia, "Xorshift RNGs", 2003).
 struct Random(u64);
 
 impl Random {
@@ -238,7 +239,7 @@ fn absurd_numbers_are_judged_and_demonstrated_without_a_panic() {
             stage.reset();
             write(&mut stage.settings, value);
             let Some(judged) = stage.judge([16, 9], false) else {
-                // What is refused where the map is looked up leaves nothing to judge.
+                // If the look-up refuses the settings, there is nothing to judge.
                 let problem = stage.problem().unwrap_or_else(|| panic!("{name} = {value}: no word about it"));
                 assert!(name.starts_with("bias.") && problem.contains("map 0"), "{name} = {value}: {problem}");
                 continue;
@@ -322,7 +323,7 @@ fn pictures_of_one_pixel_and_of_odd_sizes_are_drawn() {
         let bytes = picture.read(stage.gpu()).expect("pixels");
         let (pixels, rest) = bytes.as_chunks::<4>();
         assert_eq!((pixels.len(), rest.len()), ((width * height) as usize, 0), "{size:?}");
-        // Sky and scene leave no pixel as it was cleared, and none is transparent.
+        // Sky and scene cover every pixel, and none is transparent.
         assert!(pixels.iter().all(|[r, g, b, a]| *a == 255 && (*r, *g, *b) != (0, 0, 0)), "{size:?}");
         let colours: std::collections::HashSet<&[u8; 4]> = pixels.iter().collect();
         assert!(colours.len() > 1 || pixels.len() == 1, "{size:?} is one flat colour");

@@ -1,4 +1,4 @@
-//! Ambient occlusion: how far each method is from rays, and what it darkens.
+//! Ambient occlusion: the error of each method compared with rays, and the surfaces that it darkens.
 
 use shadowfit_classics::SampleFigures;
 
@@ -34,8 +34,9 @@ fn occlusion_darkens_and_never_brightens_and_the_open_floor_hardly_at_all() {
     });
     let changed = front.iter().zip(&off).filter(|(front, off)| front != off).count();
     assert!(changed > front.len() / 4, "{changed}");
-    // Full light is 0.55 of ambient and up to 0.45 of diffuse light: of it occlusion takes its share of the ambient part
-    // alone, which is all of it where the sun does not shine, and no less than 0.55. A level or two are rounding.
+    // Full light is 0.55 of ambient and up to 0.45 of diffuse light. Occlusion darkens only the ambient part,
+    // which is the whole light where the sun does not shine, and at least 0.55 of it elsewhere. One or two
+    // levels are rounding.
     for (pixel, ((front, off), grey)) in front.iter().zip(&off).zip(&grey).enumerate() {
         let hidden = 1.0 - f32::from(grey[0]) / 255.0;
         for channel in 0..3 {
@@ -59,7 +60,7 @@ fn what_is_traced_is_shown_as_it_was_traced() {
         let values = bench.values(None, &[("method", method), ("show", "occlusion")]);
         bench.picture(None, &values, SIZE)
     });
-    // Without occlusion all is white; rays hide something of a good part of the picture.
+    // Without occlusion everything is white. Rays are blocked in a considerable part of the picture.
     assert!(off.iter().all(|pixel| pixel[..3] == [255; 3]));
     let hidden = traced.iter().filter(|pixel| pixel[0] < 200).count();
     assert!((traced.len() / 50..traced.len() / 2).contains(&hidden), "{hidden}");

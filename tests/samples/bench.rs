@@ -1,4 +1,4 @@
-//! A sample on the software adapter: its pictures, its map, and its figures against rays.
+//! A sample on the software adapter: its pictures, its map, and its figures compared with rays.
 
 use shadowfit::PerspectiveCamera;
 use shadowfit_classics::{Sample, SampleDrawer, SampleFigures, SampleOutcome, SampleValues, SampleVariant};
@@ -8,7 +8,7 @@ use shadowfit_study::PreparedScene;
 
 use crate::support::test_gpu;
 
-/// A sample, ready to be drawn one sample a pixel.
+/// A sample, ready to be drawn with one sample per pixel.
 pub(super) struct Bench {
     pub(super) gpu: Gpu,
     pub(super) sample: &'static Sample,
@@ -30,7 +30,7 @@ impl Bench {
         found.unwrap_or_else(|| panic!("{} has no variant {id}", self.sample.id))
     }
 
-    /// The values of a variant, or of the sample itself, with further options.
+    /// Returns the values of a variant, or of the sample itself, with further options.
     pub(super) fn values(&self, variant: Option<&SampleVariant>, options: &[(&str, &str)]) -> SampleValues {
         let mut values = SampleValues::of_variant(self.sample, variant).expect("a variant");
         for (id, text) in options {
@@ -39,7 +39,7 @@ impl Bench {
         values
     }
 
-    /// The picture of values as a variant's camera sees it, four bytes a pixel.
+    /// Draws these values from a variant's camera. Returns four bytes per pixel.
     pub(super) fn picture(
         &mut self,
         variant: Option<&SampleVariant>,
@@ -51,7 +51,7 @@ impl Bench {
         self.draw(values, &camera, &target)
     }
 
-    /// The picture of values through a camera.
+    /// Draws these values through a camera.
     pub(super) fn draw(
         &mut self,
         values: &SampleValues,
@@ -63,18 +63,18 @@ impl Bench {
         target.read(&self.gpu).expect("pixels").as_chunks().0.to_vec()
     }
 
-    /// The map of the picture that was drawn last, as floats of a format with one channel of 32 bits.
+    /// Returns the map of the last drawn picture as floats. Its format must have one channel of 32 bits.
     pub(super) fn map_of_floats(&self) -> Vec<f32> {
         let bytes = self.map_bytes();
         bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
     }
 
-    /// The bytes of the map of the picture that was drawn last.
+    /// Returns the bytes of the map of the last drawn picture.
     pub(super) fn map_bytes(&self) -> Vec<u8> {
         self.drawer.read_map(&self.gpu).expect("a map").expect("a frame was drawn")
     }
 
-    /// Against rays, as a variant's camera sees it in the source's window.
+    /// Returns the figures compared with rays, from a variant's camera in the original window size.
     pub(super) fn figures(&self, variant: Option<&SampleVariant>, values: &SampleValues) -> SampleFigures {
         let [width, height] = self.sample.size;
         let camera = self.sample.seen_by(variant, width as f32 / height as f32);
@@ -82,7 +82,7 @@ impl Bench {
     }
 }
 
-/// Number of different values.
+/// Returns the number of different values.
 pub(super) fn distinct<T: Ord>(values: impl IntoIterator<Item = T>) -> usize {
     values.into_iter().collect::<std::collections::BTreeSet<T>>().len()
 }

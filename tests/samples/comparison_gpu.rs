@@ -1,4 +1,4 @@
-//! The comparison sampler: where everything is lit, and its bias that is the wrong way round.
+//! The comparison sampler: its lit region, and its bias with the wrong sign.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera};
@@ -9,10 +9,10 @@ use shadowfit_truth::PictureFigures;
 use super::bench::Bench;
 
 const ID: &str = "comparison-sampler";
-/// Half of the source's window, each way.
+/// Half of the original window's size, in each direction.
 const SIZE: [u32; 2] = [320, 240];
 
-/// Figures of a variant's view with options.
+/// Returns the figures of a variant's view with options.
 fn judged(bench: &Bench, view: &str, options: &[(&str, &str)]) -> [PictureFigures; 2] {
     let variant = bench.variant(view);
     let figures = bench.figures(Some(variant), &bench.values(Some(variant), options));
@@ -23,7 +23,7 @@ fn judged(bench: &Bench, view: &str, options: &[(&str, &str)]) -> [PictureFigure
 fn outside_of_the_lamps_image_everything_is_lit() {
     let mut bench = Bench::new(ID);
     let mut drawer = SampleDrawer::new(&bench.gpu, 1);
-    // Down on the floor before all that stands there, across the image's lower border.
+    // Looks down on the floor in front of all objects, across the image's lower border.
     let camera = PerspectiveCamera {
         eye: DVec3::new(0.5, 5.0, 7.0),
         forward: Vec3::new(0.0, -1.0, -0.35).normalize(),

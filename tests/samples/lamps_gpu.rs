@@ -1,4 +1,4 @@
-//! The headlight street: what its maps store, what the projected picture shows, and where the light ends.
+//! The headlight street: the content of its maps, the projected picture, and the end of the light.
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam::{DMat4, DVec3, Vec3};
@@ -9,12 +9,13 @@ use super::bench::{Bench, distinct};
 
 const PROJECTIVE: &str = "headlight-projective";
 const REAL_SHADOW: &str = "headlight-real-shadow";
-/// The source's window.
+/// Size of the original sample's window.
 const SIZE: [u32; 2] = [500; 2];
-/// Depths after the division by w of the projective lamp, near 5 and far 100, by the distance along its axis.
+/// Near and far distance of the projective lamp. Depths after the division by w depend on the distance along
+/// its axis.
 const NEAR_FAR: [f64; 2] = [5.0, 100.0];
 
-/// What is drawn.
+/// Returns the frame that is drawn.
 fn frame(bench: &Bench, values: &SampleValues, camera: &PerspectiveCamera) -> SampleFrame {
     match bench.sample.drawing(values, camera).expect("a lamp that can be fitted") {
         SampleDrawing::Mapped(frame) => frame,
@@ -22,7 +23,7 @@ fn frame(bench: &Bench, values: &SampleValues, camera: &PerspectiveCamera) -> Sa
     }
 }
 
-/// The pixel that shows a world position, if it lies within the picture.
+/// Returns the pixel that shows a world position. Panics if it is outside the picture.
 fn pixel_of(camera: &PerspectiveCamera, point: DVec3) -> usize {
     let clip =
         camera.clip_from_world(shadowfit::DepthConvention::ZeroToOne).as_dmat4() * (point - camera.eye).extend(1.0);
@@ -31,7 +32,7 @@ fn pixel_of(camera: &PerspectiveCamera, point: DVec3) -> usize {
     y * 500 + x
 }
 
-/// Where the line of sight of a pixel meets the road, y = 0.
+/// Returns the intersection of a pixel's line of sight with the road, y = 0.
 fn on_road(camera: &PerspectiveCamera, pixel: usize) -> Option<DVec3> {
     let clip_from_world = camera.clip_from_world(shadowfit::DepthConvention::ZeroToOne).as_dmat4();
     let world_from_clip: DMat4 = clip_from_world.inverse();
@@ -66,7 +67,8 @@ fn the_wall_behind_a_lamp_post_has_the_lamp_posts_grey() {
     let camera = bench.sample.lens(1.0);
     let light = frame(&bench, &values, &camera).light;
     let lamp = DVec3::new(-18.0, 5.0, -2.0);
-    // The axis of the post at (4, 1, -5), eight units above its foot, and where the lamp's ray ends behind it: at x = 13.
+    // The axis of the post at (4, 1, -5), eight units above its foot, and the end of the lamp's ray behind
+    // it: at x = 13.
     let post = DVec3::new(4.0, 9.0, -5.0);
     let wall = lamp + (post - lamp) * ((13.0 - lamp.x) / (post.x - lamp.x));
     let grey_of = |point: DVec3| {
@@ -75,10 +77,10 @@ fn the_wall_behind_a_lamp_post_has_the_lamp_posts_grey() {
         far / (far - near) * (1.0 - near / f64::from(w)) * 255.0
     };
     let shown = |point: DVec3| f64::from(picture[pixel_of(&camera, point)][0]);
-    // The map has the near side of the shaft, a third of a unit before its axis: less than a level of 255.
+    // The map stores the near side of the shaft, a third of a unit before its axis: less than a level of 255.
     assert!((shown(wall) - grey_of(post)).abs() <= 2.0, "{} {}", shown(wall), grey_of(post));
     assert!(grey_of(wall) - shown(wall) > 10.0, "{} {}", shown(wall), grey_of(wall));
-    // Three units beside it the wall has its own grey.
+    // Three units beside it, the wall has its own grey.
     let beside = wall + DVec3::Z * 3.0;
     assert!((shown(beside) - grey_of(beside)).abs() <= 1.5, "{} {}", shown(beside), grey_of(beside));
 }
@@ -135,7 +137,7 @@ fn outside_of_the_lamps_image_there_is_ambient_light_alone() {
         }
     }
     assert!(outside > 10_000 && inside > 10_000, "{outside} {inside}");
-    // The light's position counts, and not its axis.
+    // The light's position matters, not its axis.
     assert!(
         matches!(light.place, shadowfit_classics::mapped::LightPlace::At(at) if at.as_vec3() == Vec3::new(-18.0, 5.0, -2.0))
     );

@@ -1,4 +1,4 @@
-//! The sky box: as far away from everywhere, and its sun where the light is.
+//! The sky box: infinitely far away, with its sun at the light's direction.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit_classics::mapped::point::image_uv;
@@ -16,7 +16,7 @@ fn the_sky_is_the_same_wherever_the_camera_stands() {
     let camera = bench.sample.seen_by(None, 300.0 / 180.0);
     let mut seen = |eye: DVec3| {
         let target = RenderTarget::new(&bench.gpu.device, SIZE, 1);
-        // Straight up over the courtyard, where nothing stands in the way.
+        // Straight up over the courtyard, with a free view.
         let camera = shadowfit::PerspectiveCamera { eye, forward: Vec3::new(0.02, 1.0, 0.0), up: Vec3::Z, ..camera };
         bench.draw(&values, &camera, &target)
     };

@@ -1,4 +1,5 @@
-//! Terrain with vehicles: how dark its shadows are, what casts on what, and what its formats store.
+//! Terrain with vehicles: the darkness of its shadows, its casters and receivers, and the content of its
+//! formats.
 
 use shadowfit::glam::DVec3;
 use shadowfit_classics::mapped::point::image_uv;
@@ -22,7 +23,8 @@ fn shadow_has_three_tenths_over_one_and_six_tenths_of_the_cosine_of_full_light()
     let without = bench.picture(None, &lit, SIZE);
     let camera = bench.sample.seen_by(None, 1.5);
     let clip_from_world = camera.clip_from_world(shadowfit::DepthConvention::Reversed);
-    // Level ground around the helicopter and the tractor, at y = 0: N is up, and N·L follows from the light's position.
+    // Level ground around the helicopter and the tractor, at y = 0: N is up, and N·L follows from the light's
+    // position.
     let light = DVec3::new(128.0, 100.0, 0.0);
     let mut measured = 0;
     for x in 100..170 {
@@ -35,7 +37,7 @@ fn shadow_has_three_tenths_over_one_and_six_tenths_of_the_cosine_of_full_light()
             }
             let at = (uv.y * SIZE[1] as f32) as usize * SIZE[0] as usize + (uv.x * SIZE[0] as f32) as usize;
             let ([dark, ..], [bright, ..]) = (with[at], without[at]);
-            // The ground itself, and not a vehicle before it: grass is green. White is clamped.
+            // Only ground pixels, not a vehicle before it: grass is green. White is clamped.
             let is_grass = |[r, g, b, _]: [u8; 4]| g > r && r > b && g < 250;
             if dark == bright || !is_grass(without[at]) || !is_grass(with[at]) || bright < 60 {
                 continue;
@@ -61,9 +63,9 @@ fn eight_bits_have_256_depths_and_a_float_has_thousands() {
     bench.picture(None, &floats, SIZE);
     let map = bench.map_of_floats();
     assert_eq!(map.len(), 4096 * 4096);
-    // Telling all 16 million texels apart takes long, and some of them have thousands of depths as well.
+    // Comparing all 16 million texels takes long, and a part of them also has thousands of depths.
     assert!(distinct(map.iter().step_by(37).map(|depth| depth.to_bits())) > 10_000);
-    // Stored reversed: near the light is near 1, and what nothing was drawn to is 0, which is far.
+    // Stored reversed: near the light is near 1, and texels without a caster are 0, which is far.
     assert!(map.iter().all(|depth| (0.0..1.0).contains(depth)) && map.iter().any(|depth| *depth > 0.2));
 }
 

@@ -3,7 +3,7 @@
 use super::bench::{Bench, distinct};
 
 const ID: &str = "xna-shadow-mapping";
-/// Small, in the aspect of the source's window.
+/// A small size with the aspect of the original window.
 const SIZE: [u32; 2] = [300, 180];
 
 /// End of the figure's depths, and the step of 16-bit floats below it, of 11 significant bits: 2⁻¹⁵.
@@ -39,7 +39,7 @@ fn the_map_holds_the_character_alone_in_the_half_toward_the_light() {
     let map = bench.map_of_floats();
     assert_eq!(map.len(), 2048 * 2048);
     let drawn: Vec<f32> = map.iter().copied().filter(|depth| *depth < 1.0).collect();
-    // The frustum is 1000 units deep, the figure 65 high: a speck of the map.
+    // The frustum is 1000 units deep, the figure 65 high: a small part of the map.
     assert!((100..20_000).contains(&drawn.len()), "{}", drawn.len());
     assert!(drawn.iter().all(|depth| (0.0..0.5).contains(depth)), "beyond 0.5 the box is empty");
 }
@@ -58,7 +58,7 @@ fn without_a_bias_the_character_shadows_itself_and_the_floor_does_not() {
         pixels.filter(|pixel| without_bias[*pixel][1] + 8 < plain[*pixel][1]).count()
     };
     assert!(darker(0..180) > 1500, "stripes over the figure: {}", darker(0..180));
-    // The floor at the right and left border does not cast: it has none.
+    // The floor at the right and left border is not a caster, so it has no acne.
     let border = (0..180).flat_map(|y| [0, 1, 298, 299].map(|x| y * 300 + x));
     assert_eq!(border.filter(|pixel| without_bias[*pixel] != plain[*pixel]).count(), 0);
 }
@@ -84,7 +84,8 @@ fn eight_bits_store_256_depths_and_sixteen_bit_floats_are_within_a_step() {
     let drawn = halves.as_chunks().0.iter().zip(&floats).filter(|(_, depth)| **depth < 1.0);
     assert!(drawn.clone().all(|(_, depth)| (0.0..FIGURE_END).contains(depth)), "halves have larger steps there");
     let worst = drawn.map(|(bytes, depth)| (half(u16::from_le_bytes(*bytes)) - depth).abs()).fold(0.0, f32::max);
-    // A device may store either of the two neighbours of a depth: Mesa's truncates, SwiftShader rounds to the nearest.
+    // A device may store either of the two neighbours of a depth: Mesa's truncates, SwiftShader rounds to the
+    // nearest.
     assert!(worst <= HALF_FLOAT_STEP && worst > HALF_FLOAT_STEP * 0.25, "{worst}");
 }
 

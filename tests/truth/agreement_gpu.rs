@@ -1,4 +1,4 @@
-//! The GPU's classes against the CPU's, on the built-in scene and on every scene of the collection.
+//! The GPU's classes compared with the CPU's, on the built-in scene and on every scene of the collection.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::support::{assets, test_gpu};
 
 /// Size of the judged pictures, in pixels.
 const SIZE: [u32; 2] = [240, 135];
-/// Shares of pixels of the same class that the two promise: off edges, and of all that face the light.
+/// Guaranteed shares of pixels of equal class: off edges, and of all pixels that face the light.
 const PROMISED: [f64; 2] = [0.999, 0.995];
 /// Scenes of the collection: one with cut-outs, one that morphs, and one of many instances.
 const SCENES: [&str; 3] =
@@ -30,7 +30,7 @@ const MORE_SCENES: [&str; 8] = [
     "bevy_terrain/Mountains.gltf",
 ];
 
-/// Views of the middle of a scene from two sides, and an orthographic one.
+/// Returns views of the middle of a scene from two sides, and an orthographic one.
 fn views(bounds: Aabb) -> [View; 3] {
     let (centre, radius) = ((bounds.min + bounds.max) * 0.5, (bounds.size().length() * 0.5).max(1e-3));
     let views = [Vec3::new(0.6, 0.5, 0.7), Vec3::new(-0.5, 0.25, 0.4)].map(|away| {
@@ -51,7 +51,7 @@ fn views(bounds: Aabb) -> [View; 3] {
     [views[0], views[1], flat]
 }
 
-/// A technique with few errors, and one with all kinds of them.
+/// Returns a technique with few errors, and one with all kinds of errors.
 fn techniques() -> [Technique; 2] {
     let preset = |name| Technique::preset(name).expect("a preset").with_resolution(512, 512);
     let (good, poor) = (preset("focused-4"), Technique { bias: NO_BIAS, ..preset("xna-1") });

@@ -1,4 +1,4 @@
-//! Each artefact alone, made on purpose: it is counted as what it is, and its cure brings the count to nothing.
+//! Each artefact alone, made on purpose: it is classified correctly, and its cure brings the count to zero.
 
 use shadowfit::Technique;
 use shadowfit::glam::{Affine3A, Quat, Vec3};
@@ -9,20 +9,20 @@ use shadowfit_truth::PictureTally;
 use super::shapes::{Arrangement, NO_BIAS, floor, single, solid};
 use crate::support::test_gpu;
 
-/// A box on a floor, from above and aside.
+/// Returns a box on a floor, from above and from the side.
 fn box_on_a_floor() -> Arrangement {
     let objects = vec![floor(8.0), solid(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0))];
     Arrangement::new(objects, Vec3::new(4.0, 4.5, 6.0), Vec3::new(-0.5, 0.5, 0.0), Vec3::new(-0.5, -0.7, -0.3))
 }
 
-/// A thin wall on a floor, from its dark side: what stands before a point at its foot is no farther than the point
-/// from the wall.
+/// Returns a thin wall on a floor, from its dark side. At a point at its foot, the occluder is no farther
+/// away than the point is from the wall.
 fn wall_on_a_floor() -> Arrangement {
     let objects = vec![floor(8.0), solid(Vec3::new(-2.0, 0.0, -0.01), Vec3::new(2.0, 2.0, 0.01))];
     Arrangement::new(objects, Vec3::new(-1.0, 4.0, -6.0), Vec3::new(-0.5, 0.5, -1.0), Vec3::new(-0.2, -0.7, -0.5))
 }
 
-/// A map in a format, of texels so fine that its depths' steps are what matters.
+/// Returns a map in a format, with texels so fine that depth steps dominate the error.
 fn in_format(format: MapFormat, filter: FilterKind, bias: BiasSettings) -> Technique {
     single(FitKind::Focused, filter, bias).with_resolution(2048, 2048).with_format(format)
 }
@@ -40,7 +40,8 @@ fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
         println!("{filter:?}: {:?} without a bias, {:?} with the automatic one", shares(&bare), shares(&cured));
         assert!(acne > 0.1, "{filter:?}: {acne}");
         assert_eq!((cured.all.false_shadow, cured.all.false_light, cured.all.hole), (0, 0, 0), "{filter:?}");
-        // By the normal offset as well, but where it moves a point beside an edge to the other side of it.
+        // The normal offset alone is also a cure, except where it moves a point near an edge to the other
+        // side of it.
         let offset = BiasSettings::automatic_normal_offset(filter, &Softness::default());
         let offset = box_on_a_floor().judged(&single(FitKind::Focused, filter, offset));
         assert!(shares(&offset)[0] < 0.001, "{filter:?}: {:?}", shares(&offset));
@@ -50,7 +51,7 @@ fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
 #[test]
 fn the_automatic_bias_leaves_no_false_shadow_in_any_format() {
     for format in MapFormat::ALL {
-        // One of each kind: a texel, a tent, and a disc that searches for casters.
+        // One filter of each kind: a texel, a tent, and a disc with a search for casters.
         for filter in [FilterKind::Point, FilterKind::Pcf5x5, FilterKind::Pcss] {
             let tally = box_on_a_floor().judged(&in_format(format, filter, BiasSettings::automatic(filter)));
             println!("{format:?} {filter:?}: {:?}", shares(&tally));
@@ -68,9 +69,9 @@ fn eight_bits_of_depth_have_acne_without_their_steps_in_the_bias() {
         println!("{format:?}: {:?}", shares(&tally));
         shares(&tally)[0]
     });
-    // The bias has room for 1/256 texel. Corners may lie half a step of the rasteriser beside their places, which moves the
-    // depths of a plane as if the look-ups reached as much farther. They reach beyond the bias only from points whose
-    // look-ups lie in the last part of a texel.
+    // The bias has a margin for 1/256 texel. Corners may be misplaced by half a step of the rasteriser, which
+    // changes the depths of a plane as if the look-ups reached farther by this step. They exceed the bias
+    // only at points whose look-ups are in the last part of a texel.
     let step = f64::from(subpixel_step(&test_gpu().adapter.get_info()));
     let beyond = (step * 0.5 - 1.0 / 256.0).max(0.0);
     assert!(fine <= beyond && grey > beyond + 0.01, "{fine} {grey}, {beyond} beyond the bias");
@@ -92,7 +93,7 @@ fn a_bias_ten_times_too_large_is_false_light() {
 
 #[test]
 fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
-    // The tower stands behind the camera: the sample's box, which holds the view alone, cuts it off.
+    // The tower is behind the camera. The sample's box contains only the view, so it cuts the tower off.
     let objects = vec![floor(40.0), solid(Vec3::new(-1.0, 0.0, 8.0), Vec3::new(1.0, 12.0, 10.0))];
     let view =
         Arrangement::new(objects, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(0.02, -0.6, -0.8));
@@ -111,7 +112,7 @@ fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
 #[test]
 fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
     let filter = FilterKind::Pcf3x3;
-    // By right angles: those of objects turned otherwise have other boxes around them.
+    // By right angles: at other angles the objects' boxes would change.
     let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
     let plain = box_on_a_floor().judged(&technique()).columns();
     let turn = Affine3A::from_rotation_translation(
@@ -127,7 +128,7 @@ fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
     ] {
         let moved = box_on_a_floor().moved(&motion, scale).judged(&technique()).columns();
         for ((name, plain), (_, moved)) in plain.iter().zip(&moved) {
-            // The map's rectangle is found again but for rounding, so that texels at edges may fall otherwise.
+            // The map's rectangle is found again up to rounding, so that texels at edges may differ.
             let allowed = if name.ends_with('%') { 0.1 } else { 0.03 * plain.abs().max(0.1) };
             let is_same = (plain.is_nan() && moved.is_nan()) || (plain - moved).abs() <= allowed;
             assert!(is_same, "{what}: {name} {plain} became {moved}");
@@ -140,7 +141,7 @@ fn a_scene_a_hundred_kilometres_from_the_origin_is_judged_as_at_home() {
     let filter = FilterKind::Pcf3x3;
     let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
     let home = box_on_a_floor().judged(&technique());
-    // Whole metres, which f32 holds exactly there.
+    // Whole metres, which f32 represents exactly there.
     let away = box_on_a_floor().judged_away(&technique(), Vec3::new(100_000.0, 500.0, -75_000.0));
     let [home_shares, away_shares] = [&home, &away].map(shares);
     println!("{home_shares:?} at home, {away_shares:?} away");

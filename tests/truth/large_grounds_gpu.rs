@@ -1,5 +1,5 @@
-//! Grounds of 10 m to 100 km in one box, and casters 20 km away: a plane never shadows itself, under any sun, with any
-//! preset and in any format of its maps.
+//! Grounds of 10 m to 100 km in one box, and casters 20 km away: a plane never shadows itself, for any sun,
+//! preset and map format.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -21,7 +21,7 @@ const WALLS: [f32; 4] = [0.2, 2.0, 10.0, 50.0];
 /// Elevations of the sun, in degrees.
 const SUNS: [f32; 6] = [0.3, 2.0, 10.0, 30.0, 60.0, 90.0];
 
-/// One cell of the sweep.
+/// One combination of the sweep.
 struct Cell {
     ground: f32,
     wall: f32,
@@ -53,8 +53,9 @@ impl Cell {
         technique.with_fit(map).with_resolution(1024, 1024)
     }
 
-    /// The ground beside the end of a wall that floats over it, so that all edges of its shadow are seen. The sun stands
-    /// behind the wall: ground alone is lit, and the filter reads no other surface than the plane that it shades.
+    /// Returns the ground next to the end of a wall that floats over it, so that all edges of its shadow are
+    /// visible. The sun is behind the wall: only ground is lit, and the filter reads no other surface than
+    /// the plane that it shades.
     fn arrangement(&self) -> Arrangement {
         // Rounding must not put a vertical sun in front of the wall.
         let (sin, cos) = if self.sun == 90.0 { (1.0, 0.0) } else { self.sun.to_radians().sin_cos() };
@@ -68,11 +69,11 @@ impl Cell {
     }
 }
 
-/// Pixels that may lie at an edge of a shadow that the picture does not show, so that the judge does not know them as
-/// pixels of an edge. `aabb-1`, whose texels are the widest, has 9 in one picture.
+/// Number of pixels that may be at an edge of a shadow outside the picture, which the judge does not
+/// recognise as an edge. `aabb-1`, which has the widest texels, has 9 in one picture.
 const UNSEEN_EDGES: u64 = 9;
 
-/// Numbers of values of a cell's properties.
+/// Number of values of each property of a cell.
 const COUNTS: [usize; 5] = [GROUNDS.len(), WALLS.len(), SUNS.len(), PRESETS.len(), MapFormat::ALL.len()];
 
 #[test]
@@ -80,7 +81,7 @@ fn no_plane_shadows_itself_on_grounds_of_any_size() {
     assert_no_false_shadow(&all_pairs(&COUNTS));
 }
 
-/// Rays that start too near to the ground hit it. Rays that start higher above it move the edges of shadows.
+/// Rays that start too close to the ground hit it. Rays that start higher above it move the edges of shadows.
 #[test]
 fn exact_edges_are_right_on_a_ground_of_100_km() {
     let of = |value: f32, all: &[f32]| all.iter().position(|other| *other == value).expect("a value of the sweep");
@@ -95,7 +96,8 @@ fn no_plane_shadows_itself_in_the_full_product_of_grounds_walls_suns_presets_and
     assert_no_false_shadow(&full_product(&COUNTS));
 }
 
-/// Asserts that the pictures of cells have no false shadow away from edges, and prints the most by preset and ground.
+/// Asserts that the pictures of cells have no false shadow away from edges. Prints the most by preset and
+/// ground.
 fn assert_no_false_shadow(rows: &[Vec<usize>]) {
     require_large_triangles(&test_gpu().adapter.get_info());
     let most = Mutex::new(BTreeMap::<_, BTreeMap<u32, (f64, usize)>>::new());
@@ -139,8 +141,9 @@ fn a_far_mountain_shadows_half_of_the_ground_with_all_presets_and_formats() {
     assert_right_beside_a_mountain(PRESETS.iter().flat_map(|preset| MapFormat::ALL.map(|format| (preset, format))));
 }
 
-/// Asserts that pictures of a ground are right. A mountain stands 20 km toward the sun, and its shadow ends along a line
-/// through the picture. The depth ranges of all maps are 20 km, too, so the bias must be large.
+/// Asserts that pictures of a ground are right. A mountain is 20 km away toward the sun, and its shadow ends
+/// along a line through the picture. The depth ranges of all maps are then also 20 km, so the bias must be
+/// large.
 fn assert_right_beside_a_mountain(techniques: impl Iterator<Item = (&'static Preset, MapFormat)>) {
     require_large_triangles(&test_gpu().adapter.get_info());
     let (away, height) = (20e3, 3e3);
@@ -156,7 +159,7 @@ fn assert_right_beside_a_mountain(techniques: impl Iterator<Item = (&'static Pre
         let name = format!("{}, {format:?}", preset.name);
         assert!(tally.all.facing > 10_000 && tally.edge_zone > 100, "{name}: the shadow's end is in view: {tally:?}");
         assert!(tally.all.false_shadow <= UNSEEN_EDGES, "{name}: {tally:?}");
-        // The XNA sample's fit has no casters beyond the view.
+        // The XNA sample's map has no casters beyond the view.
         let missing = tally.all.false_light + tally.all.hole;
         assert!(missing <= UNSEEN_EDGES || preset.name == "xna-1", "{name}: {tally:?}");
     }

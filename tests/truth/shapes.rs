@@ -1,4 +1,4 @@
-//! Scenes whose shadows are known, and the pictures of them.
+//! Scenes with known shadows, and pictures of them.
 
 use shadowfit::SingleMap;
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
@@ -13,10 +13,10 @@ use crate::support::test_gpu;
 /// Size of the judged pictures, in pixels.
 pub(super) const SIZE: [u32; 2] = [480, 270];
 
-/// A triangle, world space, metres.
+/// Corners of a triangle, world space, metres.
 pub(super) type Corners = [Vec3; 3];
 
-/// An axis-aligned box.
+/// Returns an axis-aligned box.
 pub(super) fn solid(min: Vec3, max: Vec3) -> Vec<Corners> {
     let corner = |index: usize| {
         let pick = |bit: usize, low: f32, high: f32| if index >> bit & 1 == 0 { low } else { high };
@@ -26,7 +26,7 @@ pub(super) fn solid(min: Vec3, max: Vec3) -> Vec<Corners> {
     faces.into_iter().flat_map(|face| quad(face.map(corner))).collect()
 }
 
-/// A level square around the origin.
+/// Returns a level square around the origin.
 pub(super) fn floor(half: f32) -> Vec<Corners> {
     let corner = |x: f32, z: f32| Vec3::new(x * half, 0.0, z * half);
     quad([corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)])
@@ -36,7 +36,7 @@ fn quad([a, b, c, d]: [Vec3; 4]) -> Vec<Corners> {
     vec![[a, b, c], [a, c, d]]
 }
 
-/// Shapes, and how they are seen and lit.
+/// Objects with a camera and a light.
 #[derive(Clone)]
 pub(super) struct Arrangement {
     pub(super) objects: Vec<Vec<Corners>>,
@@ -46,7 +46,7 @@ pub(super) struct Arrangement {
 }
 
 impl Arrangement {
-    /// Seen from `eye` toward `target`, with the light travelling in `direction`.
+    /// Creates a view from `eye` toward `target`, with the light travelling in `direction`.
     pub(super) fn new(objects: Vec<Vec<Corners>>, eye: Vec3, target: Vec3, direction: Vec3) -> Self {
         let camera = PerspectiveCamera {
             eye: eye.as_dvec3(),
@@ -60,7 +60,7 @@ impl Arrangement {
         Self { objects, camera, direction: direction.normalize(), ray_offset: 1e-3 }
     }
 
-    /// The same turned, moved, and in another unit.
+    /// Returns the arrangement turned, moved, and in another unit.
     pub(super) fn moved(&self, motion: &Affine3A, scale: f32) -> Self {
         let point = |point: Vec3| motion.transform_point3(point) * scale;
         let camera = PerspectiveCamera {
@@ -80,12 +80,12 @@ impl Arrangement {
         }
     }
 
-    /// Sums over the picture with a technique.
+    /// Returns the sums over the picture with a technique.
     pub(super) fn judged(&self, technique: &Technique) -> PictureTally {
         self.judged_away(technique, Vec3::ZERO)
     }
 
-    /// The same with everything moved by the scene's nodes, in metres.
+    /// Returns the sums with everything moved by the scene's nodes, in metres.
     pub(super) fn judged_away(&self, technique: &Technique, away: Vec3) -> PictureTally {
         let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
         let mut scene = Scene::from_objects("shapes", &self.objects);
@@ -99,7 +99,7 @@ impl Arrangement {
     }
 }
 
-/// One map of 512 texels around what is seen, with a filter and a bias.
+/// Returns a technique with one map of 512 texels around the view, with a filter and a bias.
 pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> Technique {
     let one = SingleMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
     Technique::default().with_maps(one).with_resolution(512, 512).with_look_up(filter, bias)

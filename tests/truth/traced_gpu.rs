@@ -1,5 +1,5 @@
-//! Traced edges against rays on the CPU: what is wrong in a picture is a pixel here and there whose ray passes a border
-//! within rounding, or a caster or gap that is narrower than a texel.
+//! Traced edges compared with rays on the CPU. The only wrong pixels are single ones whose ray passes a
+//! border within rounding, or casters and gaps that are narrower than a texel.
 
 use shadowfit::glam::{Quat, Vec3};
 use shadowfit::settings::{Edges, FilterKind, SoftRadius, Softness};
@@ -15,15 +15,15 @@ use crate::support::{start_view, test_gpu};
 
 const SIZE: [u32; 2] = [160, 90];
 
-/// Wrong pixels in a thousand that face the light, at most. Found are 0.1 in the courtyard and 0.9 in the forest, none of
-/// them but at an edge.
+/// Greatest number of wrong pixels per thousand facing pixels. Measured: 0.1 in the courtyard and 0.9 in the
+/// forest, all of them at edges.
 const WRONG: f64 = 1.2;
 
 fn technique() -> Technique {
     Technique::default().with_resolution(1024, 1024).with_edges(Edges::Traced { samples: 1 })
 }
 
-/// With texels that are wider than a pixel, so that many pixels are not sure.
+/// Returns a technique with texels wider than a pixel, so that rays decide many pixels.
 fn coarse() -> Technique {
     let coarse = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256).with_max_distance(60.0);
     coarse.with_edges(Edges::Traced { samples: 1 })
@@ -45,7 +45,7 @@ fn judged(comparison: &mut Comparison, view: &View) -> PictureTally {
     outcomes[0].judged.tally.clone()
 }
 
-/// Wrong pixels are few, and none is a hole or light where an occluder is in the map.
+/// Asserts that few pixels are wrong, and that none is a hole or false light.
 fn assert_exact(what: &str, tally: &PictureTally) {
     let all = &tally.all;
     println!("{what}: {all:?}, {} of {} traced", tally.traced, tally.traced_of);
@@ -55,13 +55,13 @@ fn assert_exact(what: &str, tally: &PictureTally) {
     assert_eq!([all.hole, all.false_light], [0, 0], "{what}: {all:?}");
 }
 
-/// Ends a test of scenes with small triangles on adapters that round corners coarsely: the picture and the map then show other
-/// triangles than those that the rays meet.
+/// Ends a test of scenes with small triangles on adapters that round corners coarsely: picture and map then
+/// show other triangles than the rays hit.
 fn require_exact_corners() {
     require_fine_steps(&test_gpu().adapter.get_info());
 }
 
-/// The start view, and one from the other side of what it looks at.
+/// Returns the start view, and a view of its subject from the other side.
 fn views(scene: &Scene) -> [View; 2] {
     let view = start_view(scene, SIZE);
     let target = view.camera.eye + view.camera.forward.as_dvec3() * 8.0;
@@ -120,7 +120,7 @@ fn animated_scenes_are_as_exact_as_at_rest() {
     }
 }
 
-/// Boxes over a floor, of which each node has its own transform.
+/// Returns boxes over a floor, each with its own node transform.
 fn boxes() -> Scene {
     let block = || solid(Vec3::new(-0.5, 0.2, -0.3), Vec3::new(0.4, 1.0, 0.5));
     Scene::from_objects("boxes", &[floor(8.0), block(), block(), block()])
@@ -179,8 +179,8 @@ fn triangles_without_an_area_change_nothing() {
     assert_eq!(tally.all, plain.all);
 }
 
-/// Mean errors against the area of each pixel with one surface, in per cent: of the filter, and of rays. Three boxes cast
-/// shadows on a floor from a height above it, in metres.
+/// Returns the mean errors compared with the area of each pixel with one surface, in per cent: of the filter,
+/// and of rays. Three boxes cast shadows on a floor from a height above it, in metres.
 fn area_errors(technique: Technique, sun_radius: f32, height: f32, samples: u32) -> [f64; 2] {
     let mut scene = boxes();
     for (number, node) in (0..).zip(&mut scene.nodes[1..]) {
@@ -203,7 +203,7 @@ fn area_errors(technique: Technique, sun_radius: f32, height: f32, samples: u32)
 fn four_rays_a_pixel_err_by_less_than_half_of_what_the_filter_errs_by_against_the_pixel_s_area() {
     let [filtered, traced] = area_errors(technique(), 0.0, 2.0, 4);
     println!("{filtered}% by the filter, {traced}% by rays");
-    // Found are 0.33 and 0.07%.
+    // Measured: 0.33 and 0.07%.
     assert!(filtered > 0.1 && traced < 0.5 * filtered, "{filtered}% and {traced}%");
 }
 
@@ -215,7 +215,7 @@ fn eight_rays_over_a_wide_sun_err_by_no_more_than_the_filter_where_a_few_boxes_c
     let [filtered, traced] =
         area_errors(coarse().with_filter(FilterKind::Pcss).with_softness(softness), radius, 12.0, 8);
     println!("{filtered}% by the filter, {traced}% by rays");
-    // Found are 0.79 and 0.72%, and 1.22% if rays do not correct what the map says but stand for it.
+    // Measured: 0.79 and 0.72%, and 1.22% if rays replace the map's result instead of correcting it.
     assert!(filtered > 0.1 && traced < filtered, "{filtered}% and {traced}%");
 }
 
@@ -238,7 +238,7 @@ fn wrong_pixels_are_those_of_casters_and_gaps_within_a_texel_and_finer_maps_leav
         let technique = technique().with_resolution(side, side);
         judged(&mut comparison_of(scene.clone(), technique), &view).all
     });
-    // Between: 5 with 1024² texels.
+    // In between: 5 with 1024² texels.
     assert!((5..40).contains(&coarse.wrong) && fine.wrong <= 1, "{coarse:?} and {fine:?}");
     assert_eq!([coarse.edge, fine.edge], [coarse.wrong, fine.wrong], "off edges");
 }

@@ -1,5 +1,5 @@
-//! An X server of the test's own, and the viewer as a program on it. Both end when their values are dropped, so that a
-//! failed assertion leaves nothing running; the screenshots stay under `target/window-test`.
+//! An X server for the test, and the viewer as a program on it. Both end when their values are dropped, so
+//! that a failed assertion leaves no process behind. The screenshots stay under `target/window-test`.
 
 use std::cell::Cell;
 use std::io::{BufRead, BufReader};
@@ -15,22 +15,22 @@ use crate::support::{target_folder, viewer_program};
 /// Width, height and depth of the screen.
 pub(super) const SCREEN: &str = "1280x800x24";
 
-/// Pause between two looks at something that is waited for: a frame of a slow software driver.
+/// Pause between two polls: a frame of a slow software driver.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// The programs that the test needs and the machine lacks.
+/// Returns the programs that the test needs and the machine lacks.
 pub(super) fn missing_tools() -> Vec<&'static str> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let is_there = |tool: &str| std::env::split_paths(&path).any(|folder| folder.join(tool).is_file());
     ["Xvfb", "xdotool", "import"].into_iter().filter(|tool| !is_there(tool)).collect()
 }
 
-/// A program that ends with its value.
+/// A child process that is killed when dropped.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself, which is no failure here.
+        // It may have ended by itself, which is not an error here.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -45,14 +45,14 @@ pub(super) struct Desktop {
 }
 
 impl Desktop {
-    /// Starts the server on a display number that is free, and empties the folder of screenshots, which is that of the
-    /// test `name`.
+    /// Starts the server on a free display number, and empties the folder of screenshots of the test `name`.
     pub(super) fn start(name: &str) -> Self {
         let shots = target_folder().join("window-test").join(name);
         let _ = std::fs::remove_dir_all(&shots);
         std::fs::create_dir_all(&shots).unwrap_or_else(|error| panic!("{}: {error}", shots.display()));
         let mut command = Command::new("Xvfb");
-        // The server picks the number and writes it to its standard output when it is ready; -br is a black screen.
+        // The server picks the number and writes it to its standard output when it is ready. -br is a black
+        // screen.
         command.args(["-displayfd", "1", "-screen", "0", SCREEN, "-br", "-nolisten", "tcp", "-noreset"]);
         let mut server = Running(
             command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("Xvfb starts"),
@@ -64,23 +64,23 @@ impl Desktop {
         Self { _server: server, display: format!(":{}", number.trim()), shots, count: Cell::new(0) }
     }
 
-    /// A file of the test's own.
+    /// Returns the path of a file in the test's folder.
     pub(super) fn file(&self, name: &str) -> PathBuf {
         self.shots.join(name)
     }
 
-    /// Takes a screenshot and keeps it under a numbered name that holds `name`.
+    /// Takes a screenshot and saves it under a numbered name that contains `name`.
     pub(super) fn shoot(&self, name: &str) -> Shot {
         self.capture(&self.next_file(name))
     }
 
-    /// Takes screenshots until `accept` says yes, and returns the one that it accepted, or `None` after `limit`.
+    /// Takes screenshots until `accept` returns true. Returns the accepted one, or `None` after `limit`.
     pub(super) fn wait_for(&self, limit: Duration, mut accept: impl FnMut(&Shot) -> bool) -> Option<Shot> {
         let latest = self.shots.join("latest.png");
         until(limit, || Some(self.capture(&latest)).filter(|shot| accept(shot)))
     }
 
-    /// Keeps `shot`, or a new one where it is `None`, under a numbered name that holds `name`.
+    /// Saves `shot`, or a new screenshot for `None`, under a numbered name that contains `name`.
     pub(super) fn keep(&self, shot: Option<&Shot>, name: &str) -> Shot {
         shot.map_or_else(|| self.shoot(name), |shot| shot.clone().saved_as(self.next_file(name)))
     }
@@ -99,7 +99,7 @@ impl Desktop {
     }
 }
 
-/// The viewer on a [`Desktop`], with settings of its own that it finds empty.
+/// The viewer on a [`Desktop`], with its own empty settings folder.
 pub(super) struct Viewer {
     program: Running,
     display: String,
@@ -117,12 +117,12 @@ impl Viewer {
         for variable in ["XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_STATE_HOME"] {
             command.env(variable, &home);
         }
-        // The size of the screen in millimetres is made up, so the scale must not be taken from it.
+        // Xvfb's screen size in millimetres is arbitrary, so the scale must not be derived from it.
         command.env("WINIT_X11_SCALE_FACTOR", "1");
-        // Where it is missing, the graphics driver complains in the log.
+        // Without it the graphics driver writes warnings to the log.
         command.env("XDG_RUNTIME_DIR", &home);
-        // What is freed is given back: the C library would keep hundreds of megabytes of it for what its threads may ask for
-        // next, and nobody could tell those from a leak.
+        // Make the C library return freed memory. By default it keeps hundreds of megabytes for later
+        // allocations of its threads, which looks like a leak.
         for (variable, value) in [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "131072")] {
             command.env(variable, value);
         }
@@ -132,7 +132,7 @@ impl Viewer {
         Self { program, display: desktop.display.clone(), log, reader: Some(reader), window: String::new() }
     }
 
-    /// Waits until the viewer's standard error holds a line with `word` in it.
+    /// Waits for a line that contains `word` on the viewer's standard error.
     pub(super) fn wait_for_line(&mut self, word: &str, limit: Duration) {
         let found = until(limit, || {
             let said = self.log.lock().expect("the log's thread does not panic").iter().any(|line| line.contains(word));
@@ -141,7 +141,7 @@ impl Viewer {
         assert_eq!(found, Some(true), "the viewer never says \"{word}\"; what it says:\n{}", self.log());
     }
 
-    /// Finds the window, moves it to the screen's corner and gives it the keyboard.
+    /// Finds the window, moves it to the screen's corner and gives it the keyboard focus.
     pub(super) fn focus(&mut self) {
         let pid = self.program.0.id().to_string();
         let search = || {
@@ -155,7 +155,7 @@ impl Viewer {
         self.do_with_window("windowfocus", &[]);
     }
 
-    /// Presses and releases a key, named as X11 names it.
+    /// Presses and releases a key, given by its X11 name.
     pub(super) fn press(&self, key: &str) {
         self.run(&["key", key]);
     }
@@ -170,17 +170,17 @@ impl Viewer {
         self.run(&["keyup", key]);
     }
 
-    /// Gives the window's inside a size in pixels.
+    /// Sets the size of the window's content, in pixels.
     pub(super) fn resize(&self, (width, height): (u32, u32)) {
         self.do_with_window("windowsize", &[&width.to_string(), &height.to_string()]);
     }
 
-    /// Takes the window off the screen.
+    /// Unmaps the window.
     pub(super) fn hide(&self) {
         self.do_with_window("windowunmap", &[]);
     }
 
-    /// Brings the window back and gives it the keyboard again, which unmapping takes away.
+    /// Maps the window and gives it the keyboard focus again, which unmapping removes.
     pub(super) fn show(&self) {
         self.do_with_window("windowmap", &[]);
         self.do_with_window("windowfocus", &[]);
@@ -190,17 +190,17 @@ impl Viewer {
         matches!(self.program.0.try_wait(), Ok(None))
     }
 
-    /// The exit code, `None` when the viewer does not end within `limit` or a signal ends it.
+    /// Returns the exit code, or `None` if the viewer does not end within `limit` or a signal ends it.
     pub(super) fn exit_code(&mut self, limit: Duration) -> Option<i32> {
         let status = until(limit, || self.program.0.try_wait().expect("the viewer can be waited for"))?;
-        // All that it said has been read then.
+        // After this, all of its output has been read.
         if let Some(reader) = self.reader.take() {
             reader.join().expect("the log's thread does not panic");
         }
         status.code()
     }
 
-    /// What the viewer said on its standard error.
+    /// Returns the viewer's standard error so far.
     pub(super) fn log(&self) -> String {
         self.log.lock().expect("the log's thread does not panic").join("\n")
     }
@@ -224,7 +224,7 @@ impl Viewer {
     }
 }
 
-/// Asks `look` until it answers or `limit` has passed.
+/// Calls `look` until it returns a value or `limit` has passed.
 fn until<T>(limit: Duration, mut look: impl FnMut() -> Option<T>) -> Option<T> {
     let end = Instant::now() + limit;
     loop {
@@ -236,7 +236,7 @@ fn until<T>(limit: Duration, mut look: impl FnMut() -> Option<T>) -> Option<T> {
     }
 }
 
-/// Reads lines on a thread of their own, so that the writer never waits for a full pipe.
+/// Reads lines on a separate thread, so that the writer never waits for a full pipe.
 fn collect_lines(source: ChildStderr) -> (Arc<Mutex<Vec<String>>>, JoinHandle<()>) {
     let lines = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&lines);

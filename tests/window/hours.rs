@@ -1,5 +1,5 @@
-//! The viewer for as long as one likes: random actions, a flight with everything on, and scene after scene. Seconds in
-//! environment variables make hours of the moments that an ordinary run takes.
+//! Long runs of the viewer: random actions, a flight with everything on, and scene after scene. An ordinary
+//! run takes moments. Environment variables with seconds extend it to hours.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,22 +7,22 @@ use std::time::Duration;
 use super::desktop::{Desktop, Viewer};
 use super::{PATIENCE, desktop};
 
-/// Growth of memory that is no leak, in MB: what drivers and allocators keep.
+/// Growth of memory that is not a leak, in MB: memory that drivers and allocators keep.
 const GROWTH: f64 = 96.0;
-/// The same for a short run, whose first part is over before all that is made once has been made: pipelines, the textures
-/// of scenes, the maps of a second technique.
+/// Growth of memory that is not a leak in a short run, in MB. Its first part ends before pipelines, scene
+/// textures and the maps of a second technique have all been created.
 const SHORT_GROWTH: f64 = 1000.0;
-/// Seconds from which on a run is not short.
+/// Shortest duration of a long run, in seconds.
 const LONG: u32 = 300;
-/// Share of a run after which memory is looked at first.
+/// Share of a run before the first memory measurement.
 const WARM_UP: f64 = 0.25;
 
-/// A number of seconds or scenes in an environment variable, or that of an ordinary run.
+/// Returns a number of seconds or scenes from an environment variable, or the default.
 fn asked(variable: &str, usual: u32) -> u32 {
     std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
 }
 
-/// Plays a script of about so many seconds in the viewer, which must end well, and returns what it says.
+/// Plays a script of about this many seconds in the viewer and returns its output. The viewer must succeed.
 fn play(desktop: &Desktop, text: &str, seconds: u32) -> String {
     let (script, state) = (desktop.file("script.txt"), desktop.file("state.toml"));
     std::fs::write(&script, text).expect("the script is written");
@@ -39,7 +39,7 @@ fn play(desktop: &Desktop, text: &str, seconds: u32) -> String {
     log
 }
 
-/// Fails where memory grows from a quarter of the run to its end.
+/// Asserts that memory does not grow from a quarter of the run to its end.
 fn assert_flat(log: &str, seconds: u32) {
     let place = |line: &str| {
         let (frame, rest) = line.strip_prefix("frame ")?.split_once(" at ")?;
@@ -49,7 +49,7 @@ fn assert_flat(log: &str, seconds: u32) {
     let memory: Vec<(f64, f64)> = log.lines().filter_map(place).collect();
     let Some((last, _)) = memory.last() else { panic!("no memory was told\n{log}") };
     let after_warm_up = || memory.iter().filter(|(frame, _)| *frame >= last * WARM_UP).map(|(_, memory)| *memory);
-    // A scene that is being exchanged is there twice, so the least of a part counts.
+    // While a scene is replaced, both are in memory, so use the least value of each part.
     let half = after_warm_up().count().div_ceil(2);
     let least = |part: Vec<f64>| part.into_iter().fold(f64::INFINITY, f64::min);
     let (before, after) =
@@ -75,7 +75,7 @@ fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak()
     assert!(growth < most, "memory grows: {report}");
 }
 
-/// Lines of a flight around a place, of twenty seconds.
+/// Lines of a flight around a position that takes twenty seconds.
 const ROUND: [&str; 8] =
     ["hold w 3", "hold Right 2", "hold d 3", "hold Left 4", "hold a 3", "hold Right 2", "hold s 3", "reset-camera"];
 const ROUND_SECONDS: u32 = 20;
@@ -111,7 +111,8 @@ fn a_scene_after_the_other_takes_no_more_memory_than_the_first_ones() {
     assert_flat(&log, 3 * switches);
 }
 
-/// A folder with files to drop where there are no others: a scene, a technique, and what looks like a scene and is none.
+/// Creates files to drop, for machines without the collection: a scene, a technique, and files that are not
+/// valid scenes.
 fn few_files(desktop: &Desktop) -> PathBuf {
     /// A triangle, ten metres wide.
     const SCENE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],

@@ -1,4 +1,4 @@
-//! A screenshot and what can be asked of it.
+//! Screenshots and their analysis.
 
 use std::path::{Path, PathBuf};
 
@@ -19,14 +19,14 @@ impl Area {
     }
 }
 
-/// A picture of the whole screen, and the file that holds it.
+/// A screenshot of the whole screen, and its file.
 #[derive(Clone)]
 pub(super) struct Shot {
     pixels: RgbImage,
     path: PathBuf,
 }
 
-/// The level, of 255, above which a pixel is not the bare screen, which is black.
+/// Level, of 255, above which a pixel is not the bare, black screen.
 const BARE: u8 = 4;
 
 impl Shot {
@@ -35,18 +35,18 @@ impl Shot {
         Self { pixels: picture.to_rgb8(), path: path.to_owned() }
     }
 
-    /// The file's path, for messages.
+    /// Returns the file's path, for messages.
     pub(super) fn file(&self) -> std::path::Display<'_> {
         self.path.display()
     }
 
-    /// The same picture in a file of its own at `path`.
+    /// Saves the screenshot to another file and returns it with that path.
     pub(super) fn saved_as(self, path: PathBuf) -> Self {
         self.pixels.save(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         Self { path, ..self }
     }
 
-    /// Mean absolute difference to `other` over `area` and the three channels, in levels of 255.
+    /// Returns the mean absolute difference to `other` over `area` and the three channels, in levels of 255.
     pub(super) fn difference(&self, other: &Self, area: Area) -> f32 {
         let per_pixel = self.in_area(area).zip(other.in_area(area)).map(|(a, b)| {
             let channels = a.0.iter().zip(b.0);
@@ -55,7 +55,8 @@ impl Shot {
         per_pixel.sum::<u64>() as f32 / (3 * area.width * area.height) as f32
     }
 
-    /// Mean absolute deviation from the mean brightness over `area`, in levels of 255: 0 for one flat colour.
+    /// Returns the mean absolute deviation from the mean brightness over `area`, in levels of 255: 0 for one
+    /// flat colour.
     pub(super) fn spread(&self, area: Area) -> f32 {
         let brightness: Vec<f32> =
             self.in_area(area).map(|pixel| pixel.0.iter().map(|&level| f32::from(level)).sum::<f32>() / 3.0).collect();
@@ -64,7 +65,7 @@ impl Shot {
         brightness.iter().map(|level| (level - mean).abs()).sum::<f32>() / count
     }
 
-    /// Whether most of `area` shows something else than the bare screen.
+    /// Returns whether most of `area` differs from the bare screen.
     pub(super) fn is_painted(&self, area: Area) -> bool {
         let painted = self.in_area(area).filter(|pixel| pixel.0.iter().any(|&level| level > BARE)).count();
         2 * painted > (area.width * area.height) as usize

@@ -1,5 +1,5 @@
-//! What the plugin's system costs a frame, beside the one of Bevy that it follows: medians over a camera's path, for
-//! growing numbers of meshes. Without a window or a GPU.
+//! Measures the cost per frame of the plugin's system, and of Bevy's cascade system before it: medians over a
+//! camera path, for growing numbers of meshes. Runs without a window or a GPU.
 //!
 //! ```text
 //! cargo run --release --example cost
@@ -19,7 +19,7 @@ use bevy_shadowfit::prelude::*;
 
 const FRAMES: usize = 400;
 
-/// Times of the frames' systems.
+/// Times of the systems in each frame.
 #[derive(Resource)]
 struct Times {
     start: Instant,
@@ -77,7 +77,7 @@ fn end_of_ours(mut times: ResMut<Times>) {
     times.ours.push(taken);
 }
 
-/// A city of boxes on a ground, every one turned otherwise.
+/// Spawns a city of boxes on a ground, each with a different rotation.
 fn spawn(app: &mut App, side: usize, fit: Fit) {
     let world = app.world_mut();
     let mesh = |half: Vec3| (Mesh3d::default(), Aabb { center: Vec3::ZERO.into(), half_extents: half.into() });

@@ -1,4 +1,4 @@
-//! The least that a user adds: the plugin, and [`FittedShadows`] on the sun.
+//! The minimum that a user adds: the plugin, and [`FittedShadows`] on the sun.
 //!
 //! ```text
 //! cargo run --example minimal
@@ -25,6 +25,6 @@ fn spawn(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials
         commands.spawn((Mesh3d(post.clone()), MeshMaterial3d(red.clone()), at));
     }
     let eye = Transform::from_xyz(0.0, 3.0, 12.0).looking_at(Vec3::new(0.0, 1.0, -10.0), Vec3::Y);
-    // The depth prepass tells the fit what is seen; without it, boxes do.
+    // With the depth prepass, the fit uses the visible points; without it, bounding boxes.
     commands.spawn((Camera3d::default(), bevy::core_pipeline::prepass::DepthPrepass, eye));
 }

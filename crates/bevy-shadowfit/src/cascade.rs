@@ -1,12 +1,12 @@
-//! A fitted map in the form of Bevy's cascades.
+//! Conversion of a fitted map to Bevy's cascade.
 
 use bevy::light::cascade::Cascade;
 use bevy::math::{DMat4, DVec2, DVec3, DVec4};
 use shadowfit::FittedMap;
 
-/// The box of a map along the light's axes, relative to the world's origin, in metres.
+/// Box of a map along the light's axes, relative to the world's origin, in metres.
 struct LightBox {
-    /// The light's axes in the world: x right, y up in the map, z toward the light.
+    /// Axes of the light in the world: x right, y up in the map, z toward the light.
     axes: [DVec3; 3],
     /// Width and height.
     size: DVec2,
@@ -20,12 +20,12 @@ struct LightBox {
 impl LightBox {
     fn new(map: &FittedMap) -> Self {
         let map_box = &map.projection;
-        // By arrays, since shadowfit's glam may be a newer one than Bevy's.
+        // Uses arrays, because shadowfit's glam may be newer than Bevy's.
         let light_from_world = DMat4::from_cols_array(&map_box.light_from_world.to_cols_array().map(f64::from));
         let axes = [0, 1, 2].map(|row| light_from_world.row(row).truncate());
         let resolution = DVec2::from_array(map_box.resolution.to_array().map(f64::from));
         if let Some(grid) = &map.grid_position {
-            // The same numbers in each frame, moved by whole texels, which f32 holds exactly.
+            // These numbers are the same in each frame, moved by whole texels, which f32 represents exactly.
             let first = DVec2::from_array(grid.first.map(|line| line as f64));
             let size = DVec2::from_array(grid.texel.to_array()) * resolution;
             return Self {
@@ -38,18 +38,18 @@ impl LightBox {
         }
         let size = DVec2::from_array((map_box.box_max - map_box.box_min).truncate().to_array().map(f64::from));
         let eye = DVec3::from_array(map_box.origin.to_array());
-        // Light space of the world's origin.
+        // The world's origin in light space.
         let world = light_from_world.w_axis.truncate() - DVec3::from_array(axes.map(|axis| axis.dot(eye)));
         let near = f64::from(map_box.box_max.z) - world.z;
         Self { axes, size, origin: 2.0 * world.truncate() / size, near, far: near - f64::from(map_box.depth_range) }
     }
 }
 
-/// The cascade of a map, whose near plane is moved toward the light by `room` metres, for receivers that a bias moves
-/// toward it: before the near plane Bevy's shader finds light.
+/// Returns the cascade of a map, whose near plane is moved toward the light by `room` metres, for receivers
+/// that a bias moves toward it. Bevy's shader treats points in front of the near plane as lit.
 ///
-/// Its space is Bevy's: right-handed, metres, the origin in the middle of the near plane, the light looks along -z; in
-/// clip space the near plane is at depth 1, the far plane at 0.
+/// It uses Bevy's spaces: right-handed, in metres, with the origin at the centre of the near plane and the
+/// light along -z. In clip space the near plane is at depth 1 and the far plane at 0.
 pub(crate) fn cascade(map: &FittedMap, room: f32) -> Cascade {
     let LightBox { axes: [x, y, z], size, origin, near, far } = LightBox::new(map);
     let near = near + f64::from(room);

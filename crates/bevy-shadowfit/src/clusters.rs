@@ -1,4 +1,5 @@
-//! Boxes around small groups of a large mesh's triangles: a level that is one mesh says nothing by its own box.
+//! Boxes around small groups of a large mesh's triangles. The bounding box of a level that is a single mesh
+//! is useless for fits.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -9,23 +10,23 @@ use bevy::tasks::futures::check_ready;
 use bevy::tasks::{AsyncComputeTaskPool, Task};
 use shadowfit::glam::Vec3 as FitVec3;
 
-/// Put it on a mesh whose vertices a shader moves within its bounding box: it counts with the whole box, never with
-/// tighter boxes around its triangles.
+/// Marks a mesh whose vertices a shader moves within its bounding box. Fits use the whole box, never tighter
+/// boxes around its triangles.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct WholeBox;
 
-/// A mesh is worth clusters where its box is longer than this share of the distance at which shadows end, to each side.
+/// Least half-length of the boxes of meshes that are split into clusters, as a share of the shadow distance.
 pub(crate) const LARGE: f32 = 1.0 / 32.0;
 
-/// Triangles for which there is a cluster, and the most clusters of a mesh: they cost each fit some 0.3 µs each.
+/// Triangles per cluster, and maximum number of clusters per mesh. Each cluster costs about 0.3 µs per fit.
 const TRIANGLES_PER_CLUSTER: usize = 32;
 const MAX_CLUSTERS: usize = 512;
 
 type Triangles = Vec<[FitVec3; 3]>;
 type Boxes = Option<Arc<[shadowfit::Aabb]>>;
 
-/// The clusters of meshes, in their own space, made in the background when a fit first asks for them.
+/// Clusters of meshes in mesh space. They are computed in the background when a fit first requests them.
 #[derive(Resource, Default)]
 pub(crate) struct MeshClusters {
     made: HashMap<AssetId<Mesh>, Boxes>,
@@ -34,7 +35,7 @@ pub(crate) struct MeshClusters {
 }
 
 impl MeshClusters {
-    /// The clusters of a mesh, or `None` while there are none, which is noted.
+    /// Returns the clusters of a mesh. If there are none yet, returns `None` and records the request.
     pub(crate) fn of(&self, mesh: AssetId<Mesh>) -> Option<&[shadowfit::Aabb]> {
         match self.made.get(&mesh) {
             Some(boxes) => boxes.as_deref(),
@@ -46,7 +47,7 @@ impl MeshClusters {
     }
 }
 
-/// Takes what is finished, begins what was asked for, and drops what has changed.
+/// Collects finished clusters, starts requested ones, and drops the clusters of changed meshes.
 pub(crate) fn update_clusters(
     mut clusters: ResMut<MeshClusters>,
     meshes: Option<Res<Assets<Mesh>>>,
@@ -76,7 +77,7 @@ pub(crate) fn update_clusters(
     }
 }
 
-/// The triangles of a mesh that the CPU still has and that are enough to be cut; `None` of others.
+/// Returns the triangles of a mesh if they are still on the CPU and enough to be split; otherwise `None`.
 fn triangles(mesh: &Mesh) -> Option<Triangles> {
     if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
         return None;

@@ -1,4 +1,4 @@
-//! The system: cascades of all lights that have [`FittedShadows`], for all views.
+//! System that fits the cascades of all lights with [`FittedShadows`], for all views.
 
 use std::f32::consts::SQRT_2;
 
@@ -37,7 +37,7 @@ pub(crate) struct FittedLight {
     cascades: &'static mut Cascades,
 }
 
-/// Replaces the cascades that Bevy has made in this frame.
+/// Replaces the cascades that Bevy computed in this frame.
 pub(crate) fn fit_cascades(
     mut lights: Query<FittedLight>,
     scene: Scene,
@@ -72,7 +72,7 @@ pub(crate) fn fit_cascades(
     }
 }
 
-/// Leaves a light to Bevy when its [`FittedShadows`] are removed.
+/// Returns a light to Bevy when its [`FittedShadows`] are removed.
 pub(crate) fn forget(
     removed: On<Remove<FittedShadows>>,
     mut lights: Query<(&mut FitMemory, &mut CascadeShadowConfig, &mut DirectionalLight)>,
@@ -88,7 +88,7 @@ pub(crate) fn forget(
 }
 
 impl FittedShadows {
-    /// The same with a fit that the shader can read.
+    /// Returns these settings with a fit that the shader can read.
     fn with_shader(self, shader: WindowsShader) -> Self {
         let fit = if self.fit == Fit::Windows && shader != WindowsShader::Ready { Fit::Calm } else { self.fit };
         Self { fit, ..self }
@@ -96,7 +96,7 @@ impl FittedShadows {
 }
 
 impl FitMemory {
-    /// The fitter that is told what a camera's picture shows.
+    /// Returns the fitter that receives a camera's visible demand.
     fn fitter_of(&mut self, camera: Entity, fit: Fit) -> &mut ShadowFitter {
         if fit != Fit::Windows {
             return &mut self.bounds;
@@ -106,7 +106,7 @@ impl FitMemory {
         &mut fitters[0]
     }
 
-    /// Says once why a light keeps Bevy's cascades.
+    /// Logs once why a light keeps Bevy's cascades.
     fn tell(&mut self, light: Entity, problem: Option<String>) {
         if problem != self.told {
             if let Some(problem) = &problem {
@@ -120,9 +120,9 @@ impl FitMemory {
 /// A light of this frame, checked.
 struct Sun {
     fitted: FittedShadows,
-    /// Direction of travel, in world axes.
+    /// Direction of travel in world axes.
     direction: fit_glam::Vec3,
-    /// The user's bounds, in metres of view depth, ascending; shadows end at the last one.
+    /// Bounds set by the user, in metres of view depth, ascending. Shadows end at the last one.
     bounds: Vec<f32>,
     overlap: f32,
     resolution: u32,
@@ -140,7 +140,8 @@ impl Sun {
         if !(1..=MAX_CASCADES_PER_LIGHT).contains(&count) || !is_ascending {
             return Err(Problem::Cascades(count));
         }
-        // The direction that Bevy's shader lights by: it may differ from the rotation's where a transform mirrors.
+        // Direction that Bevy's shader lights by. It may differ from the rotation's direction if a transform
+        // mirrors.
         let forward = -transform.affine().matrix3.z_axis;
         let direction = forward.try_normalize().ok_or(Problem::Light)?;
         let biases = match fitted.bias {
@@ -158,12 +159,12 @@ impl Sun {
         })
     }
 
-    /// Where shadows end, in metres of view depth.
+    /// Returns the shadow distance, in metres of view depth.
     fn max_distance(&self) -> f32 {
         self.bounds[self.bounds.len() - 1]
     }
 
-    /// Fits all cascades of all views. Nothing is changed where one of them is refused.
+    /// Fits all cascades of all views. If one fit fails, no cascade changes.
     fn fit(&self, views: &[&View], item: &mut FittedLightItem) -> Result<(), Problem> {
         let FittedLightItem { memory, light, config, cascades, .. } = item;
         let shadowed = self.shadowed(views)?;
@@ -192,11 +193,11 @@ impl Sun {
         Ok(())
     }
 
-    /// The cameras whose pictures tell where windows or bounds should be, and what to count in them.
+    /// Returns the cameras whose visible demand decides windows or bounds, each with its view to count.
     fn demand(&self, views: &[&View]) -> Vec<(Entity, DemandView)> {
         let is_wanted = match self.fitted.fit {
             Fit::Windows => true,
-            // Bounds are one list for all views.
+            // All views share one list of bounds.
             fit => fit.uses_histogram() && self.fitted.splits == FitSplits::Ours && views.len() == 1,
         };
         let counted = views.iter().filter(|view| is_wanted && view.has_prepass);
@@ -222,12 +223,12 @@ impl Sun {
         Ok(maps.iter().map(|map| self.cascade(map)).collect())
     }
 
-    /// Returns the views that have a part with shadows.
+    /// Returns the views that begin within the shadow distance.
     fn shadowed<'a>(&self, views: &[&'a View]) -> Result<Vec<ShadowedView<'a>>, Problem> {
         let mut shadowed = Vec::with_capacity(views.len());
         for view in views {
             let frustum = view.frustum(self.max_distance())?;
-            // An empty one lies beyond the shadows.
+            // An empty frustum lies beyond the shadow distance.
             if !frustum.is_empty() {
                 shadowed.push(ShadowedView { view, frustum });
             }
@@ -235,7 +236,7 @@ impl Sun {
         Ok(shadowed)
     }
 
-    /// Bounds of the cascades of all views, in metres of view depth.
+    /// Returns the bounds of the cascades of all views, in metres of view depth.
     fn bounds(&self, views: &[ShadowedView], memory: &mut FitMemory) -> Result<Vec<f32>, Problem> {
         let count = self.bounds.len();
         if self.fitted.splits == FitSplits::Bevys {
@@ -267,7 +268,7 @@ impl Sun {
         let mut bounds = Vec::with_capacity(count);
         let mut last = 0.0_f32;
         for map in fitted.iter() {
-            // The last one has no end, and one without a range ends before all others.
+            // The last map has no end, and a map without a range ends before all others.
             last = last.max(map.shader_end()).min(self.max_distance());
             bounds.push(last);
         }
@@ -275,8 +276,9 @@ impl Sun {
         Ok(bounds)
     }
 
-    /// Bounds by Bevy's rule, equal ratios from the first one on, up to the farthest receiver in view instead of where
-    /// shadows end: nearer ones are sharper, but more pixels pass from one map to the next when the camera moves.
+    /// Returns bounds by Bevy's rule, with equal ratios from the first one on. They extend to the farthest
+    /// receiver in view instead of the shadow distance. Nearer bounds are sharper, but more pixels move from
+    /// one map to the next when the camera moves.
     fn spaced_bounds(&self, views: &[ShadowedView], held: &mut Option<f32>) -> Vec<f32> {
         let (first, end) = (self.bounds[0], self.max_distance());
         let farthest = |part: &ShadowedView| part.view.receivers.farthest(part.frustum.origin.as_vec3());
@@ -291,7 +293,8 @@ impl Sun {
         bounds
     }
 
-    /// The cascades of a view; Bevy's where no point of the view lies between their bounds.
+    /// Returns the cascades of a view. If no point of the view lies between two bounds, Bevy's cascade is
+    /// kept.
     fn cascades(
         &self,
         shadowed: &ShadowedView,
@@ -312,17 +315,17 @@ impl Sun {
             if *fitter.technique() != technique {
                 fitter.set_technique(&technique);
             }
-            // Points within rounding of a bound may read either side.
+            // Points within rounding of a bound may read either map.
             let (from, mut to) = (near - near.abs() * ROUNDING, far + far.abs() * ROUNDING);
             if is_stable && *far == self.max_distance() {
-                // Nothing receives beyond.
+                // No receiver lies beyond.
                 to = to.min(farthest);
             }
             near = frustum.near.max(far * (1.0 - self.overlap));
             let Ok(part) = frustum.slice(from, to) else { continue };
             boxes.clear();
             boxes.extend(depths.between(from, to));
-            // What is in view would change the size of the maps that are to stand still.
+            // Visible receivers would change the size of maps that must stay still.
             let knows_receivers = !view.receivers.has_unknown && self.fitted.fit != Fit::Stable;
             let receivers = knows_receivers.then_some(Boxes::world(&boxes));
             let parts = [part];
@@ -332,35 +335,35 @@ impl Sun {
         Ok(cascades)
     }
 
-    /// The cascade of a map, with room for receivers that biases move toward the light.
+    /// Returns the cascade of a map, with room for receivers that biases move toward the light.
     fn cascade(&self, map: &FittedMap) -> Cascade {
         let texel = map.projection.texel_size.max_element();
         cascade(map, self.biases.depth.max(0.0) + (self.biases.normal.max(0.0) * SQRT_2 + 1.0) * texel)
     }
 }
 
-/// How far beyond the farthest receiver new bounds of still maps reach, and when they are given up: bounds that change
-/// move all edges.
+/// New bounds of still maps, and the greatest bounds that are kept, as multiples of the farthest receiver's
+/// distance. Changing bounds moves all edges.
 const FAR_ROOM: f32 = 1.25;
 const MAX_FAR_WASTE: f32 = 2.5;
 
-/// Relative error of a view depth in Bevy's shader: f32, with room for the matrices that it goes through.
+/// Relative error of a view depth in Bevy's shader: f32 rounding, including its matrices.
 const ROUNDING: f32 = 1e-5;
 
-/// A view that has a part with shadows.
+/// A view that begins within the shadow distance.
 struct ShadowedView<'a> {
     view: &'a View,
-    /// This part.
+    /// Frustum of the view up to the shadow distance.
     frustum: ViewFrustum,
 }
 
-/// The receivers of a view with their depths in it.
+/// Receivers of a view with their view depths.
 struct Depths<'a> {
     boxes: &'a [shadowfit::Aabb],
     ranges: Vec<DepthRange>,
 }
 
-/// View depths between which a receiver lies, in metres.
+/// Range of a receiver's view depths, in metres.
 struct DepthRange {
     near: f32,
     far: f32,
@@ -380,7 +383,7 @@ impl<'a> Depths<'a> {
         Self { boxes, ranges: boxes.iter().map(range).collect() }
     }
 
-    /// The boxes of which a part may lie between two view depths.
+    /// Returns the boxes that may lie partly between two view depths.
     fn between(&self, near: f32, far: f32) -> impl Iterator<Item = shadowfit::Aabb> {
         let is_in = move |range: &DepthRange| range.far >= near && range.near <= far;
         self.ranges.iter().zip(self.boxes).filter(move |(range, _)| is_in(range)).map(|(_, aabb)| *aabb)

@@ -1,5 +1,5 @@
-//! What the last pictures showed, counted in Bevy's depth prepass and read back late, without waiting: bounds follow
-//! it where a light has a single view.
+//! Visible demand from Bevy's depth prepass, read back late, without waiting. If a light has a single view,
+//! it also places the bounds.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,24 +15,24 @@ use bevy::render::{Render, RenderApp, RenderSystems};
 use shadowfit::VisibleDemand;
 use shadowfit_wgpu::demand::{DemandPass, DemandView};
 
-/// A light, and a camera whose picture is counted for it.
+/// A light, and a camera whose visible points are counted for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct CountedView {
     pub(crate) light: Entity,
     pub(crate) camera: Entity,
 }
 
-/// Pictures that are to be counted in this frame; their rectangles are those of the cameras.
+/// Views to count in this frame. Their rectangles are the cameras' viewports.
 #[derive(Resource, ExtractResource, Clone, Default)]
 #[extract_app(RenderApp)]
 pub(crate) struct Wanted(pub(crate) Vec<(CountedView, DemandView)>);
 
-/// What was counted last, shared by both worlds.
+/// Latest visible demand, shared by the main world and the render world.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct Sightings(Arc<Mutex<HashMap<CountedView, VisibleDemand>>>);
 
 impl Sightings {
-    /// The newest counts, given once.
+    /// Returns the newest visible demand, only once.
     pub(crate) fn take(&self, key: CountedView) -> Option<VisibleDemand> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key)
     }
@@ -42,7 +42,7 @@ impl Sightings {
     }
 }
 
-/// The passes that count, in the render world: one for each light and camera.
+/// Counting passes in the render world: one for each light and camera.
 #[derive(Resource, Default)]
 struct Passes {
     passes: HashMap<CountedView, DemandPass>,
@@ -50,7 +50,7 @@ struct Passes {
     is_refused: bool,
 }
 
-/// Adds what counts, where the app renders.
+/// Adds the counting systems if the app renders.
 pub(crate) fn add(app: &mut App) {
     let sightings = Sightings::default();
     app.insert_resource(sightings.clone()).init_resource::<Wanted>();
@@ -66,7 +66,7 @@ pub(crate) fn add(app: &mut App) {
         .add_systems(Render, take.in_set(RenderSystems::Cleanup));
 }
 
-/// Counts a view's depth prepass for each light that asks for it.
+/// Counts a view's depth prepass for each light that requests it.
 fn count(
     view: ViewQuery<(&ExtractedView, &ExtractedCamera, &ViewPrepassTextures)>,
     wanted: Option<Res<Wanted>>,
@@ -86,14 +86,14 @@ fn count(
         let demand = DemandView { rectangle: [corner.x, corner.y, size.x, size.y], ..*demand };
         let Some(pass) = passes.of(*key, depth.texture().sample_count(), &device, &queue) else { return };
         if let Err(error) = pass.record(context.command_encoder(), depth, &demand, None) {
-            warn_once!("what a depth prepass shows cannot be counted: {error}; cascades go by boxes");
+            warn_once!("a depth prepass cannot be counted: {error}; cascades are fitted to bounding boxes");
         }
     }
     passes.passes.retain(|key, _| wanted.0.iter().any(|(wanted, _)| wanted == key));
 }
 
 impl Passes {
-    /// The pass of a light and a camera; `None` where the device has none.
+    /// Returns the pass of a light and a camera, or `None` if the device cannot count.
     fn of(
         &mut self,
         key: CountedView,
@@ -109,7 +109,7 @@ impl Passes {
                 Ok(pass) => _ = self.passes.insert(key, pass),
                 Err(error) => {
                     self.is_refused = true;
-                    info!("cascades go by boxes: {error}");
+                    info!("cascades are fitted to bounding boxes: {error}");
                 }
             }
         }
@@ -117,10 +117,10 @@ impl Passes {
     }
 }
 
-/// Hands what has come back over to the fits.
+/// Passes arrived counts on to the fits.
 fn take(mut passes: ResMut<Passes>, sightings: Res<Sightings>) {
     for (key, pass) in &mut passes.passes {
-        // A lost device is Bevy's to deal with.
+        // Bevy handles a lost device.
         if let Ok(Some(seen)) = pass.take() {
             sightings.put(*key, seen);
         }

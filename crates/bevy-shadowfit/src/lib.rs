@@ -1,4 +1,4 @@
-//! Sharper, calmer, complete sun shadows for Bevy: shadowfit's fits in place of its cascades.
+//! Sharper, calmer and complete sun shadows for Bevy: shadowfit's fits replace Bevy's cascades.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -14,9 +14,10 @@
 //! }
 //! ```
 //!
-//! Bevy's renderer stays as it is: its passes, its maps, its filters, its culling. Where the cascades of a light lie is
-//! replaced, by a system that runs after Bevy has made its own and before anything reads them ([`ShadowfitSystems::Fit`]).
-//! [`Fit::Windows`], the default, also adds to two functions of Bevy's shader library; the other fits leave it alone.
+//! Bevy's renderer stays the same, with its passes, maps, filters and culling. The plugin replaces the
+//! position of a light's cascades, in a system that runs after Bevy's cascade system and before their first
+//! use ([`ShadowfitSystems::Fit`]). [`Fit::Windows`], the default, also extends two functions of Bevy's
+//! shader library. The other fits do not change it.
 
 use bevy::asset::AssetEventSystems;
 use bevy::camera::visibility::VisibilitySystems;
@@ -40,23 +41,23 @@ mod windows_shader;
 pub use clusters::WholeBox;
 pub use settings::{Fit, FitBias, FitSplits, FittedShadows};
 
-/// What users of the plugin name.
+/// Items for users of the plugin.
 pub mod prelude {
     pub use crate::{Fit, FitBias, FitSplits, FittedShadows, ShadowfitPlugin, ShadowfitSystems, WholeBox};
 }
 
-/// Fits the cascades of lights that have [`FittedShadows`]. Add it after `DefaultPlugins`.
+/// Plugin that fits the cascades of lights with [`FittedShadows`]. Add it after `DefaultPlugins`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShadowfitPlugin;
 
-/// When the plugin's systems run.
+/// Sets of the plugin's systems, to order other systems before or after them.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ShadowfitSystems {
-    /// In `First`: lights have the bounds and biases of their user again.
+    /// In `First`: restores the bounds and biases that the user set.
     GiveBack,
     /// In `PostUpdate`, after [`SimulationLightSystems::UpdateDirectionalLightCascades`] and
-    /// [`VisibilitySystems::CheckVisibility`], before [`SimulationLightSystems::UpdateLightFrusta`]: cascades, bounds and
-    /// biases are those of this frame's fit.
+    /// [`VisibilitySystems::CheckVisibility`], before [`SimulationLightSystems::UpdateLightFrusta`]: sets the
+    /// cascades, bounds and biases of this frame's fit.
     Fit,
 }
 

@@ -1,4 +1,4 @@
-//! What is remembered of a light from frame to frame: its maps, and what its user has set.
+//! State of a light between frames: its fitters, and the values that the user set.
 
 use bevy::ecs::entity::EntityHashMap;
 use bevy::light::{CascadeShadowConfig, DirectionalLight};
@@ -7,22 +7,22 @@ use shadowfit::ShadowFitter;
 
 use crate::bias::Biases;
 
-/// The fitters of a light, and the values that it has lent us.
+/// Fitters of a light, and the user's values while the light holds the plugin's values.
 #[derive(Component, Clone, Default)]
 pub(crate) struct FitMemory {
-    /// Chooses the bounds, for all views together.
+    /// Fitter that chooses the bounds, for all views together.
     pub(crate) bounds: ShadowFitter,
     /// View depth up to which the bounds of still maps are spaced, in metres.
     pub(crate) farthest: Option<f32>,
-    /// Fits each cascade of each view.
+    /// Fitters for each cascade of each view.
     pub(crate) views: EntityHashMap<Vec<ShadowFitter>>,
-    /// What the user has set, while the light holds our values.
+    /// Values that the user set, while the light holds the plugin's values.
     lent: Option<Lent>,
-    /// What was told last about a light that keeps Bevy's cascades.
+    /// Last logged reason why the light keeps Bevy's cascades.
     pub(crate) told: Option<String>,
 }
 
-/// Values of the user that a frame's fit has replaced, each with the one in its place.
+/// User values that a frame's fit has replaced, each with its replacement.
 #[derive(Clone)]
 struct Lent {
     bounds: Replaced<Vec<f32>>,
@@ -36,7 +36,7 @@ struct Replaced<T> {
 }
 
 impl<T: PartialEq> Replaced<T> {
-    /// Gives the user's value back, unless somebody has set another one since.
+    /// Restores the user's value, unless other code has changed the value since.
     fn give_back(self, place: &mut T) {
         if *place == self.ours {
             *place = self.users;
@@ -45,9 +45,9 @@ impl<T: PartialEq> Replaced<T> {
 }
 
 impl FitMemory {
-    /// Sets the bounds of the config, in metres of view depth, and the biases of the light to the values of a fit, for
-    /// Bevy's renderer. The user's values are kept. Change detection does not see it: Bevy makes new cascades in each
-    /// frame, so the renderer extracts all lights in each frame.
+    /// Sets the bounds of the config, in metres of view depth, and the biases of the light to the values of a
+    /// fit, for Bevy's renderer. The user's values are kept. Change detection is bypassed: Bevy recomputes
+    /// cascades in each frame, so the renderer extracts all lights anyway.
     pub(crate) fn lend(
         &mut self,
         bounds: Vec<f32>,
@@ -65,7 +65,7 @@ impl FitMemory {
             Some(Lent { bounds: Replaced { users, ours }, biases: Replaced { users: users_biases, ours: biases } });
     }
 
-    /// Gives the user's values back.
+    /// Restores the user's values.
     pub(crate) fn give_back(&mut self, config: &mut Mut<CascadeShadowConfig>, light: &mut Mut<DirectionalLight>) {
         let Some(Lent { bounds, biases }) = self.lent.take() else { return };
         bounds.give_back(&mut config.bypass_change_detection().bounds);
@@ -76,7 +76,7 @@ impl FitMemory {
     }
 }
 
-/// Gives all users their values back, for Bevy's own cascades and whoever looks at them.
+/// Restores all users' values, for Bevy's cascade system and other systems.
 pub(crate) fn give_back(mut lights: Query<(&mut FitMemory, &mut CascadeShadowConfig, &mut DirectionalLight)>) {
     for (mut memory, mut config, mut light) in &mut lights {
         memory.give_back(&mut config, &mut light);

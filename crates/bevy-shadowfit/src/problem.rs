@@ -1,22 +1,22 @@
-//! Why a light keeps Bevy's own cascades.
+//! Reasons why a light keeps Bevy's own cascades.
 
 use std::fmt;
 
 use bevy::prelude::*;
 use shadowfit::FitError;
 
-/// What is wrong with a light, a view or the scene.
+/// Problem of a light, a view or the scene.
 #[derive(Debug)]
 pub(crate) enum Problem {
     /// The light has no direction.
     Light,
-    /// The number of its cascades is not one that Bevy draws.
+    /// Bevy does not support this number of cascades.
     Cascades(usize),
-    /// A camera whose transform is not finite or scales, or a mesh that only it knows.
+    /// A camera's transform is not finite or scales, or a mesh that only this camera shows is invalid.
     View(Entity),
-    /// A mesh whose box is not finite.
+    /// A mesh's box is not finite.
     Mesh(Entity),
-    /// A fit that was refused.
+    /// A fit failed.
     Fit(FitError),
 }
 
@@ -29,18 +29,18 @@ impl From<FitError> for Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Light => write!(f, "its transform has no direction (it scales by 0 or is not finite)"),
+            Self::Light => write!(f, "its transform has no direction, because it scales by 0 or is not finite"),
             Self::Cascades(count) => write!(
                 f,
                 "its CascadeShadowConfig has {count} bounds, or bounds that are not positive, finite and ascending; 1 to {} are drawn",
                 bevy::pbr::MAX_CASCADES_PER_LIGHT
             ),
             Self::View(camera) => {
-                write!(f, "the transform of camera {camera} is not finite or scales; a camera's scale has to be 1")
+                write!(f, "the transform of camera {camera} is not finite or scales; set the camera's scale to 1")
             }
             Self::Mesh(mesh) => write!(
                 f,
-                "the bounding box of mesh {mesh} is not finite (Aabb and GlobalTransform); NotShadowReceiver leaves it out"
+                "the bounding box of mesh {mesh} is not finite (Aabb and GlobalTransform); NotShadowReceiver ignores it"
             ),
             Self::Fit(error) => write!(f, "{error}"),
         }

@@ -1,4 +1,4 @@
-//! What a user sets on a light, and the techniques of shadowfit that follow from it.
+//! Settings of a light, and the shadowfit techniques for them.
 
 use std::f32::consts::SQRT_2;
 
@@ -11,14 +11,16 @@ use shadowfit::{Cascades, DepthConvention, SingleMap, Technique, Windows};
 
 use crate::memory::FitMemory;
 
-/// Put it beside a [`DirectionalLight`] with shadow maps: its cascades are then fitted by shadowfit, for every active
-/// [`Camera3d`]. A light without it stays Bevy's, and so does one from which it is removed.
+/// Settings for a [`DirectionalLight`] with shadow maps. Add this component to the light, and shadowfit fits
+/// its cascades for every active [`Camera3d`]. Without it, or after it is removed, the light uses Bevy's
+/// cascades.
 ///
-/// How many cascades there are, where shadows end and how far cascades overlap is taken from the light's
-/// [`CascadeShadowConfig`](bevy::light::CascadeShadowConfig), how large the maps are from
-/// [`DirectionalLightShadowMap`](bevy::light::DirectionalLightShadowMap). Between `PostUpdate` and the next `First`,
-/// the config holds the bounds of this frame's fit, as Bevy's renderer needs them, and the light the biases; in between
-/// both hold what you set.
+/// The light's [`CascadeShadowConfig`](bevy::light::CascadeShadowConfig) decides the number of cascades, the
+/// shadow distance and the overlap of cascades.
+/// [`DirectionalLightShadowMap`](bevy::light::DirectionalLightShadowMap) decides the size of the maps.
+/// Between `PostUpdate` and the next `First`, the config contains the bounds of this frame's fit (the view
+/// depths at which cascades end), as Bevy's renderer requires, and the light contains the biases of the fit.
+/// At all other times both contain your values.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -35,100 +37,103 @@ use crate::memory::FitMemory;
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(FitMemory)]
 pub struct FittedShadows {
-    /// How the cascades are fitted. Default: [`Fit::Windows`].
+    /// Fit of the cascades. Default: [`Fit::Windows`].
     pub fit: Fit,
-    /// Whose biases the light has. Default: [`FitBias::Ours`].
+    /// Source of the biases. Default: [`FitBias::Ours`].
     pub bias: FitBias,
-    /// Whose bounds the cascades have. Default: [`FitSplits::Ours`].
+    /// Source of the bounds, the view depths at which cascades end. Default: [`FitSplits::Ours`].
     pub splits: FitSplits,
 }
 
-/// How cascades are fitted.
+/// Fit of the cascades.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum Fit {
-    /// Spheres around parts of the view, moved by whole texels, as Bevy's own cascades are, with bounds up to the farthest
-    /// mesh in view: edges stand still.
+    /// Spheres around parts of the view, moved by whole texels like Bevy's own cascades, with bounds up to
+    /// the farthest mesh in view. Edges do not crawl.
     Stable,
-    /// Least rectangles around the meshes in view, kept while they serve and moved by whole texels: nearly as still,
-    /// and far sharper. The best that Bevy's shader reads by itself.
+    /// Smallest rectangles around the meshes in view, held while they are large enough and moved by whole
+    /// texels. Nearly as still as [`Self::Stable`], and far sharper. The best fit that Bevy's unmodified
+    /// shader can read.
     Calm,
-    /// Least rectangles around the meshes in view, in each frame anew, with bounds by what the frame before showed: the
-    /// sharpest of those that Bevy's shader reads by itself, and edges crawl when the camera moves. For pictures that
-    /// stand alone.
+    /// Smallest rectangles around the meshes in view, recomputed in each frame, with bounds from the visible
+    /// demand of the previous frame. The sharpest fit that Bevy's unmodified shader can read, but edges crawl
+    /// when the camera moves. Use it for single images.
     Histogram,
-    /// Squares of the plane across the light that stand still in the world, each where it helps most of what the frame
-    /// before showed: sharper than [`Self::Histogram`] and nearly as still as [`Self::Stable`]. They are read by
-    /// coverage: a point reads the finest one that holds it, for which two functions of Bevy's shader library
-    /// `shadows.wesl` are extended when it is loaded. All bounds are those of the last cascade, and
-    /// [`FittedShadows::splits`] has no effect. Where Bevy's shader is another one, it is [`Self::Calm`]. The default.
+    /// Windows: square maps perpendicular to the light, on grids that are fixed in the world, each placed
+    /// where it improves the most visible pixels. Sharper than [`Self::Histogram`] and nearly as still as
+    /// [`Self::Stable`]. A point reads the finest window that covers it. For this, the plugin extends two
+    /// functions of Bevy's shader library `shadows.wesl` when it is loaded. All bounds are equal to the last
+    /// cascade's bound, and [`FittedShadows::splits`] has no effect. If Bevy's shader differs from the
+    /// expected text, this fit behaves like [`Self::Calm`]. The default.
     #[default]
     Windows,
 }
 
-/// Whose biases a light has.
+/// Source of a light's biases.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum FitBias {
-    /// 0.05 m toward the light and 0.3 diagonals of a texel along the normal, which have far fewer wrong pixels
-    /// than Bevy's defaults with every fit. For worlds in metres. The default.
+    /// 0.05 m toward the light and 0.3 diagonals of a texel along the normal. With every fit these biases
+    /// give far fewer wrong pixels than Bevy's defaults. They suit worlds measured in metres. The default.
     #[default]
     Ours,
-    /// [`DirectionalLight::shadow_depth_bias`] and [`DirectionalLight::shadow_normal_bias`] as they are set.
+    /// Values of [`DirectionalLight::shadow_depth_bias`] and [`DirectionalLight::shadow_normal_bias`].
     Bevys,
 }
 
-/// Whose bounds cascades have.
+/// Source of the bounds of cascades.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum FitSplits {
-    /// Those that make the coarsest texels on screen as fine as can be, for what is in view; with [`Fit::Stable`] Bevy's
-    /// spacing, up to the farthest mesh in view. The last bound, where shadows end, stays that of the config. The
-    /// default.
+    /// Bounds that make the coarsest texels on screen as small as possible, over the visible points. With
+    /// [`Fit::Stable`], Bevy's spacing up to the farthest mesh in view. The last bound, where shadows end, is
+    /// always the config's. The default.
     #[default]
     Ours,
-    /// All bounds of the config as they are set.
+    /// All bounds of the config, unchanged.
     Bevys,
 }
 
-/// What a light's maps are read with, in texels.
+/// Distances that the look-up of a light's maps needs, in texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reading {
-    /// Greatest distance along an axis from the point that is looked up to a texel that the filter reads.
+    /// Greatest distance along an axis from the point of the look-up to a texel that the filter reads.
     pub(crate) reach: f32,
     /// Offset of the point along the surface's normal.
     pub(crate) normal_bias: f32,
 }
 
 impl Reading {
-    /// The reading of a light by the filters of its views.
+    /// Returns the distances for a light and the filters of its views.
     pub(crate) fn new(filters: impl Iterator<Item = ShadowFilteringMethod>, normal_bias: f32) -> Self {
         let reach = filters.map(reach).fold(0.0, f32::max);
         Self { reach, normal_bias: normal_bias.max(0.0) }
     }
 
-    /// Free texels that a map needs at its border: beyond it Bevy's shader finds light.
+    /// Returns the border that a map needs, in texels. Bevy's shader treats points outside it as lit.
     fn border(self) -> f32 {
-        // Bevy's renderer takes the bias in diagonals of texels, and of their longer side.
+        // Bevy's renderer scales the bias by the diagonal of a texel, computed from its longer side.
         self.reach + self.normal_bias * SQRT_2 * MAX_WINDOW_RATIO
     }
 }
 
-/// Radius of Bevy's filters, in texels.
+/// Returns the radius of Bevy's filters, in texels.
 fn reach(filter: ShadowFilteringMethod) -> f32 {
     match filter {
         ShadowFilteringMethod::Hardware2x2 => FilterKind::Hardware2x2.filter_radius(),
-        // The same 6 × 6 texels as ours.
+        // The same 6 × 6 texels as in shadowfit's filter.
         ShadowFilteringMethod::Gaussian => FilterKind::Pcf5x5.filter_radius(),
-        // Its disc is given in metres: from 1.5 to 4 texels for texels of 4 to 23 mm, one hardware look-up each.
+        // The radius of its disc is in metres: 1.5 to 4 texels for texels of 4 to 23 mm, plus one hardware
+        // look-up.
         ShadowFilteringMethod::Temporal => 5.0,
     }
 }
 
-/// Greatest ratio of a texel's sides: Bevy's biases know one size only, that of the longer side.
+/// Greatest ratio of a texel's sides. Bevy's biases use only the size of the longer side.
 const MAX_TEXEL_RATIO: f32 = 2.0;
 
-/// Ratio of the sides of a window's texel where the sun stands 15 degrees high, rounded up.
+/// Ratio of the sides of a window's texel for a sun 15 degrees above the horizon, rounded up.
 const MAX_WINDOW_RATIO: f32 = 4.0;
 
 impl Fit {
@@ -156,12 +161,13 @@ impl Fit {
         }
     }
 
-    /// Whether what an earlier frame showed is of use.
+    /// Returns whether the fit uses the histogram of an earlier frame.
     pub(crate) fn uses_histogram(self) -> bool {
         self.scheme() == SplitScheme::FromHistogram
     }
 
-    /// The technique that chooses the bounds of `count` cascades, which end at `max_distance`, in metres.
+    /// Returns the technique that chooses the bounds of `count` cascades, which end at `max_distance`, in
+    /// metres.
     pub(crate) fn for_bounds(self, count: usize, max_distance: f32, resolution: u32, reading: Reading) -> Technique {
         let maps = Cascades {
             count: count as u32,
@@ -173,13 +179,13 @@ impl Fit {
         technique(resolution, reading).with_maps(maps).with_max_distance(max_distance)
     }
 
-    /// The technique of `count` windows of a view that ends at `max_distance`, in metres.
+    /// Returns the technique of `count` windows of a view that ends at `max_distance`, in metres.
     pub(crate) fn for_windows(count: usize, max_distance: f32, resolution: u32, reading: Reading) -> Technique {
         let maps = Windows::default().with_count(count as u32);
         technique(resolution, reading).with_maps(maps).with_max_distance(max_distance)
     }
 
-    /// The technique of a single cascade, whose part of the view is cut out beforehand.
+    /// Returns the technique of a single cascade, whose slice of the view is computed beforehand.
     pub(crate) fn for_cascade(self, resolution: u32, reading: Reading) -> Technique {
         technique(resolution, reading).with_maps(SingleMap { shape: self.shape(), stabilise: self.stabilise() })
     }

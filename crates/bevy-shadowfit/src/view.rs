@@ -1,4 +1,4 @@
-//! The views that are shadowed, and the boxes of what receives shadows in each.
+//! Views with shadows, and the boxes of the receivers in each.
 
 use std::any::TypeId;
 
@@ -26,20 +26,20 @@ pub(crate) struct View {
     pub(crate) camera: Entity,
     pub(crate) layers: RenderLayers,
     pub(crate) filter: ShadowFilteringMethod,
-    /// What it sees, up to the greatest distance at which a light has shadows.
+    /// Matrix of the view, up to the greatest shadow distance of all lights.
     world_from_clip: fit_glam::DMat4,
     eye: fit_glam::DVec3,
-    /// Whether its picture can be counted.
+    /// Whether its depth prepass can be counted.
     pub(crate) has_prepass: bool,
     pub(crate) receivers: Receivers,
 }
 
-/// What receives shadows in a view.
+/// Receivers of a view.
 #[derive(Default)]
 pub(crate) struct Receivers {
-    /// World boxes, in metres.
+    /// Boxes in world space, in metres.
     pub(crate) boxes: Vec<shadowfit::Aabb>,
-    /// Whether there are others of which no box is known, so that everything in view counts.
+    /// Whether there are receivers without a known box, so that everything in view may receive shadows.
     pub(crate) has_unknown: bool,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct ViewCamera {
     has_prepass: Has<DepthPrepass>,
 }
 
-/// Meshes whose visibility the CPU does not look at.
+/// Meshes that are not culled on the CPU.
 type Unculled<'w, 's> = Query<
     'w,
     's,
@@ -64,7 +64,7 @@ type Unculled<'w, 's> = Query<
     (With<Mesh3d>, With<NoCpuCulling>, Without<NotShadowReceiver>),
 >;
 
-/// What is known of a mesh.
+/// Components that decide a mesh's box.
 #[derive(QueryData)]
 pub(crate) struct MeshBox {
     transform: &'static GlobalTransform,
@@ -76,7 +76,7 @@ pub(crate) struct MeshBox {
     is_morphed: Has<MeshMorphWeights>,
 }
 
-/// Everything that views are made from.
+/// Input for computing views.
 #[derive(SystemParam)]
 pub(crate) struct Scene<'w, 's> {
     cameras: Query<'w, 's, ViewCamera, With<Camera3d>>,
@@ -86,8 +86,8 @@ pub(crate) struct Scene<'w, 's> {
 }
 
 impl Scene<'_, '_> {
-    /// The active views, each with what receives shadows in it. Meshes that reach farther than `large` metres to a side
-    /// count with their clusters.
+    /// Returns the active views with their receivers. Meshes that extend more than `large` metres from their
+    /// centre use their clusters.
     pub(crate) fn views(&self, large: f32) -> Result<Vec<View>, Problem> {
         self.cameras.iter().filter(|item| item.camera.is_active).map(|item| self.view(&item, large)).collect()
     }
@@ -113,7 +113,7 @@ impl Scene<'_, '_> {
         })
     }
 
-    /// Returns the boxes of the meshes that a camera sees. `layers` are the camera's.
+    /// Returns the boxes of the meshes that a camera sees. `layers` are the camera's layers.
     fn receivers(&self, item: &ViewCameraItem, layers: &RenderLayers, large: f32) -> Result<Receivers, Problem> {
         let mut receivers = Receivers::default();
         let visible = item.visible.get(TypeId::of::<Mesh3d>());
@@ -130,8 +130,8 @@ impl Scene<'_, '_> {
     }
 }
 
-/// World space from a camera's view space; `None` where a metre of the one is none of the other, so that view depths
-/// would mean something else to Bevy.
+/// Returns the matrix from a camera's view space to world space. Returns `None` if it scales, because Bevy
+/// would compute different view depths.
 fn world_from_view(transform: &GlobalTransform) -> Option<DMat4> {
     let matrix = DMat4::from_cols_array(&transform.to_matrix().to_cols_array().map(f64::from));
     let is_unit = |axis: usize| (matrix.col(axis).length() - 1.0).abs() < 1e-3;
@@ -139,13 +139,13 @@ fn world_from_view(transform: &GlobalTransform) -> Option<DMat4> {
 }
 
 impl View {
-    /// What the view sees, as far as `max_distance`, in metres of view depth.
+    /// Returns the frustum of the view up to `max_distance`, in metres of view depth.
     pub(crate) fn frustum(&self, max_distance: f32) -> Result<ViewFrustum, shadowfit::FitError> {
         ViewFrustum::from_world_from_clip_f64(&self.world_from_clip, self.eye, DepthConvention::Reversed, max_distance)
     }
 
-    /// The picture of a frustum of this view, to be counted for a light that travels in a direction; the rectangle is
-    /// not known here.
+    /// Returns the input for counting a frustum of this view, for a light that travels in `direction`. The
+    /// rectangle is not known here.
     pub(crate) fn demand(&self, frustum: &ViewFrustum, direction: fit_glam::Vec3, max_distance: f32) -> DemandView {
         let eye_from_clip = fit_glam::DMat4::from_translation(-self.eye) * self.world_from_clip;
         DemandView {
@@ -161,7 +161,8 @@ impl View {
 }
 
 impl Receivers {
-    /// Distance of the farthest point of any from an eye, in metres: no turn of the camera makes its view depth greater.
+    /// Returns the distance of the farthest point of all boxes from an eye, in metres. Its view depth never
+    /// exceeds this, for any direction of the camera.
     pub(crate) fn farthest(&self, eye: fit_glam::Vec3) -> f32 {
         if self.has_unknown {
             return f32::MAX;
@@ -193,7 +194,7 @@ impl Receivers {
     }
 }
 
-/// The world box around a mesh's own one; `None` if it is not finite.
+/// Returns the world box around a mesh's own box, or `None` if it is not finite.
 fn world_box(aabb: &Aabb, world_from_mesh: &Affine3A) -> Option<shadowfit::Aabb> {
     let centre = world_from_mesh.transform_point3a(aabb.center);
     let m = &world_from_mesh.matrix3;

@@ -1,6 +1,6 @@
-//! Windows are read by coverage, which Bevy's shader does not do: it takes the cascade of a point's view depth. So the
-//! text of its shader library `shadows.wesl` is extended once it is loaded: two functions begin with a question that only
-//! lights with [`Fit::Windows`] answer with yes.
+//! Extension of Bevy's shader for windows. Windows are read by coverage, but Bevy's shader selects the
+//! cascade by view depth. The text of its shader library `shadows.wesl` is therefore extended once it is
+//! loaded: two functions get a branch that only lights with [`Fit::Windows`] take.
 
 use std::borrow::Cow;
 
@@ -9,15 +9,15 @@ use bevy::shader::{Shader, Source};
 
 use crate::settings::{Fit, FittedShadows};
 
-/// The library's path in Bevy.
+/// Path of the library in Bevy.
 const PATH: &str = "bevy_pbr/render/shadows.wesl";
 
-/// Where what is added goes: after the beginning of Bevy's functions.
+/// Beginnings of Bevy's functions, and the text to add after each.
 const ADDITIONS: [(&str, &str); 2] = [
     (
         "fn get_cascade_index(light_id: u32, view_z: f32) -> u32 {",
         "
-    // The last window holds all that is seen.
+    // The last window covers all visible points.
     if (shadowfit_has_windows(light_id)) {
         let light = &view_bindings::lights.directional_lights[light_id];
         return select((*light).num_cascades - 1u, (*light).num_cascades, -view_z >= (*light).cascades[0].far_bound);
@@ -40,21 +40,21 @@ const ADDITIONS: [(&str, &str); 2] = [
     ),
 ];
 
-/// Whether windows can be read.
+/// State of the extended shader library.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum WindowsShader {
     /// Bevy's library is not loaded yet.
     #[default]
     Awaited,
-    /// It is extended, and Bevy's renderer will be told in the next frame.
+    /// The library is extended. Bevy's renderer receives it in the next frame.
     Extended,
-    /// The renderer is told in this frame, with the windows.
+    /// The renderer receives the library in this frame, together with the windows.
     Ready,
-    /// It is not the text that this version knows, or there is none.
+    /// The library's text differs from the expected one, or is missing.
     Unknown,
 }
 
-/// Extends Bevy's shader library as soon as a light asks for windows and the library is there.
+/// Extends Bevy's shader library when a light requests windows and the library is loaded.
 pub(crate) fn extend(
     mut state: ResMut<WindowsShader>,
     lights: Query<&FittedShadows>,
@@ -78,13 +78,13 @@ pub(crate) fn extend(
             *state = WindowsShader::Extended;
         }
         _ => {
-            warn!("Fit::Windows is Fit::Calm here: {PATH} is not the one of Bevy 0.20");
+            warn!("Fit::Windows falls back to Fit::Calm, because {PATH} differs from Bevy 0.20");
             *state = WindowsShader::Unknown;
         }
     }
 }
 
-/// Bevy's text with the additions, if it has a place for each.
+/// Returns Bevy's text with the additions, if all places for them are found.
 fn extended(text: &str) -> Option<String> {
     let mut extended = text.replace("\r\n", "\n");
     for (place, addition) in ADDITIONS {

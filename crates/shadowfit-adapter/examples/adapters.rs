@@ -55,7 +55,7 @@ fn hardware(infos: &[wgpu::AdapterInfo]) -> Result<String, String> {
     })
 }
 
-/// Prints lines. A reader that has closed its end of the pipe, as `head` does, is no error.
+/// Prints lines. A closed pipe is not an error: `head`, for example, closes its end early.
 fn print(lines: &[String]) -> Result<(), String> {
     let text = lines.iter().fold(String::new(), |text, line| text + line + "\n");
     match std::io::stdout().write_all(text.as_bytes()) {

@@ -103,7 +103,7 @@ impl AdapterChoice {
         }
     }
 
-    /// Whether an adapter fits this choice.
+    /// Returns whether an adapter fits this choice.
     pub fn matches(&self, info: &wgpu::AdapterInfo) -> bool {
         match self {
             Self::Any => true,
@@ -113,8 +113,8 @@ impl AdapterChoice {
     }
 }
 
-/// Opens the graphics APIs: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others. A browser has WebGPU and
-/// WebGL2, as far as wgpu's features enable them, and prefers WebGPU.
+/// Opens the graphics APIs: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others. A browser
+/// offers WebGPU, which is preferred, and WebGL2, if wgpu's features enable them.
 pub fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let of_browser = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;

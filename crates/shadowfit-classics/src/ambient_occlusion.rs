@@ -1,5 +1,5 @@
-//! Screen-space ambient occlusion from positions and normals, beside a variant that knows depths alone, and beside rays.
-//! The scene is the built-in arcade; distances are metres.
+//! Screen-space ambient occlusion from positions and normals, compared with a variant that uses depths alone,
+//! and with rays. The scene is the built-in arcade. Distances are in metres.
 
 use core::f32::consts::FRAC_PI_4;
 
@@ -12,19 +12,20 @@ use crate::occlusion::{OcclusionFrame, OcclusionLight, OcclusionMethod, Occlusio
 use crate::options::{OptionKind, SampleOption, SampleValues};
 use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
 
-/// Direction of travel of the sun that lights the scene besides.
+/// Direction of travel of the sun that also lights the scene.
 const DIRECTION: Vec3 = Vec3::new(-0.45, -0.8, -0.4);
 
-/// A vase on its plinth and plants by a wall, from close by.
+/// Close-up of a vase on its plinth and plants by a wall.
 const AT_A_VASE: (DVec3, Vec3) = (DVec3::new(0.3, 1.25, 2.2), Vec3::new(-1.0, -0.3, -1.9));
 
 pub(crate) const SAMPLE: Sample = Sample {
     id: "ambient-occlusion",
     title: "Ambient occlusion in screen space",
-    teaches: "What is near hides light that comes from everywhere. Positions and normals of the pixels around tell how much: \
-              what stands in the hemisphere over a pixel's surface, and how far away.",
-    flaw: "Only what is on screen can hide, and of it only the nearest surfaces. With depths alone flat faces turn grey, and \
-           things have a pale halo.",
+    teaches: "Nearby surfaces block light that comes from all directions. Positions and normals of the surrounding \
+        pixels tell how much: a surface counts if it rises into the hemisphere above the pixel, and less with \
+        distance.",
+    flaw: "Only the nearest surfaces on screen can block light. With depths alone, flat faces turn grey, and objects \
+        have a pale halo.",
     page: "samples/ambient-occlusion.md",
     size: [640, 480],
     view: SampleView {
@@ -44,8 +45,8 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "method",
             label: "Method",
-            help: "By normals as the source: front faces alone, or back faces besides; by depth alone, with its two flaws; by \
-                   32 rays; or none.",
+            help: "By normals as the source, with front faces or also back faces. By depth alone, with its two flaws. \
+                By 32 rays. Or none.",
             kind: OptionKind::Choice(&[
                 ("front", "normals, front faces"),
                 ("back", "normals, front and back faces"),
@@ -57,32 +58,32 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "show",
             label: "Show",
-            help: "The scene, or the occlusion alone: white where nothing is hidden.",
+            help: "The scene, or the occlusion alone, where white is open.",
             kind: OptionKind::Choice(&[("scene", "the scene"), ("occlusion", "the occlusion")]),
         },
         SampleOption::LIGHTING,
         SampleOption {
             id: "detail",
             label: "Level of detail",
-            help: "Six directions near the camera and two far away, in place of four.",
+            help: "Uses six directions near the camera and two far away, instead of four everywhere.",
             kind: OptionKind::Toggle { default: false },
         },
         SampleOption {
             id: "blur",
             label: "Blur",
-            help: "Averages over four pixels each way in a pixel's plane, over which the random turns repeat.",
+            help: "Averages four pixels each way in a pixel's plane. The random rotations repeat after four pixels.",
             kind: OptionKind::Toggle { default: true },
         },
         SampleOption {
             id: "radius",
             label: "Radius",
-            help: "Reach of the neighbours: divided by the view depth it is a share of the picture.",
+            help: "Reach of the neighbours. Divided by the view depth, it is a share of the picture.",
             kind: OptionKind::Number { min: 0.02, max: 2.0, default: 0.5, unit: "" },
         },
         SampleOption {
             id: "second",
             label: "Second radius",
-            help: "A second pass, of which the greater occlusion counts; 0 for none.",
+            help: "Radius of a second pass. The greater occlusion counts. 0 for none.",
             kind: OptionKind::Number { min: 0.0, max: 2.0, default: 0.0, unit: "" },
         },
         SampleOption {
@@ -94,13 +95,13 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "bias",
             label: "Bias",
-            help: "Cosine that a neighbour has to rise over the surface before it hides anything.",
+            help: "Least cosine above the surface at which a neighbour blocks light.",
             kind: OptionKind::Number { min: 0.0, max: 0.5, default: 0.1, unit: "" },
         },
         SampleOption {
             id: "intensity",
             label: "Intensity",
-            help: "Factor of what front faces hide.",
+            help: "Factor on the occlusion by front faces.",
             kind: OptionKind::Number { min: 0.0, max: 10.0, default: 3.0, unit: "" },
         },
         SampleOption::beside(&[
@@ -115,39 +116,39 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "alone",
             label: "Occlusion alone",
-            text: "White is open, dark is hidden: corners, the feet of columns, the underside of arches. The right half is \
-                   traced with 32 rays a pixel.",
+            text: "White is open, dark is occluded: corners, the feet of columns, the underside of arches. The right \
+                half is traced with 32 rays per pixel.",
             options: &[("show", "occlusion"), ("beside", "method=traced")],
             view: None,
         },
         SampleVariant {
             id: "depth-only",
             label: "Flaws of depth alone",
-            text: "Half of the points around a wall's pixel lie behind the wall: flat faces are grey all over, and edges \
-                   toward what is far are pale, like a halo.",
+            text: "Half of the points around a wall's pixel lie behind the wall, so flat faces are grey everywhere. \
+                Edges in front of a far background are pale, like a halo.",
             options: &[("show", "occlusion"), ("method", "depth"), ("beside", "method=traced")],
             view: None,
         },
         SampleVariant {
             id: "back-faces",
             label: "Back faces",
-            text: "Front faces on the left, back faces besides on the right: things hide what is behind them at some distance, \
-                   too.",
+            text: "Front faces on the left, also back faces on the right: objects occlude surfaces some distance \
+                behind them, too.",
             options: &[("show", "occlusion"), ("beside", "method=back")],
             view: Some(AT_A_VASE),
         },
         SampleVariant {
             id: "two-radii",
             label: "Two radii",
-            text: "A small radius besides the large one finds the narrow corners that the large one steps over.",
+            text: "An additional small radius finds the narrow corners that the large one misses.",
             options: &[("show", "occlusion"), ("second", "0.15"), ("beside", "method=traced")],
             view: Some(AT_A_VASE),
         },
         SampleVariant {
             id: "raw",
             label: "Without the blur",
-            text: "Each pixel turns its four directions by a random angle; without the blur that is noise in blocks of four \
-                   pixels.",
+            text: "Each pixel rotates its four directions by a random angle. Without the blur this causes noise in \
+                blocks of four pixels.",
             options: &[("show", "occlusion"), ("blur", "off")],
             view: Some(AT_A_VASE),
         },

@@ -1,4 +1,4 @@
-//! Draws samples: what a sample's values ask for, by the renderer that can do it.
+//! Draws samples with the renderer that a sample's values require.
 
 use anyhow::{Result, bail};
 use shadowfit::PerspectiveCamera;
@@ -15,31 +15,32 @@ use crate::sky_box::SkyBox;
 /// Draws the samples of a GPU.
 #[derive(Debug)]
 pub struct SampleDrawer {
-    /// Whether pictures wait for what rays have to find, instead of showing what there is.
+    /// If true, pictures wait for traced rays. If false, they show an approximation until the rays are
+    /// traced.
     pub waits: bool,
     samples: u32,
     renderer: SampleRenderer,
     targets: Option<ProbeTargets>,
-    /// Made for the first picture that needs it.
+    /// Created for the first picture that needs it.
     sky: Option<SkyBox>,
     occlusion: Option<OcclusionPasses>,
     traced: Traced,
 }
 
-/// What became of a frame that was asked for.
+/// Result of drawing a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SampleOutcome {
-    /// It was drawn, and a person should know this.
+    /// The frame was drawn.
     Drawn {
-        /// What was drawn otherwise than asked for.
+        /// A deviation from the request that the user should know, if any.
         message: Option<String>,
     },
-    /// It is drawn as any scene, by a technique, and not here.
+    /// The frame was not drawn. The caller must draw it with a technique, like any scene.
     ByTechnique,
 }
 
 impl SampleDrawer {
-    /// A drawer of pictures of `samples` per pixel (1 or 4).
+    /// Creates a drawer of pictures with `samples` samples per pixel (1 or 4).
     pub fn new(gpu: &Gpu, samples: u32) -> Self {
         Self {
             waits: true,
@@ -56,7 +57,7 @@ impl SampleDrawer {
     ///
     /// # Errors
     ///
-    /// Where the camera cannot be fitted to, the map cannot be made, or the adapter cannot draw to a format.
+    /// If the camera cannot be fitted, the map cannot be created, or the adapter cannot draw to a format.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -88,7 +89,7 @@ impl SampleDrawer {
         Ok(SampleOutcome::Drawn { message })
     }
 
-    /// The sky with its sun where the frame's light is, where it is wanted.
+    /// Returns the sky, with its sun in the direction of the frame's light, if it is wanted.
     fn sky(&mut self, gpu: &Gpu, frame: &SampleFrame, is_wanted: bool) -> Option<SkyBox> {
         let LightPlace::Toward(to_light) = frame.light.place else { return None };
         if !is_wanted {
@@ -100,7 +101,7 @@ impl SampleDrawer {
         Some(sky)
     }
 
-    /// Draws a scene with ambient occlusion; what is traced is that of screen space until it is there.
+    /// Draws a scene with ambient occlusion. Uses screen-space occlusion until traced occlusion is available.
     fn draw_occlusion(
         &mut self,
         gpu: &Gpu,
@@ -114,10 +115,11 @@ impl SampleDrawer {
         let given = if is_traced { self.traced.occlusion(scene, camera, target.size, self.waits) } else { None };
         passes.draw(gpu, &mut scene.gpu_scene, frame, camera, given, target);
         let is_missing = is_traced && given.is_none();
-        is_missing.then(|| "Rays are being traced; until then this is screen space".to_owned())
+        is_missing.then(|| "Rays are being traced. Until then the picture shows screen-space occlusion".to_owned())
     }
 
-    /// The occlusion that a frame finds in screen space for a picture of a size, rows from the top, 0 where there is sky.
+    /// Returns the screen-space occlusion of a frame for a picture of a size, rows from the top, 0 in the
+    /// sky.
     pub(crate) async fn occlusion(
         &mut self,
         gpu: &Gpu,
@@ -133,11 +135,11 @@ impl SampleDrawer {
         Ok(passes.read_occlusion(gpu).await?)
     }
 
-    /// What the shading of a mapped frame knows about each pixel.
+    /// Returns the shading's data for each pixel of a mapped frame.
     ///
     /// # Errors
     ///
-    /// As for [`Self::draw`], and where the device was lost.
+    /// As [`Self::draw`]. Also fails if the device was lost.
     pub(crate) async fn probe(
         &mut self,
         gpu: &Gpu,
@@ -156,7 +158,7 @@ impl SampleDrawer {
         Ok(probe?)
     }
 
-    /// The bytes of the map that was drawn last, rows from the top.
+    /// Returns the bytes of the map that was drawn last, rows from the top.
     ///
     /// # Errors
     ///
@@ -166,7 +168,7 @@ impl SampleDrawer {
     }
 }
 
-/// Refuses an adapter that cannot draw to what ambient occlusion is found from.
+/// Fails if the adapter cannot draw to the formats that ambient occlusion needs.
 fn check_formats(gpu: &Gpu) -> Result<()> {
     match missing_format(&gpu.adapter) {
         Some(format) => bail!("this graphics adapter cannot draw to {format:?}, which ambient occlusion needs"),
@@ -174,20 +176,21 @@ fn check_formats(gpu: &Gpu) -> Result<()> {
     }
 }
 
-/// A frame with a map format that the adapter can draw to, and what that changed.
+/// Returns the frame with a map format that the adapter can draw to, and a message if the format changed.
 fn possible(gpu: &Gpu, mut frame: SampleFrame) -> (SampleFrame, Option<String>) {
     let (format, message) = frame.map.format.or_fallback(|format| format.is_renderable(&gpu.adapter));
     frame.map.format = format;
     (frame, message)
 }
 
-/// Whether each node casts, where not all do.
+/// Returns whether each node casts, or `None` if all do.
 fn casts(sample: &Sample, scene: &Scene) -> Option<Vec<bool>> {
     let subject = scene.subject.filter(|_| sample.only_subject_casts)?;
     Some((0..scene.nodes.len()).map(|node| scene.is_descendant(node, subject)).collect())
 }
 
-/// Where the map is shown in a picture of a size: as large a share of its height as in the source's window.
+/// Returns the rectangle of the map's inset in a picture of a size. It takes the same share of the height as
+/// in the source's window.
 fn inset(sample: &Sample, values: &SampleValues, size: [u32; 2]) -> Option<[u32; 4]> {
     let inset = sample.inset.filter(|_| values.is_on("inset"))?;
     Some(inset.map(|side| (side * size[1]).div_ceil(sample.size[1])))

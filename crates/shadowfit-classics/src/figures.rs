@@ -1,4 +1,4 @@
-//! Samples against rays: as their source shadows them, and as modern maps do on the same view.
+//! Judges samples against rays, with the source's shadows and with modern maps, on the same view.
 
 use anyhow::{Context, Result, bail};
 use glam::{DMat4, DVec2, DVec3};
@@ -17,25 +17,25 @@ use crate::mapped::{LightImage, LightPlace, SampleFrame, SampleLight};
 use crate::options::SampleValues;
 use crate::sample::{Sample, SampleDrawing};
 
-/// Shadow rays start this far above a surface, in units of the sample.
+/// Distance of the shadow rays' origins above a surface, in units of the sample.
 const RAY_OFFSET: f64 = 0.005;
 
 /// The figures of a sample on a view.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 pub enum SampleFigures {
-    /// Its shadows, and those of modern maps.
+    /// Figures of the sample's shadows and of modern maps.
     Shadows {
-        /// As the sample shadows it; `None` where no pixel was judged.
+        /// With the source's shadows. `None` if no pixel was judged.
         source: Option<PictureFigures>,
-        /// As modern maps do.
+        /// With modern maps.
         modern: Option<PictureFigures>,
     },
-    /// Its ambient occlusion: the mean of how far each method is from rays, 0..=1, by the method's name.
+    /// Mean absolute error of each method's ambient occlusion against rays, 0..=1, by the method's name.
     Occlusion(Vec<(&'static str, f64)>),
 }
 
-/// Methods of ambient occlusion that are compared, by their options, with names.
+/// Methods of ambient occlusion to compare: names and options.
 const METHODS: [(&str, &[(&str, &str)]); 4] = [
     ("front faces", &[("method", "front")]),
     ("front and back faces", &[("method", "back")]),
@@ -44,11 +44,12 @@ const METHODS: [(&str, &[(&str, &str)]); 4] = [
 ];
 
 impl SampleFigures {
-    /// Judges a sample, posed at a time of its animation, in seconds. Pictures are as high as the source's.
+    /// Judges a sample, posed at a time of its animation, in seconds. Pictures have the height of the
+    /// source's window.
     ///
     /// # Errors
     ///
-    /// Where the camera cannot be fitted to.
+    /// If the camera cannot be fitted.
     pub fn measure(
         gpu: Gpu,
         sample: &Sample,
@@ -59,7 +60,7 @@ impl SampleFigures {
         pollster::block_on(Self::measure_async(gpu, sample, values, camera, seconds))
     }
 
-    /// The same, and lets a browser do other things while the GPU draws.
+    /// Judges a sample like [`Self::measure`], but lets a browser do other work while the GPU draws.
     ///
     /// # Errors
     ///
@@ -91,7 +92,7 @@ impl SampleFigures {
         Ok(Self::Shadows { source, modern })
     }
 
-    /// Those of the sample's shadows and of modern maps, where both have pixels that were judged.
+    /// Returns the figures of the sample's shadows and of modern maps, if pixels were judged for both.
     pub fn shadows(&self) -> Option<[PictureFigures; 2]> {
         match self {
             Self::Shadows { source, modern } => Some([(*source)?, (*modern)?]),
@@ -99,7 +100,7 @@ impl SampleFigures {
         }
     }
 
-    /// Names and figures, for people.
+    /// Returns names and figures, for people.
     pub fn lines(&self) -> Vec<(String, String)> {
         let (source, modern) = match self {
             Self::Shadows { source, modern } => (source, modern),
@@ -112,7 +113,7 @@ impl SampleFigures {
         let mut lines: Vec<_> = both
             .iter()
             .map(|(name, figures)| {
-                let wrong = figures.map_or_else(|| "nothing to judge".to_owned(), |figures| percent(figures.wrong));
+                let wrong = figures.map_or_else(|| "no pixels to judge".to_owned(), |figures| percent(figures.wrong));
                 (format!("Wrong pixels, {name}"), wrong)
             })
             .collect();
@@ -136,7 +137,7 @@ fn percent(share: f64) -> String {
     format!("{share:.2}%")
 }
 
-/// What judges the pictures of a sample.
+/// State for judging the pictures of a sample.
 struct Bench<'a> {
     gpu: Gpu,
     drawer: Option<SampleDrawer>,
@@ -154,7 +155,7 @@ impl Bench<'_> {
         }
     }
 
-    /// How far each method is from rays.
+    /// Returns the error of each method against rays.
     async fn occlusion_errors(
         &mut self,
         scene: &mut PreparedScene,
@@ -171,7 +172,7 @@ impl Bench<'_> {
             let SampleDrawing::Occlusion { frame, .. } = self.sample.drawing(&values, self.camera)? else { continue };
             let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));
             let occlusion = drawer.occlusion(&self.gpu, scene, &frame, self.camera, self.size).await?;
-            errors.push((name, truth.mean_absolute_error(&occlusion).context("nothing but sky is seen")?));
+            errors.push((name, truth.mean_absolute_error(&occlusion).context("the picture shows only sky")?));
         }
         Ok(errors)
     }
@@ -186,7 +187,7 @@ impl Bench<'_> {
     }
 
     async fn judge_mapped(&mut self, scene: &mut PreparedScene, frame: &SampleFrame) -> Result<Judged> {
-        // What a light image darkens is no shadow.
+        // The dark parts of a light image are not shadows.
         let light = SampleLight { image: LightImage::Square, ..frame.light };
         let frame = &SampleFrame { light, ..*frame };
         let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));

@@ -1,11 +1,12 @@
-//! The classic techniques as named samples: each with the scene, camera, light and numbers of its source, the flaws that it
-//! is known for as variants, and what modern maps make of the same view.
+//! The classic techniques as named samples. Each sample has the scene, camera, light and numbers of its
+//! source, variants that show its known flaws, and a comparison with modern maps on the same view.
 //!
-//! [`SAMPLES`] lists them; a [`SampleDrawer`] draws one by its [`SampleValues`], and [`SampleFigures`] judge it
-//! against rays. Lengths are in the units of each source. `docs/samples` has a page for each.
+//! [`SAMPLES`] lists them. A [`SampleDrawer`] draws a sample with its [`SampleValues`]. [`SampleFigures`]
+//! judges it against rays. Lengths are in the units of each source. `docs/samples` has a page for each.
 //!
-//! Each sample has a module with its card and options, its scene, its WGSL and the same formulas in Rust. [`mapped`] draws
-//! scenes lit by one map, [`lamp`] has what those with a lamp share, [`occlusion`] finds ambient occlusion.
+//! Each sample has a module with its card and options, its scene, its WGSL and the same formulas in Rust.
+//! [`mapped`] draws scenes lit by one map, [`lamp`] holds the code that samples with a lamp share,
+//! [`occlusion`] computes ambient occlusion.
 
 pub mod comparison;
 pub mod headlight;

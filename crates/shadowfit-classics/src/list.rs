@@ -1,4 +1,4 @@
-//! The list of samples, and how they are found by name.
+//! The list of samples, and look-up by name.
 
 use crate::sample::{Sample, SampleVariant};
 use crate::{ambient_occlusion, comparison, headlight, parallel_split, sky_box, terrain, xna};
@@ -16,12 +16,12 @@ pub static SAMPLES: [Sample; 8] = [
 ];
 
 impl Sample {
-    /// The sample of a name.
+    /// Returns the sample with a name.
     pub fn find(id: &str) -> Option<&'static Self> {
         SAMPLES.iter().find(|sample| sample.id == id)
     }
 
-    /// The sample and the variant of a name such as `xna-shadow-mapping/acne`.
+    /// Returns the sample and the variant of a name such as `xna-shadow-mapping/acne`.
     pub fn find_with_variant(name: &str) -> Option<(&'static Self, Option<&'static SampleVariant>)> {
         let (id, variant) = name.split_once('/').map_or((name, None), |(id, variant)| (id, Some(variant)));
         let sample = Self::find(id)?;

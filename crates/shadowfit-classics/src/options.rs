@@ -1,24 +1,24 @@
-//! What can be changed of a sample: a table of options, and their values.
+//! Options of a sample: a table, and their values.
 
 use core::fmt;
 
 /// One option of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleOption {
-    /// Its name in command lines and files.
+    /// Name in command lines and files.
     pub id: &'static str,
-    /// Its name for people.
+    /// Name for people.
     pub label: &'static str,
-    /// What it does.
+    /// Effect.
     pub help: &'static str,
-    /// What it can be.
+    /// Possible values.
     pub kind: OptionKind,
 }
 
-/// What an option can be.
+/// Possible values of an option.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OptionKind {
-    /// One of several, by name and label; the first is the default.
+    /// One of several, by name and label. The first is the default.
     Choice(&'static [(&'static str, &'static str)]),
     /// A number.
     Number {
@@ -26,35 +26,35 @@ pub enum OptionKind {
         min: f32,
         /// Greatest value.
         max: f32,
-        /// Value of the source.
+        /// The source's value.
         default: f32,
         /// Unit, possibly empty.
         unit: &'static str,
     },
     /// On or off.
     Toggle {
-        /// Value of the source.
+        /// The source's value.
         default: bool,
     },
 }
 
-/// Why an option cannot be set.
+/// Reason why an option cannot be set.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OptionError {
     /// The sample has no such option.
     Unknown {
-        /// The name that was given.
+        /// The given name.
         id: String,
         /// The sample.
         sample: &'static str,
     },
-    /// The option cannot be so.
+    /// The option does not allow the value.
     Value {
         /// The option.
         id: &'static str,
-        /// What was asked for.
+        /// The given value.
         given: String,
-        /// What is possible.
+        /// Allowed values.
         possible: String,
     },
 }
@@ -71,7 +71,7 @@ impl fmt::Display for OptionError {
 impl core::error::Error for OptionError {}
 
 impl SampleOption {
-    /// Whether surfaces are lit as in the source, or as modern renderers do.
+    /// Lighting of surfaces, as in the source or modern.
     pub(crate) const LIGHTING: Self = Self::choice(
         "lighting",
         "Lighting",
@@ -83,22 +83,23 @@ impl SampleOption {
     pub(crate) const INSET: Self = Self::toggle(
         "inset",
         "Map in a corner",
-        "Shows the stored depths as greys, where the source shows them.",
+        "Shows the stored depths as greys, in the same place as the source.",
         true,
     );
 
-    /// What the right half of the picture shows: first `("none", ...)`, then `option=value` with labels.
+    /// Returns the option for the right half of the picture. The first choice is `("none", ...)`, the others
+    /// are `option=value` with labels.
     pub(crate) const fn beside(choices: &'static [(&'static str, &'static str)]) -> Self {
-        let help = "Shows something else in the right half of the picture, on the same view.";
+        let help = "Shows a comparison in the right half of the picture, on the same view.";
         Self::choice("beside", "Right half", help, choices)
     }
 
-    /// Texels of the map each way.
+    /// Returns the option for the map's texels each way.
     pub(crate) const fn map_size(help: &'static str, choices: &'static [(&'static str, &'static str)]) -> Self {
         Self::choice("map", "Map size", help, choices)
     }
 
-    /// One of several; the first is the source's.
+    /// Returns an option with several choices. The first is the source's.
     pub(crate) const fn choice(
         id: &'static str,
         label: &'static str,
@@ -108,12 +109,12 @@ impl SampleOption {
         Self { id, label, help, kind: OptionKind::Choice(choices) }
     }
 
-    /// On or off.
+    /// Returns an on/off option.
     pub(crate) const fn toggle(id: &'static str, label: &'static str, help: &'static str, default: bool) -> Self {
         Self { id, label, help, kind: OptionKind::Toggle { default } }
     }
 
-    /// The value of the source: the number, the index of the choice, or 1 for on.
+    /// Returns the source's value: the number, the index of the choice, or 1 for on.
     pub fn default_value(&self) -> f32 {
         match self.kind {
             OptionKind::Choice(_) => 0.0,
@@ -122,7 +123,7 @@ impl SampleOption {
         }
     }
 
-    /// What it can be, in words.
+    /// Returns the allowed values as text.
     pub fn possible(&self) -> String {
         match self.kind {
             OptionKind::Choice(choices) => choices.iter().map(|(id, _)| *id).collect::<Vec<_>>().join("|"),
@@ -153,17 +154,18 @@ pub struct SampleValues {
 }
 
 impl SampleValues {
-    /// The values of a source whose sample has this name and these options.
+    /// Returns the source's values of a sample with this name and these options.
     pub(crate) fn of(sample: &'static str, options: &'static [SampleOption]) -> Self {
         Self { sample, options, values: options.iter().map(SampleOption::default_value).collect() }
     }
 
-    /// The value of an option: a number, the index of a choice, 1 for on; 0 where the sample does not have the option.
+    /// Returns the value of an option: a number, the index of a choice, or 1 for on. Returns 0 if the sample
+    /// does not have the option.
     pub fn get(&self, id: &str) -> f32 {
         self.index(id).map_or(0.0, |index| self.values[index])
     }
 
-    /// The name of what an option chooses; empty where the option is not a choice.
+    /// Returns the name of an option's current choice. Empty if the option is not a choice.
     pub fn choice(&self, id: &str) -> &'static str {
         let Some(index) = self.index(id) else { return "" };
         match self.options[index].kind {
@@ -172,18 +174,18 @@ impl SampleValues {
         }
     }
 
-    /// What [`SampleOption::LIGHTING`] chooses of the source's lighting and the modern one.
+    /// Returns `source` or `modern`, as [`SampleOption::LIGHTING`] chooses.
     pub(crate) fn lit<T>(&self, source: T, modern: T) -> T {
         if self.choice(SampleOption::LIGHTING.id) == "modern" { modern } else { source }
     }
 
-    /// Whether an option is on.
+    /// Returns whether an option is on.
     pub fn is_on(&self, id: &str) -> bool {
         self.get(id) != 0.0
     }
 
-    /// The values of the right half of the picture, where that shows something else: those that the option `beside` names,
-    /// as `option=value`.
+    /// Returns the values of the right half of the picture, if it differs. The option `beside` names the
+    /// difference as `option=value`.
     pub fn beside(&self) -> Option<Self> {
         let (id, text) = self.choice("beside").split_once('=')?;
         let mut other = self.clone();
@@ -191,12 +193,12 @@ impl SampleValues {
         Some(other)
     }
 
-    /// Every option with its value.
+    /// Iterates over every option with its value.
     pub fn iter(&self) -> impl Iterator<Item = (&'static SampleOption, f32)> + '_ {
         self.options.iter().zip(self.values.iter().copied())
     }
 
-    /// Sets the option of an index to a value, brought into its range.
+    /// Sets the option with an index to a value, clamped to its range.
     pub fn set(&mut self, index: usize, value: f32) {
         let Some(option) = self.options.get(index) else { return };
         self.values[index] = match option.kind {
@@ -206,11 +208,11 @@ impl SampleValues {
         };
     }
 
-    /// Sets an option as command lines and files say it.
+    /// Sets an option from the text of command lines and files.
     ///
     /// # Errors
     ///
-    /// [`OptionError`] where the sample has no such option, or it cannot be so.
+    /// [`OptionError`] if the sample has no such option, or the option does not allow the value.
     pub fn set_from_str(&mut self, id: &str, text: &str) -> Result<(), OptionError> {
         let index = self.index(id).ok_or_else(|| OptionError::Unknown { id: id.to_owned(), sample: self.sample })?;
         let option = &self.options[index];
@@ -219,7 +221,7 @@ impl SampleValues {
         Ok(())
     }
 
-    /// The value of an option as [`Self::set_from_str`] reads it.
+    /// Returns the value of an option as text for [`Self::set_from_str`].
     pub fn text(option: &SampleOption, value: f32) -> String {
         match option.kind {
             OptionKind::Choice(choices) => choices.get(value as usize).map_or("", |(id, _)| id).to_owned(),
@@ -228,7 +230,7 @@ impl SampleValues {
         }
     }
 
-    /// The options that differ from those of the source, as [`Self::set_from_str`] reads them.
+    /// Returns the options that differ from the source's, as text for [`Self::set_from_str`].
     pub fn changes(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
         let changed = self.iter().filter(|(option, value)| option.default_value() != *value);
         changed.map(|(option, value)| (option.id, Self::text(option, value)))

@@ -1,6 +1,6 @@
-//! Parallel-split shadow maps: the view is sliced by depth, and each slice has a map (F. Zhang, H. Sun, L. Xu and L. Lun,
-//! "Parallel-split shadow maps for large-scale virtual environments", 2006). Drawn by the core's own techniques, on the
-//! built-in plain.
+//! Parallel-split shadow maps: the view is divided by depth into slices with a map each (F. Zhang, H. Sun, L.
+//! Xu and L. Lun, "Parallel-split shadow maps for large-scale virtual environments", 2006). The core's own
+//! techniques draw it, on the built-in plain.
 
 use core::f32::consts::FRAC_PI_4;
 
@@ -13,21 +13,22 @@ use shadowfit_scene::builtin::BuiltinScene;
 use crate::options::{OptionKind, SampleOption, SampleValues};
 use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView, modern};
 
-/// How far shadows reach, in metres.
+/// Distance up to which there are shadows, in metres.
 const DISTANCE: f32 = 400.0;
-/// Weight of the logarithmic splits among the practical ones.
+/// Weight of the logarithmic splits in the practical ones.
 const LAMBDA: f32 = 0.75;
 
-/// Low over the ground, along a long shadow.
+/// View close to the ground, along a long shadow.
 const LOW: (DVec3, Vec3) = (DVec3::new(0.2, 13.7, 1.6), Vec3::new(-0.05, -0.16, -1.0));
 
 pub(crate) const SAMPLE: Sample = Sample {
     id: "parallel-split",
     title: "Parallel-split shadow maps",
-    teaches: "One map cannot be fine near the camera and reach far. Cascades by depth get a map each: small and \
-              fine near the eye, wide and coarse far away. Practical splits lie between equal and logarithmic ones.",
-    flaw: "Splits know the depth alone and not what is there: boxes hold much that nobody sees, and shadows change their \
-           sharpness where one map ends.",
+    teaches: "One map cannot be fine near the camera and also reach far. Each cascade covers a range of view depths \
+        with its own map: small and fine near the eye, wide and coarse far away. Practical splits lie between equal \
+        and logarithmic ones.",
+    flaw: "Splits depend on depth alone and not on the scene: much of each map is invisible, and shadows change their \
+        sharpness between two maps.",
     page: "samples/parallel-split.md",
     size: [800, 450],
     view: SampleView {
@@ -47,7 +48,7 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "shadows",
             label: "Shadows",
-            help: "Split by depth as the source, none, or the technique that is recommended today.",
+            help: "Split by depth as the source, none, or the recommended modern technique.",
             kind: OptionKind::Choice(&[("source", "split by depth"), ("off", "no shadows"), ("ours", "modern maps")]),
         },
         SampleOption {
@@ -63,7 +64,7 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "lambda",
             label: "λ",
-            help: "Weight of the logarithmic splits among the practical ones.",
+            help: "Weight of the logarithmic splits in the practical ones.",
             kind: OptionKind::Number { min: 0.0, max: 1.0, default: LAMBDA, unit: "" },
         },
         SampleOption {
@@ -76,13 +77,13 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "blend",
             label: "Blend",
-            help: "How much of a slice is blended into the next one.",
+            help: "Share of a slice that is blended into the next one.",
             kind: OptionKind::Number { min: 0.0, max: 0.5, default: 0.1, unit: "" },
         },
         SampleOption {
             id: "tint",
             label: "Tint",
-            help: "Shows each point in the tint of the map that it reads.",
+            help: "Tints each point by the map that it reads.",
             kind: OptionKind::Toggle { default: false },
         },
     ],
@@ -90,29 +91,30 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "tinted",
             label: "Tinted",
-            text: "Each slice of the view in its tint; where two are blended, both.",
+            text: "Each slice of the view in its tint. Blended areas show both.",
             options: &[("tint", "on")],
             view: None,
         },
         SampleVariant {
             id: "uniform",
             label: "Uniform splits",
-            text: "Cascades of equal depth, here with maps of 512²: the first one reaches a hundred metres, so that shadows at the \
-                   camera are washed out.",
+            text: "Cascades of equal depth, here with maps of 512²: the first one covers a hundred metres, so shadows \
+                at the camera are blurred.",
             options: &[("splits", "uniform"), ("map", "512")],
             view: Some(LOW),
         },
         SampleVariant {
             id: "logarithmic",
             label: "Logarithmic splits",
-            text: "Cascades of equal ratio, here with maps of 512²: fine at the camera, and one map for nearly all that is far.",
+            text: "Cascades of equal ratio, here with maps of 512²: fine at the camera, but a single map covers \
+                almost everything far away.",
             options: &[("splits", "logarithmic"), ("map", "512"), ("tint", "on")],
             view: Some(LOW),
         },
         SampleVariant {
             id: "one-map",
             label: "One map only",
-            text: "All of the view in one map of 512²: fine nowhere.",
+            text: "The whole view in one map of 512²: coarse everywhere.",
             options: &[("maps", "1"), ("map", "512")],
             view: Some(LOW),
         },

@@ -1,4 +1,4 @@
-//! What a sample is: its card, its options and variants, the camera it starts with, its scene and how it is drawn.
+//! The type of a sample: its card, its options and variants, its first camera, its scene and its drawing.
 
 use glam::{DVec3, Vec3};
 use shadowfit::{FitError, PerspectiveCamera, Technique};
@@ -11,42 +11,43 @@ use crate::mapped::SampleFrame;
 use crate::occlusion::OcclusionFrame;
 use crate::options::{OptionError, SampleOption, SampleValues};
 
-/// A classic technique that runs as its source has it.
+/// A classic technique, implemented as in its source.
 #[derive(Debug)]
 pub struct Sample {
-    /// Its name in command lines and files.
+    /// Name in command lines and files.
     pub id: &'static str,
-    /// Its name for people.
+    /// Name for people.
     pub title: &'static str,
-    /// What it teaches, as a sentence or two.
+    /// Lesson of the sample, in a sentence or two.
     pub teaches: &'static str,
-    /// What it is known to do badly.
+    /// Known weakness.
     pub flaw: &'static str,
-    /// Its page below `docs`.
+    /// Page below `docs`.
     pub page: &'static str,
-    /// Width and height of its source's window, in pixels.
+    /// Width and height of the source's window, in pixels.
     pub size: [u32; 2],
-    /// Where it is seen from.
+    /// Start view.
     pub view: SampleView,
-    /// Unit direction of travel of the sun that modern maps are fitted to; for a lamp, along its axis.
+    /// Unit direction of travel of the sun for which modern maps are fitted. For a lamp, the direction of its
+    /// axis.
     pub direction: Vec3,
-    /// Where its map is shown in the source's window: left, top, width and height, in pixels.
+    /// Rectangle of the map's inset in the source's window: left, top, width and height, in pixels.
     pub inset: Option<[u32; 4]>,
     /// Whether only the scene's subject casts.
     pub only_subject_casts: bool,
     /// Whether it has shadows that rays can judge.
     pub is_measurable: bool,
-    /// What its own controls do otherwise than those of the viewer.
+    /// Controls that differ from the viewer's.
     pub controls: SampleControls,
-    /// What can be changed.
+    /// Options.
     pub options: &'static [SampleOption],
-    /// What it can show beside itself: its flaws and its cures.
+    /// Variants, which show its flaws and cures.
     pub variants: &'static [SampleVariant],
     pub(crate) scene: fn() -> Scene,
     pub(crate) draws: fn(&SampleValues, &PerspectiveCamera) -> Result<SampleDrawing, FitError>,
 }
 
-/// Where a sample is seen from, in its own units; the vertical field of view is in radians.
+/// View of a sample, in its own units. The vertical field of view is in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleView {
     /// Eye.
@@ -66,41 +67,41 @@ pub struct SampleView {
 /// Controls of a sample that differ from those of the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleControls {
-    /// How fast arrows and the right stick turn the view, in radians a second.
+    /// Speed at which arrows and the right stick turn the view, in radians a second.
     pub turn: f32,
-    /// How fast Q and E, and the triggers, turn the model, in radians a second: 0 where they let the camera sink and rise.
-    /// The model turns by the first animation of its scene, a whole turn.
+    /// Speed at which Q and E, and the triggers, turn the model, in radians a second. At 0 they lower and
+    /// raise the camera instead. The first animation of the scene, a whole turn, turns the model.
     pub model_turn: f32,
-    /// Eye and direction of view that R, and a click of the right stick, put the camera to, if not those of the start.
+    /// Eye and direction of view after R or a click of the right stick, if not the start view's.
     pub reset: Option<(DVec3, Vec3)>,
 }
 
 impl SampleControls {
-    /// Those of the viewer.
+    /// The viewer's controls.
     pub const VIEWER: Self = Self { turn: TURN_SPEED, model_turn: 0.0, reset: None };
 }
 
-/// A flaw or a cure of a sample: options, and a view where it shows.
+/// A flaw or a cure of a sample: options, and a view that shows it.
 #[derive(Debug)]
 pub struct SampleVariant {
-    /// Its name, behind the sample's and a slash.
+    /// Name, after the sample's name and a slash.
     pub id: &'static str,
-    /// Its name for people.
+    /// Name for people.
     pub label: &'static str,
-    /// What is to be seen.
+    /// Description of the picture.
     pub text: &'static str,
-    /// Options that differ from the defaults, as command lines say them.
+    /// Options that differ from the defaults, as text of command lines.
     pub options: &'static [(&'static str, &'static str)],
     /// Eye and direction of view, if not the sample's own.
     pub view: Option<(DVec3, Vec3)>,
 }
 
-/// How a sample is drawn at present.
+/// Way to draw a sample with its current values.
 #[derive(Clone, Debug)]
 pub enum SampleDrawing {
-    /// By the samples' renderer.
+    /// With the samples' renderer.
     Mapped(SampleFrame),
-    /// As any scene, by a technique of the core.
+    /// With a technique of the core, like any scene.
     Technique {
         /// The technique.
         technique: Technique,
@@ -109,9 +110,9 @@ pub enum SampleDrawing {
     },
     /// With ambient occlusion.
     Occlusion {
-        /// Light, and occlusion as it is found in screen space.
+        /// Light, and settings of screen-space occlusion.
         frame: OcclusionFrame,
-        /// Whether it is found by rays instead.
+        /// Whether rays compute the occlusion instead.
         is_traced: bool,
     },
 }
@@ -122,21 +123,21 @@ impl Sample {
         (self.scene)()
     }
 
-    /// How it is drawn by its values, as a camera sees it.
+    /// Returns how to draw it with these values and this camera.
     ///
     /// # Errors
     ///
-    /// [`FitError`] where the camera or the light cannot be fitted to.
+    /// [`FitError`] if the camera or the light cannot be fitted.
     pub fn drawing(&self, values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
         (self.draws)(values, camera)
     }
 
-    /// Whether its values are drawn by a technique, as any scene is.
+    /// Returns whether these values are drawn with a technique, like any scene.
     pub fn is_technique(&self, values: &SampleValues) -> bool {
         matches!(self.drawing(values, &self.lens(1.0)), Ok(SampleDrawing::Technique { .. }))
     }
 
-    /// The technique of its values, or the one that modern maps of its view have.
+    /// Returns the technique of these values, or the technique of modern maps for its view.
     pub fn technique(&self, values: &SampleValues) -> Technique {
         match self.drawing(values, &self.lens(1.0)) {
             Ok(SampleDrawing::Technique { technique, .. }) => technique,
@@ -144,18 +145,18 @@ impl Sample {
         }
     }
 
-    /// Whether its values show each point in the tint of the map that it reads.
+    /// Returns whether these values tint each point by the map that it reads.
     pub fn is_tinted(&self, values: &SampleValues) -> bool {
         matches!(self.drawing(values, &self.lens(1.0)), Ok(SampleDrawing::Technique { is_tinted: true, .. }))
     }
 
-    /// The camera that it is seen through at first, for a picture of an aspect (width over height).
+    /// Returns the first camera, for a picture of an aspect (width over height).
     pub fn lens(&self, aspect: f32) -> PerspectiveCamera {
         let (camera, lens) = self.camera();
         camera.perspective(&lens, aspect)
     }
 
-    /// The camera of a variant, or of the sample itself, for a picture of an aspect (width over height).
+    /// Returns the camera of a variant, or the sample's own, for a picture of an aspect (width over height).
     pub fn seen_by(&self, variant: Option<&SampleVariant>, aspect: f32) -> PerspectiveCamera {
         let camera = self.lens(aspect);
         match variant.and_then(|variant| variant.view) {
@@ -164,7 +165,7 @@ impl Sample {
         }
     }
 
-    /// Eye and lens that it is seen through at first.
+    /// Returns eye and lens of the first camera.
     pub fn camera(&self) -> (FlyCamera, CameraSettings) {
         let SampleView { eye, forward, fov_y, near, far, speed } = self.view;
         let camera = FlyCamera::look_at(eye, eye + forward.as_dvec3());
@@ -173,16 +174,16 @@ impl Sample {
 }
 
 impl SampleValues {
-    /// The values of the source.
+    /// Returns the source's values.
     pub fn new(sample: &Sample) -> Self {
         Self::of(sample.id, sample.options)
     }
 
-    /// The values of a variant.
+    /// Returns the values of a variant.
     ///
     /// # Errors
     ///
-    /// [`OptionError`] where the variant names an option or a value that the sample does not have.
+    /// [`OptionError`] if the variant names an option or a value that the sample does not have.
     pub fn of_variant(sample: &Sample, variant: Option<&SampleVariant>) -> Result<Self, OptionError> {
         let mut values = Self::new(sample);
         for (id, value) in variant.map_or(&[][..], |variant| variant.options) {
@@ -208,7 +209,7 @@ impl PartialEq for SampleVariant {
 
 impl Eq for SampleVariant {}
 
-/// The technique of modern maps for a view as deep as this.
+/// Returns the technique of modern maps for a view with this far distance.
 pub(crate) fn modern(far: f32) -> Technique {
     let mut technique = Technique::default();
     technique.fit = technique.fit.with_max_distance(far).with_caster_extension(far);

@@ -1,4 +1,4 @@
-//! Pipelines made at the same time: a driver compiles a large shader for up to seconds, on the thread that asks for it.
+//! Parallel creation of pipelines: a driver may compile a large shader for seconds, on the calling thread.
 
 #[cfg(not(target_family = "wasm"))]
 use std::thread;
@@ -6,15 +6,16 @@ use std::thread;
 #[cfg(not(target_family = "wasm"))]
 use crate::errors::catch_errors;
 
-/// Stack of a thread that compiles, in bytes: as large as a main thread's, since compilers of shaders recurse.
+/// Stack size of a compiling thread, in bytes. It is as large as a main thread's, because shader compilers
+/// recurse.
 #[cfg(not(target_family = "wasm"))]
 const STACK: usize = 8 << 20;
 
-/// Makes a thing of each kind at the same time, on up to a thread for each core, and returns them in the order of the
-/// kinds. Browsers and OpenGL make one after the other.
+/// Calls `make` for each kind in parallel, on up to one thread per core, and returns the results in the order
+/// of the kinds. In browsers and on OpenGL the calls run one after the other.
 ///
-/// `make` may run twice for a kind: where the device refuses it on a thread, it runs again on this one, so that error
-/// scopes and handlers of this thread see the error.
+/// `make` may run twice for a kind: if the device reports an error on a thread, it runs again on the calling
+/// thread, so that this thread's error scopes and handlers receive the error.
 pub fn make_at_once<K, T>(device: &wgpu::Device, kinds: &[K], make: impl Fn(&K) -> T + wgpu::WasmNotSync) -> Vec<T>
 where
     K: wgpu::WasmNotSync,

@@ -1,36 +1,36 @@
-//! Bind groups and their layouts, whose bindings are numbered one after the other, and the buffers and textures for them.
+//! Bind groups and their layouts with consecutive binding numbers, and the buffers and textures for them.
 
-/// A uniform buffer that is bound as a whole.
+/// Binding of a whole uniform buffer.
 pub const UNIFORM: wgpu::BindingType = buffer(wgpu::BufferBindingType::Uniform);
 
-/// A buffer that is bound as a whole.
+/// Returns the binding of a whole buffer.
 pub const fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
     wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
 }
 
-/// A storage buffer that is bound as a whole.
+/// Returns the binding of a whole storage buffer.
 pub const fn storage(read_only: bool) -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Storage { read_only })
 }
 
-/// A two-dimensional texture that shaders read.
+/// Returns the binding of a two-dimensional texture that shaders read.
 pub const fn texture(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
     wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
 }
 
-/// An array of two-dimensional textures that shaders read.
+/// Returns the binding of an array of two-dimensional textures that shaders read.
 pub const fn texture_array(sample_type: wgpu::TextureSampleType) -> wgpu::BindingType {
     let view_dimension = wgpu::TextureViewDimension::D2Array;
     wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
 }
 
-/// A two-dimensional texture that shaders write and do not read.
+/// Returns the binding of a two-dimensional texture that shaders only write.
 pub const fn written_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
     let (access, view_dimension) = (wgpu::StorageTextureAccess::WriteOnly, wgpu::TextureViewDimension::D2);
     wgpu::BindingType::StorageTexture { access, format, view_dimension }
 }
 
-/// Returns the entries of a layout whose bindings are numbered from `first` on and visible to these stages.
+/// Returns the entries of a layout with consecutive bindings from `first` on, visible to these stages.
 pub fn layout_entries(
     first: u32,
     visibility: wgpu::ShaderStages,
@@ -45,7 +45,7 @@ pub fn layout_entries(
     (0..).zip(types).map(entry).collect()
 }
 
-/// Makes a layout whose bindings are numbered from 0 on and visible to these stages.
+/// Creates a layout with consecutive bindings from 0 on, visible to these stages.
 pub fn layout(
     device: &wgpu::Device,
     label: &str,
@@ -55,7 +55,7 @@ pub fn layout(
     layout_from(device, label, 0, visibility, types)
 }
 
-/// Makes a layout whose bindings are numbered from `first` on and visible to these stages.
+/// Creates a layout with consecutive bindings from `first` on, visible to these stages.
 pub fn layout_from(
     device: &wgpu::Device,
     label: &str,
@@ -67,7 +67,7 @@ pub fn layout_from(
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-/// Returns the entries of a bind group whose bindings are numbered from `first` on.
+/// Returns the entries of a bind group with consecutive bindings from `first` on.
 pub fn group_entries<'a>(first: u32, resources: &[wgpu::BindingResource<'a>]) -> Vec<wgpu::BindGroupEntry<'a>> {
     let entry = |(number, resource): (u32, &wgpu::BindingResource<'a>)| wgpu::BindGroupEntry {
         binding: first.saturating_add(number),
@@ -76,7 +76,7 @@ pub fn group_entries<'a>(first: u32, resources: &[wgpu::BindingResource<'a>]) ->
     (0..).zip(resources).map(entry).collect()
 }
 
-/// Makes a bind group whose bindings are numbered from 0 on.
+/// Creates a bind group with consecutive bindings from 0 on.
 pub fn group(
     device: &wgpu::Device,
     label: &str,
@@ -86,7 +86,7 @@ pub fn group(
     group_from(device, label, 0, layout, resources)
 }
 
-/// Makes a bind group whose bindings are numbered from `first` on.
+/// Creates a bind group with consecutive bindings from `first` on.
 pub fn group_from(
     device: &wgpu::Device,
     label: &str,
@@ -98,7 +98,7 @@ pub fn group_from(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// Makes a buffer for a uniform of a type.
+/// Creates a uniform buffer for a value of type `T`.
 pub fn uniform_buffer<T>(device: &wgpu::Device, label: &str) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
@@ -108,7 +108,7 @@ pub fn uniform_buffer<T>(device: &wgpu::Device, label: &str) -> wgpu::Buffer {
     })
 }
 
-/// Makes a texture of one layer, one level and one sample. `size` has its width and height.
+/// Creates a texture with one layer, one mip level and one sample. `size` is its width and height.
 pub fn plain_texture(
     device: &wgpu::Device,
     label: &str,

@@ -1,13 +1,13 @@
 //! Compute pipelines from WGSL.
 
-/// Makes a shader module from WGSL.
+/// Creates a shader module from WGSL.
 pub fn wgsl_module(device: &wgpu::Device, label: &str, source: String) -> wgpu::ShaderModule {
     let source = wgpu::ShaderSource::Wgsl(source.into());
     device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
 }
 
-/// Makes a compute pipeline of an entry point. `layouts` are the layouts of its bind groups, `None` for a group that it does
-/// not use.
+/// Creates a compute pipeline for an entry point. `layouts` contains the layouts of its bind groups, or
+/// `None` for unused groups.
 pub fn compute_pipeline(
     device: &wgpu::Device,
     label: &str,

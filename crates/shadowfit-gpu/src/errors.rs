@@ -1,17 +1,17 @@
-//! Errors of a device as results. Without an error scope wgpu ends the program.
+//! Device errors as results. Without an error scope wgpu panics.
 
 use core::future::Future;
 use core::pin::pin;
 use core::task::{Context, Poll, Waker};
 
-/// Does work that the device may refuse or lack memory for.
+/// Runs `work`, which the device may refuse or lack memory for.
 ///
-/// WebGPU in browsers reports errors when the result is in use already. There every result is `Ok`, and errors go to the
-/// device's handler, `wgpu::Device::on_uncaptured_error`.
+/// WebGPU in browsers reports errors only after the result is already in use. There every result is `Ok`, and
+/// errors go to the device's handler, `wgpu::Device::on_uncaptured_error`.
 ///
 /// # Errors
 ///
-/// The first error. Lack of memory is returned before any other error, which follows from it.
+/// The first error. Lack of memory has priority over other errors, which follow from it.
 pub fn catch_errors<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, wgpu::Error> {
     if device.adapter_info().backend == wgpu::Backend::BrowserWebGpu {
         return Ok(work());
@@ -26,7 +26,7 @@ pub fn catch_errors<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Resul
     }
 }
 
-/// The result of a future that is ready, as errors are outside browsers.
+/// Returns the result of a future that is ready. Outside browsers, futures of error scopes are always ready.
 fn now<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(result) => result,

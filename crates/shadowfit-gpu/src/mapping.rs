@@ -1,23 +1,23 @@
-//! The state of a buffer between the GPU and the CPU, which a callback on any thread changes.
+//! State of a buffer between the GPU and the CPU. A callback on any thread changes it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// The state of a buffer that the GPU fills and the CPU reads.
+/// State of a buffer that the GPU fills and the CPU reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum MapState {
-    /// The GPU may be asked to fill it.
+    /// The GPU does not use the buffer: a copy may be recorded.
     Free = 0,
-    /// The GPU fills it.
+    /// The GPU fills the buffer.
     Busy = 1,
-    /// The CPU can read it.
+    /// The CPU can read the buffer.
     Readable = 2,
-    /// It could not be mapped: the device was lost, or has no memory left.
+    /// The buffer could not be mapped: the device was lost or is out of memory.
     Failed = 3,
 }
 
-/// Watches whether a buffer can be read.
+/// Tracker of a buffer's state.
 #[derive(Debug)]
 pub struct Mapping(Arc<AtomicU8>);
 
@@ -28,38 +28,38 @@ impl Default for Mapping {
 }
 
 impl Mapping {
-    /// A buffer that is free.
+    /// Creates the tracker of a free buffer.
     pub fn new() -> Self {
         Self(Arc::new(AtomicU8::new(MapState::Free as u8)))
     }
 
-    /// Returns the present state. Poll the device before: wgpu reports results there.
+    /// Returns the current state. Poll the device first, because wgpu reports results there.
     pub fn state(&self) -> MapState {
         let state = self.0.load(Ordering::Acquire);
         let states = [MapState::Free, MapState::Busy, MapState::Readable];
         states.into_iter().find(|known| *known as u8 == state).unwrap_or(MapState::Failed)
     }
 
-    /// Maps a buffer for reading, after the work that fills it was submitted.
+    /// Maps a buffer for reading. Submit the work that fills it first.
     pub fn map(&self, buffer: &wgpu::Buffer) {
         let report = self.begin();
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| report.send(result.is_ok()));
     }
 
-    /// Maps a buffer for reading as soon as the encoder's work, which fills it, is submitted. The buffer is free again if
-    /// the encoder is dropped instead.
+    /// Maps a buffer for reading when the encoder, whose work fills it, is submitted. If the encoder is
+    /// dropped instead, the buffer becomes free again.
     pub fn map_on_submit(&self, encoder: &wgpu::CommandEncoder, buffer: &wgpu::Buffer) {
         let report = self.begin();
         encoder.map_buffer_on_submit(buffer, wgpu::MapMode::Read, .., move |result| report.send(result.is_ok()));
     }
 
-    /// Unmaps a buffer that was read, or that nobody will read. It is free then.
+    /// Unmaps a buffer, and makes it free.
     pub fn release(&self, buffer: &wgpu::Buffer) {
         buffer.unmap();
         self.0.store(MapState::Free as u8, Ordering::Release);
     }
 
-    /// Whether mapping has failed. It is free then, so that each failure is returned once.
+    /// Returns whether mapping has failed, and makes the buffer free, so that each failure is returned once.
     pub fn take_failure(&self) -> bool {
         let [failed, free] = [MapState::Failed, MapState::Free].map(|state| state as u8);
         self.0.compare_exchange(failed, free, Ordering::AcqRel, Ordering::Relaxed).is_ok()
@@ -71,7 +71,8 @@ impl Mapping {
     }
 }
 
-/// Reports when the buffer can be read. An encoder that is dropped instead of submitted drops it without a report.
+/// Sender of the mapping's result. If an encoder is dropped without being submitted, the sender is dropped
+/// without a report.
 struct Report(Option<Arc<AtomicU8>>);
 
 impl Report {
@@ -85,7 +86,7 @@ impl Report {
 
 impl Drop for Report {
     fn drop(&mut self) {
-        // Only without a report: after one, another thread may read the buffer and record into it again.
+        // Only without a report: after a report, another thread may read the buffer and record into it again.
         if let Some(state) = &self.0 {
             state.store(MapState::Free as u8, Ordering::Release);
         }

@@ -1,11 +1,11 @@
-//! Results of the GPU on their way to the CPU, without waiting: a few buffers that take turns.
+//! Results on their way from the GPU to the CPU, without waiting: a ring of buffers.
 
 use core::fmt;
 
 use crate::mapping::{MapState, Mapping};
 
-/// Buffers that take turns. Each one brings the contents of a buffer to the CPU, and keeps a value of the caller's with
-/// them: for example the camera that they belong to.
+/// Ring of read-back buffers. Each one brings the contents of a buffer to the CPU, together with a value of
+/// the caller, for example the camera of the frame.
 #[derive(Debug)]
 pub struct ReadBackRing<T> {
     buffers: Vec<ReadBack<T>>,
@@ -15,7 +15,7 @@ pub struct ReadBackRing<T> {
     forgotten: u64,
 }
 
-/// A buffer on its way.
+/// A buffer of the ring.
 #[derive(Debug)]
 struct ReadBack<T> {
     buffer: wgpu::Buffer,
@@ -25,7 +25,7 @@ struct ReadBack<T> {
     value: Option<T>,
 }
 
-/// The device was lost, or has no memory left for a result.
+/// Error: the device was lost, or is out of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceLost;
 
@@ -38,8 +38,8 @@ impl fmt::Display for DeviceLost {
 impl core::error::Error for DeviceLost {}
 
 impl<T> ReadBackRing<T> {
-    /// Makes a number of buffers of this size in bytes, which must be a multiple of 4. Graphics APIs let the CPU be up to
-    /// three frames ahead of the GPU.
+    /// Creates `buffers` buffers of this size in bytes, which must be a multiple of 4. Graphics APIs let the
+    /// CPU be up to three frames ahead of the GPU.
     pub fn new(device: &wgpu::Device, label: &str, size: u64, buffers: usize) -> Self {
         let buffer = |_| {
             let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -53,13 +53,13 @@ impl<T> ReadBackRing<T> {
         Self { buffers: (0..buffers).map(buffer).collect(), recordings: 0, forgotten: 0 }
     }
 
-    /// Returns the index of a buffer that can be recorded into; `None` while all are on their way.
+    /// Returns the index of a free buffer, or `None` if all are on their way.
     pub fn free(&self) -> Option<usize> {
         self.buffers.iter().position(|read_back| read_back.mapping.state() == MapState::Free)
     }
 
-    /// Records the copy of the first bytes of `source`, with the value that [`Self::take`] returns beside them. Returns
-    /// `false`, and records no copy, while all buffers are on their way.
+    /// Records the copy of the first bytes of `source`, with the value that [`Self::take`] returns with them.
+    /// Returns `false`, and records no copy, if all buffers are on their way.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer, value: T) -> bool {
         let Some(free) = self.free() else { return false };
         self.recordings += 1;
@@ -70,14 +70,15 @@ impl<T> ReadBackRing<T> {
         true
     }
 
-    /// Returns the newest recording that the GPU has finished, once: its value, and the result of `read` for its bytes.
-    /// `None` until there is one. Frees the buffers of older ones. Never waits; poll the device before.
+    /// Returns the newest recording that the GPU has finished, only once: its value, and the result of `read`
+    /// for its bytes. Returns `None` if there is none. Frees the buffers of older recordings. Never waits;
+    /// poll the device first.
     ///
     /// # Errors
     ///
-    /// [`DeviceLost`], once for each loss.
+    /// [`DeviceLost`], once per loss.
     pub fn take<R>(&mut self, read: impl FnOnce(&[u8]) -> R) -> Result<Option<(T, R)>, DeviceLost> {
-        // All of them are asked, so that a loss is returned once.
+        // Check all buffers, so that a loss is returned once.
         if self.buffers.iter().filter(|read_back| read_back.mapping.take_failure()).count() > 0 {
             return Err(DeviceLost);
         }
@@ -93,7 +94,7 @@ impl<T> ReadBackRing<T> {
         taken.transpose()
     }
 
-    /// Frees the buffers of finished recordings that a newer finished one has overtaken.
+    /// Frees the buffers of finished recordings if a newer one is finished.
     pub fn free_overtaken(&mut self) {
         let finished = self.buffers.iter().filter(|read_back| read_back.is_readable());
         let newest = finished.map(|read_back| read_back.recording).max().unwrap_or_default();
@@ -101,7 +102,7 @@ impl<T> ReadBackRing<T> {
         self.buffers.iter().filter(overtaken).for_each(ReadBack::release);
     }
 
-    /// Forgets all recordings so far: for camera cuts.
+    /// Forgets all recordings so far, after a camera cut.
     pub fn forget(&mut self) {
         self.forgotten = self.recordings;
     }

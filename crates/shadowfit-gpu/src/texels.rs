@@ -1,17 +1,18 @@
-//! The texels of a texture in a buffer that the CPU reads, and the padding between their rows.
+//! Texels of a texture in a buffer that the CPU reads, without the padding between rows.
 
-/// A copy of a texture's texels. Each row begins at a multiple of 256 bytes, which WebGPU requires.
+/// A copy of a texture's texels. Each row begins at a multiple of 256 bytes, as WebGPU requires.
 #[derive(Debug)]
 pub struct TexelCopy {
     buffer: wgpu::Buffer,
-    /// Bytes of a row.
+    /// Bytes per row.
     row: usize,
-    /// Bytes of a row with its padding.
+    /// Bytes per row with padding.
     padded: usize,
 }
 
 impl TexelCopy {
-    /// Records the copy of the left top of a texture with one aspect, usage `COPY_SRC`, and this number of bytes a texel.
+    /// Records a copy from the top left of a texture with one aspect, usage `COPY_SRC`, and this number of
+    /// bytes per texel.
     pub fn record(
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
@@ -34,7 +35,7 @@ impl TexelCopy {
         Self { buffer, row: row as usize, padded: padded as usize }
     }
 
-    /// The buffer that the texels are copied to, for mapping.
+    /// Returns the buffer that the texels are copied to, for mapping.
     pub fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer
     }
@@ -46,7 +47,7 @@ impl TexelCopy {
     /// If the buffer is not mapped.
     pub fn texels(&self) -> Result<Vec<u8>, wgpu::MapRangeError> {
         let mapped = self.buffer.get_mapped_range(..)?;
-        // Whole rows at once: one byte after the other takes seconds where tests read many maps.
+        // Copies whole rows: byte by byte, tests that read many maps would take seconds.
         let rows: Vec<&[u8]> = mapped.chunks(self.padded).map(|row| &row[..self.row]).collect();
         Ok(rows.concat())
     }

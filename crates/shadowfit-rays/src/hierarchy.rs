@@ -1,6 +1,6 @@
-//! Hierarchies of four children a node, breadth first: the nodes of a level stand together and children come after their
-//! parents, so that one dispatch refits a level and one backward sweep refits all levels. The loads of nodes bound the time
-//! of a ray, and four children halve their number.
+//! Hierarchies with four children per node, stored breadth first. The nodes of a level are consecutive, and
+//! children come after their parents, so one dispatch refits a level and one backward pass refits all levels.
+//! The loads of nodes limit the speed of a ray, and four children halve their number.
 
 use glam::Vec3;
 use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
@@ -9,29 +9,29 @@ use obvhs::{Boundable, BvhBuildParams};
 
 use crate::records::{NO_ROOT, NodeRecord};
 
-/// Places for the children of a node, side by side. Places without a child hold [`NodeRecord::NONE`].
+/// Consecutive places for the children of a node. Places without a child hold [`NodeRecord::NONE`].
 pub(crate) const WIDTH: usize = 4;
 
-/// Primitives that a leaf may have: shaders pack their number into five bits.
+/// Greatest number of primitives in a leaf. Shaders pack it into five bits.
 const MAX_LEAF: u32 = 31;
 
-/// Levels of a hierarchy as it was built: each is a dispatch of a refit.
+/// Greatest number of levels of a built hierarchy. A refit needs one dispatch per level.
 const MAX_LEVELS: usize = 64;
 
-/// Nodes breadth first, in groups of [`WIDTH`] places. The first group holds the root alone, and each other one the
-/// children of a node.
+/// Nodes breadth first, in groups of [`WIDTH`] places. The first group holds only the root. Each other group
+/// holds the children of a node.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hierarchy {
-    /// Their boxes may still have to be fitted.
+    /// The nodes. Their boxes may be unfitted.
     pub(crate) nodes: Vec<NodeRecord>,
     /// First node of each level, the root's first.
     pub(crate) levels: Vec<u32>,
-    /// Nodes that a ray has to come back to, at most, as of [`Self::fit_stack`].
+    /// Greatest number of nodes on the stack of a ray, from [`Self::fit_stack`].
     pub(crate) stack: usize,
 }
 
-/// Builds a hierarchy over a number of boxes; none without boxes. What `obvhs` makes of boxes of which many coincide may
-/// have more levels than is useful; then it is built by halves.
+/// Builds a hierarchy over boxes, empty without boxes. If many boxes coincide, the hierarchy by `obvhs` may
+/// have too many levels. It is then built by halving the list.
 pub(crate) fn build<T: Boundable>(boxes: &[T], params: BvhBuildParams, max_stack: usize) -> (Hierarchy, Vec<u32>) {
     if boxes.is_empty() {
         return Default::default();
@@ -45,8 +45,8 @@ pub(crate) fn build<T: Boundable>(boxes: &[T], params: BvhBuildParams, max_stack
     (hierarchy, bvh.primitive_indices)
 }
 
-/// Builds a binary hierarchy as `obvhs::bvh2::builder::build_bvh2` does, without the clock that it reads. Browsers lack that
-/// clock, and the program ends there.
+/// Builds a binary hierarchy as `obvhs::bvh2::builder::build_bvh2` does, but without reading the clock.
+/// Browsers lack that clock, and reading it would end the program.
 pub fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
     let indices = (0..boxes.len() as u32).collect();
     let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
@@ -67,31 +67,32 @@ pub fn build_bvh2<T: Boundable>(boxes: &[T], params: BvhBuildParams) -> Bvh2 {
 /// A node of a binary hierarchy.
 #[derive(Clone, Copy)]
 struct Part {
-    /// `first` is that of the binary hierarchy.
+    /// The node. Its `first` is an index in the binary hierarchy.
     node: NodeRecord,
-    /// Share of the rays that meet it, in any unit.
+    /// Share of the rays that hit it, in any unit.
     size: f64,
-    /// Primitives of an inner node that has no nodes below it, from `first` on.
+    /// Number of primitives, from `first` on, of an inner node without child nodes in the binary hierarchy. 0
+    /// for others.
     range: u32,
 }
 
 impl Part {
-    /// The part that holds a range of primitives: a leaf, unless they are too many for one.
+    /// Returns the part that holds a range of primitives. It is a leaf unless there are too many primitives.
     fn of_range(node: NodeRecord, [first, end]: [u32; 2], per_leaf: u32) -> Self {
         let length = end - first;
         let (count, range) = if length <= per_leaf { (length, 0) } else { (0, length) };
         Self { node: NodeRecord { count, first, ..node }, size: f64::from(length), range }
     }
 
-    /// Both halves of its primitives.
+    /// Returns both halves of its primitives.
     fn halves(&self, per_leaf: u32) -> [Self; 2] {
         let [first, end] = [self.node.first, self.node.first + self.range];
         let middle = first + (end - first) / 2;
         [[first, middle], [middle, end]].map(|range| Self::of_range(self.node, range, per_leaf))
     }
 
-    /// Children of its node, largest first: its halves, of which the largest one makes way for its own halves while there
-    /// is room. Rays that are blocked meet large boxes first, since these block more of them.
+    /// Returns the children of its node, largest first. Starts with both halves, and replaces the largest one
+    /// by its halves while there is room. Blocked rays then test large boxes first, which block more rays.
     fn children(&self, halves: impl Fn(&Self) -> [Self; 2]) -> [Option<Self>; WIDTH] {
         let mut children = halves(self).to_vec();
         while children.len() < WIDTH {
@@ -107,7 +108,7 @@ impl Part {
 }
 
 impl Hierarchy {
-    /// The nodes of a hierarchy, whose leaves stay those of the same primitives unless they have too many.
+    /// Converts the nodes of a binary hierarchy. Leaves keep their primitives unless they have too many.
     pub(crate) fn new(bvh: &Bvh2) -> Self {
         let part = |index: u32| {
             let node = &bvh.nodes[index as usize];
@@ -127,13 +128,13 @@ impl Hierarchy {
         if bvh.nodes.is_empty() { Self::default() } else { Self::breadth_first(part(0), halves) }
     }
 
-    /// The hierarchy that halves a number of primitives, which are in an order that keeps neighbours together.
+    /// Builds a hierarchy that halves a list of primitives, whose order keeps neighbours together.
     fn halves(primitives: u32, per_leaf: u32) -> Self {
         let root = Part::of_range(NodeRecord::default(), [0, primitives], per_leaf);
         Self::breadth_first(root, |of| of.halves(per_leaf))
     }
 
-    /// Orders nodes, each with as many children as it has room for.
+    /// Orders the nodes breadth first and fills each with up to [`WIDTH`] children.
     fn breadth_first(root: Part, halves: impl Fn(&Part) -> [Part; 2]) -> Self {
         let (mut nodes, mut levels) = (Vec::new(), Vec::new());
         let mut level = vec![[Some(root), None, None, None]];
@@ -154,9 +155,10 @@ impl Hierarchy {
         Self { nodes, levels, stack: 0 }
     }
 
-    /// Reorders the children of nodes if a ray that follows the largest one first may take a longer stack than `most`. With
-    /// the child first whose own stack is the shortest, it takes 1.58ⁿ leaves or more to need a stack of n nodes (R. Sethi,
-    /// J. D. Ullman, "The generation of optimal code for arithmetic expressions", 1970, for four operands).
+    /// Measures the stack of a ray that follows the largest child first. If it exceeds `most`, reorders the
+    /// children of all nodes by their own stack, shortest first. A stack of n nodes then needs at least 1.58ⁿ
+    /// leaves (R. Sethi, J. D. Ullman, "The generation of optimal code for arithmetic expressions", 1970, for
+    /// four operands).
     pub(crate) fn fit_stack(&mut self, most: usize) {
         self.stack = stack(&mut self.nodes, |_| ());
         if self.stack > most {
@@ -164,7 +166,7 @@ impl Hierarchy {
         }
     }
 
-    /// Fits all boxes, those of leaves to what `leaf` says of their primitives.
+    /// Fits all boxes. `leaf` returns the box of a leaf's primitives.
     pub(crate) fn fit(&mut self, leaf: impl Fn(std::ops::Range<usize>) -> [Vec3; 2]) {
         for index in (0..self.nodes.len()).rev() {
             let node = self.nodes[index];
@@ -179,8 +181,9 @@ impl Hierarchy {
     }
 }
 
-/// Nodes that a ray has to come back to at one time, at most, when it follows the first child that it meets and keeps the
-/// others. `reorder` may reorder each group of nodes, given with the same number for what is below each node.
+/// Returns the greatest number of nodes on the stack of a ray that follows its first hit child and keeps the
+/// others. `reorder` may reorder each group of nodes. It gets each node with the stack that its children
+/// need.
 fn stack(nodes: &mut [NodeRecord], reorder: impl Fn(&mut [(usize, NodeRecord); WIDTH])) -> usize {
     let mut stacks = vec![0; nodes.len()];
     for first in (0..nodes.len()).step_by(WIDTH).rev() {
@@ -199,12 +202,12 @@ fn stack(nodes: &mut [NodeRecord], reorder: impl Fn(&mut [(usize, NodeRecord); W
     stacks.first().copied().unwrap_or_default()
 }
 
-/// The box around two boxes.
+/// Returns the box around two boxes.
 pub(crate) fn union(a: [Vec3; 2], b: [Vec3; 2]) -> [Vec3; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// The box around the children in a group of nodes.
+/// Returns the box around the children in a group of nodes.
 pub(crate) fn around(group: &[NodeRecord]) -> [Vec3; 2] {
     let children = group.iter().filter(|node| !node.is_none());
     let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
@@ -215,12 +218,12 @@ impl NodeRecord {
     /// A place without a node.
     pub(crate) const NONE: Self = Self { least: [0.0; 3], count: 0, most: [0.0; 3], first: NO_ROOT };
 
-    /// Whether this is a place without a node.
+    /// Returns whether this is a place without a node.
     pub(crate) fn is_none(&self) -> bool {
         self.first == NO_ROOT
     }
 
-    /// Least and greatest corner of its box.
+    /// Returns the least and greatest corner of its box.
     pub(crate) fn bounds(&self) -> [Vec3; 2] {
         [self.least.into(), self.most.into()]
     }
@@ -229,7 +232,7 @@ impl NodeRecord {
         (self.least, self.most) = (least.into(), most.into());
     }
 
-    /// Half of the area of its box, in square metres.
+    /// Returns half of the surface area of its box, in square metres.
     pub(crate) fn half_area(&self) -> f64 {
         let [least, most] = self.bounds();
         let size = (most - least).as_dvec3();
@@ -242,7 +245,7 @@ mod tests {
     use super::*;
     use obvhs::aabb::Aabb;
 
-    /// Boxes along a diagonal.
+    /// Returns boxes along a diagonal.
     fn boxes(place: impl Fn(f32) -> f32) -> Vec<Aabb> {
         (0..200u8).map(|number| Aabb::from_point((Vec3::ONE * place(number.into())).into())).collect()
     }
@@ -269,7 +272,7 @@ mod tests {
         }
     }
 
-    /// The longest stack of a ray that meets all boxes, and the boxes that it comes to.
+    /// Returns the longest stack of a ray that hits all boxes, and the number of primitives that it reaches.
     fn walk(hierarchy: &Hierarchy) -> (usize, u32) {
         let (mut longest, mut met, mut waiting) = (0, 0, vec![0]);
         while let Some(index) = waiting.pop() {
@@ -286,14 +289,15 @@ mod tests {
 
     #[test]
     fn the_stack_of_a_ray_is_known_and_another_order_of_children_shortens_it() {
-        // Each one farther from the others than these are from each other, so that nodes have nodes on one side alone.
+        // Each box is farther from the others than they are from each other, so that inner nodes are on one
+        // side only.
         let lopsided = boxes(|number| 1.1_f32.powf(number));
         let [largest_first, shortest_first] = [200, 0].map(|most| build(&lopsided, PARAMS, most).0);
         for hierarchy in [&largest_first, &shortest_first] {
             assert_eq!(walk(hierarchy), (hierarchy.stack, 200));
         }
         assert!(shortest_first.stack < largest_first.stack, "{} {}", shortest_first.stack, largest_first.stack);
-        // A hundred leaves or more: 1.58 to the tenth.
+        // 1.58 to the tenth is a hundred leaves or more.
         assert!(shortest_first.stack <= 11, "{}", shortest_first.stack);
     }
 }

@@ -1,11 +1,12 @@
-//! An engine's triangles as a bounding volume hierarchy on the GPU, traced by its own shaders: whether anything stands
-//! between a point and the sun.
+//! An engine's triangles as a bounding volume hierarchy on the GPU. The engine's shaders trace it to find
+//! whether a triangle lies between a point and the sun.
 //!
-//! [`RayMesh`] is the hierarchy of one mesh, built on the CPU; [`RayScene`] holds meshes, and their instances of the
-//! frame, in five storage buffers; [`rays_wgsl`] is what a shader asks them with. It uses only what every WebGPU device
-//! has. Positions are in metres, in `f32` relative to an origin that the engine chooses.
+//! [`RayMesh`] is the hierarchy of one mesh, built on the CPU. [`RayScene`] holds meshes and the frame's
+//! instances of them, in five storage buffers. [`rays_wgsl`] returns the shader functions that trace rays.
+//! The crate uses only features of every WebGPU device. Positions are in metres, in `f32` relative to an
+//! origin that the engine chooses.
 //!
-//! Meshes and hierarchies need no wgpu: the feature `gpu`, which is on by default, adds everything else.
+//! Meshes and hierarchies need no wgpu. The feature `gpu`, which is on by default, adds everything else.
 
 mod cut_out;
 mod error;
@@ -25,6 +26,6 @@ pub use gpu::{MeshId, RayInstance, RayScene, RayWgslOptions, Sides, VertexBuffer
 pub use hierarchy::build_bvh2;
 pub use mesh::{RayMemory, RayMesh};
 
-/// Nodes that the shaders' stack holds: those of the hierarchy of instances and of a mesh together. A hierarchy needs at most
-/// 1.5 times the binary logarithm of its leaves, whatever its shape.
+/// Number of nodes on the shaders' stack, for the hierarchy of instances and the hierarchy of a mesh
+/// together. A hierarchy of any shape needs at most 1.5 times the binary logarithm of its leaf count.
 pub const STACK: usize = 96;

@@ -1,4 +1,5 @@
-//! One mesh's triangles and hierarchy, as plain data: meshes can be built on any threads, and be added to a scene later.
+//! One mesh's triangles and hierarchy as plain data. Meshes can be built on any thread and added to a scene
+//! later.
 
 use glam::{Vec2, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -14,46 +15,48 @@ use crate::records::{CutOutRecord, NodeRecord, TriangleRecord};
 #[derive(Clone, Debug, Default)]
 pub struct RayMesh {
     pub(crate) hierarchy: Hierarchy,
-    /// In leaf order.
+    /// Triangles in leaf order.
     pub(crate) triangles: Vec<TriangleRecord>,
     pub(crate) cut_outs: Vec<CutOutRecord>,
-    /// Vertices of each triangle by its own index; empty where they follow each other.
+    /// Vertices of each triangle, by triangle index. Empty if the vertices are consecutive.
     indices: Vec<[u32; 3]>,
     pub(crate) vertices: usize,
 }
 
-/// Memory that a mesh needs, in bytes, its cut-outs not included.
+/// Memory of a mesh, in bytes, without its cut-outs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayMemory {
-    /// On the CPU while the [`RayMesh`] is built, at most, including what stays.
+    /// Peak on the CPU while the [`RayMesh`] is built, including the finished mesh.
     pub building: u64,
-    /// Of the finished [`RayMesh`], which may be dropped once it was added to a scene.
+    /// Size of the finished [`RayMesh`], which may be dropped after it was added to a scene.
     pub kept: u64,
-    /// In the buffers of a scene.
+    /// Size in the buffers of a scene.
     pub gpu: u64,
 }
 
-/// Stack up to which the children of a mesh's nodes stay in the best order. What remains of [`STACK`](crate::STACK) suffices
-/// for 10¹¹ instances.
+/// Longest stack up to which the children of a mesh's nodes keep their best order, largest first. The rest of
+/// [`STACK`](crate::STACK) is enough for 10¹¹ instances.
 const MESH_STACK: usize = 40;
-/// Leaves of up to four triangles: with eight a ray takes a tenth longer, and with two nodes take twice the memory.
+/// Leaves have up to four triangles. With eight, a ray takes a tenth longer. With two, nodes take twice the
+/// memory.
 const BUILD: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() };
-/// Nodes for each triangle while the hierarchy is built: two for the tree of single triangles, and one in each of the two
-/// lists between which the builder moves what is not joined yet.
+/// Nodes per triangle during the build: two for the tree of single triangles, and one in each of the
+/// builder's two lists of unjoined nodes.
 const NODES_BUILDING: u64 = 4;
-/// Bytes for each triangle of what the builder sorts: a code along a space-filling curve, with its index.
+/// Bytes per triangle of the builder's sort entries: a code along a space-filling curve, and an index.
 const CODE: u64 = size_of::<[u128; 2]>() as u64;
-/// Nodes for every three triangles afterwards, places without a node included: leaves hold two to three triangles.
-/// Measured: 1.9 to 2.3, more where fewer triangles share edges.
+/// Nodes per three triangles in the finished hierarchy, including places without a node. Leaves hold two to
+/// three triangles. Measured: 1.9 to 2.3, with more nodes if fewer triangles share edges.
 const NODES_KEPT_FOR_3: u64 = 2;
 
 impl RayMesh {
-    /// Builds the hierarchy of a triangle list: three indices of `positions` a triangle. Positions are in the mesh's own
-    /// space. Triangles with non-finite vertices are never met.
+    /// Builds the hierarchy of a triangle list: three indices of `positions` per triangle. Positions are in
+    /// the mesh's own space. Rays never hit triangles with non-finite vertices.
     ///
     /// # Errors
     ///
-    /// [`RayError::Index`] and [`RayError::Indices`] for indices that are not those of triangles.
+    /// Returns [`RayError::Index`] for an index beyond the positions, and [`RayError::Indices`] for a number
+    /// of indices that is not a multiple of 3.
     pub fn new(positions: &[Vec3], indices: &[u32]) -> Result<Self, RayError> {
         let (triangles, []) = indices.as_chunks::<3>() else { return Err(RayError::Indices(indices.len())) };
         let is_beyond = |index: &u32| *index as usize >= positions.len();
@@ -65,12 +68,12 @@ impl RayMesh {
         Ok(Self { indices: triangles.to_vec(), vertices: positions.len(), ..made })
     }
 
-    /// Builds the hierarchy of triangles that share no vertices: vertex `3 * t + k` is corner `k` of triangle `t`.
-    /// Triangles with non-finite vertices are never met.
+    /// Builds the hierarchy of triangles without shared vertices: vertex `3 * t + k` is corner `k` of
+    /// triangle `t`. Rays never hit triangles with non-finite vertices.
     ///
     /// # Errors
     ///
-    /// [`RayError::Triangles`] for more of them than 2^32 / 3.
+    /// Returns [`RayError::Triangles`] for more than 2^32 / 3 triangles.
     pub fn from_triangles(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Result<Self, RayError> {
         let corners: Vec<Corners> = triangles.into_iter().map(Corners::new).collect();
         if corners.len() > u32::MAX as usize / 3 {
@@ -80,9 +83,9 @@ impl RayMesh {
         Ok(Self::of(hierarchy, &order, |triangle| corners[triangle as usize].0))
     }
 
-    /// Takes over a hierarchy that was built, with the corners of each triangle by its own index. Boxes are fitted to
-    /// the corners, which may therefore be others than those that it was built for. The hierarchy must not have split
-    /// triangles.
+    /// Converts a finished hierarchy. `corners` returns the corners of a triangle by its index. Boxes are
+    /// fitted to these corners, so they may differ from the corners of the build. The hierarchy must not have
+    /// split triangles.
     pub fn from_bvh(bvh: &Bvh2, corners: impl Fn(u32) -> [Vec3; 3]) -> Self {
         let mut hierarchy = Hierarchy::new(bvh);
         hierarchy.fit_stack(MESH_STACK);
@@ -104,12 +107,12 @@ impl RayMesh {
         Self { hierarchy, triangles, vertices, ..Self::default() }
     }
 
-    /// Sets the triangles with holes, by their own indices, in place of those set before; the last one given for a
-    /// triangle counts.
+    /// Replaces the triangles with holes, given by triangle index. If a triangle occurs more than once, its
+    /// last cut-out counts.
     ///
     /// # Errors
     ///
-    /// [`RayError::CutOut`] for a triangle that the mesh does not have.
+    /// Returns [`RayError::CutOut`] for a triangle that the mesh does not have.
     pub fn with_cut_outs(mut self, cut_outs: impl IntoIterator<Item = (u32, CutOut)>) -> Result<Self, RayError> {
         let mut of_triangle = vec![0; self.triangles.len()];
         self.cut_outs.clear();
@@ -126,11 +129,12 @@ impl RayMesh {
         Ok(self)
     }
 
-    /// Gives all triangles holes: texture coordinates of each vertex, in the order of the positions, and one material.
+    /// Gives all triangles holes, from texture coordinates of each vertex, in the order of the positions, and
+    /// one material.
     ///
     /// # Errors
     ///
-    /// [`RayError::Uvs`] unless there is one for each vertex.
+    /// Returns [`RayError::Uvs`] unless there is one texture coordinate for each vertex.
     pub fn with_material(self, uvs: &[Vec2], material: &CutMaterial) -> Result<Self, RayError> {
         if uvs.len() != self.vertices {
             return Err(RayError::Uvs { uvs: uvs.len(), vertices: self.vertices });
@@ -143,28 +147,30 @@ impl RayMesh {
         self.with_cut_outs(cut_outs)
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether the mesh has zero triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// Own index of each triangle in leaf order, the order of [`RayScene::slots`](crate::RayScene::slots).
+    /// Returns the index of each triangle in leaf order, the order of
+    /// [`RayScene::slots`](crate::RayScene::slots).
     pub fn order(&self) -> impl Iterator<Item = u32> {
         self.triangles.iter().map(|triangle| triangle.index)
     }
 
-    /// Least and greatest corner of the box around all triangles, in the mesh's own space; `None` without triangles.
+    /// Returns the least and greatest corner of the box around all triangles, in the mesh's own space. `None`
+    /// without triangles.
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         self.hierarchy.nodes.first().map(NodeRecord::bounds)
     }
 
-    /// Memory that a mesh of this number of triangles will need. It is right to a factor of 1.5 for a thousand triangles
-    /// or more.
+    /// Estimates the memory of a mesh with this number of triangles. It is correct to a factor of 1.5 for a
+    /// thousand triangles or more.
     pub fn memory(triangles: usize) -> RayMemory {
         let triangles = triangles as u64;
         let corners = size_of::<Corners>() as u64;
@@ -176,7 +182,7 @@ impl RayMesh {
         RayMemory { building: of(building), kept: of(gpu + 9 * index) / 3, gpu: of(gpu) / 3 }
     }
 
-    /// Vertices of a triangle by its own index.
+    /// Returns the vertices of a triangle by its index.
     pub(crate) fn vertices_of(&self, triangle: u32) -> [u32; 3] {
         let following = [0, 1, 2].map(|corner| triangle * 3 + corner);
         self.indices.get(triangle as usize).copied().unwrap_or(following)

@@ -1,9 +1,12 @@
-//! What the last frame showed, for fits that put their maps where it helps most: a compute pass over the depth buffer.
+//! Visible demand, counted in the depth buffer by a compute pass. Fits place their maps where they improve
+//! the most visible pixels.
 //!
-//! [`DemandPass`] counts the visible points that face the light: by their place across the light and the texel that they
-//! ask for (the demand grid of [`shadowfit::demand`], for windows), and by view depth and foreshortening (the
-//! [`DepthHistogram`](shadowfit::demand::DepthHistogram)). Position and slope of a point come from the depths of its
-//! pixel and of the neighbours. Nothing waits for the GPU: counts come back a frame or two late, which fits allow for.
+//! [`DemandPass`] counts the visible points that face the light, in two ways. The demand grid of
+//! [`shadowfit::demand`], for windows, sorts them by position perpendicular to the light and by the texel
+//! size that they need. The [`DepthHistogram`](shadowfit::demand::DepthHistogram), for cascades, sorts them
+//! by view depth and foreshortening. Position and slope of a point come from the depths of its pixel and of
+//! the neighbours. The CPU never waits for the GPU: counts arrive a frame or two late, and fits allow for
+//! that.
 //!
 //! ```no_run
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, depth: &wgpu::TextureView, size: [u32; 2],
@@ -13,9 +16,9 @@
 //! use shadowfit_wgpu::demand::{DemandPass, DemandView};
 //!
 //! let mut fitter = ShadowFitter::new(&Technique::default());
-//! let mut demand = DemandPass::new(device, queue, 1).ok(); // without it fits take boxes
+//! let mut demand = DemandPass::new(device, queue, 1).ok(); // without it, fits use the bounding boxes
 //! loop {
-//!     // The newest counts that are there; those of the frame before until then.
+//!     // The newest counts that have arrived. Until they do, the fitter keeps the earlier ones.
 //!     if let Some(pass) = &mut demand
 //!         && let Some(seen) = pass.take()?
 //!     {
@@ -23,7 +26,7 @@
 //!     }
 //!     let views = [camera.frustum()?];
 //!     let maps = fitter.fit(&FitInput::new(&views, direction))?;
-//!     // Draw the maps and the scene as ever, and then:
+//!     // Draw the maps and the scene as usual, and then:
 //!     let mut encoder = device.create_command_encoder(&Default::default());
 //!     if let Some(pass) = &mut demand {
 //!         let settings = &fitter.technique().fit;
@@ -35,21 +38,22 @@
 //! # }
 //! ```
 //!
-//! After a camera cut, drop the counts ([`ShadowFitter::reset`](shadowfit::ShadowFitter::reset)) and those on their way
-//! ([`DemandPass::reset`]); old counts cost sharpness, never coverage. For several views that share the maps, such as a
-//! split screen, make a pass for each.
+//! After a camera cut, drop the counts ([`ShadowFitter::reset`](shadowfit::ShadowFitter::reset)) and the
+//! counts that are still on the GPU ([`DemandPass::reset`]). Outdated counts reduce sharpness, never
+//! coverage. If several views share the maps, such as a split screen, make one pass per view.
 //!
 //! # Precision
 //!
-//! Slopes come from differences of neighbouring depths. Reversed `Depth32Float` is exact enough at any distance; plain
-//! depth of 24 or 32 bits with a near plane at a tenth of a metre is exact enough for some hundred metres; 16 bits are
-//! for a few metres only. The pass reads the first sample of multisampled textures, which lies less than half a pixel
-//! beside the pixel's centre.
+//! Slopes come from differences of neighbouring depths. Reversed `Depth32Float` is precise enough at any
+//! distance. Plain depth of 24 or 32 bits with a near plane at 0.1 m is precise enough for a few hundred
+//! metres, and 16 bits only for a few metres. The pass reads the first sample of multisampled textures, which
+//! lies less than half a pixel from the pixel's centre.
 //!
-//! # Where it does not run
+//! # Unsupported devices
 //!
-//! Devices without compute shaders and storage buffers (WebGL2), and OpenGL, whose shaders cannot load depth textures.
-//! [`DemandPass::new`] says so, and fits take boxes: leave [`FitInput::demand`](shadowfit::FitInput::demand) empty.
+//! Devices without compute shaders and storage buffers (WebGL2) cannot run the pass, and neither can OpenGL,
+//! whose shaders cannot load depth textures. [`DemandPass::new`] then returns an error. Leave
+//! [`FitInput::demand`](shadowfit::FitInput::demand) empty, and fits use the bounding boxes.
 
 mod error;
 mod pass;

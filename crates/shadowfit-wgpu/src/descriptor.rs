@@ -1,4 +1,4 @@
-//! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
+//! Description of shadow maps: size, count, format, filter, selection and depth convention.
 
 mod error;
 mod limits;
@@ -12,7 +12,7 @@ pub use error::ShadowMapError;
 pub use limits::RESOLUTIONS;
 pub use texture_error::MapTextureError;
 
-/// Size, number, format and filter of a [`ShadowMap`](crate::ShadowMap), and how points read it.
+/// Size, number, format and filter of a [`ShadowMap`](crate::ShadowMap), and how points select a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowMapDescriptor {
     /// Width and height of each map, in texels, within [`RESOLUTIONS`].
@@ -23,43 +23,46 @@ pub struct ShadowMapDescriptor {
     pub format: MapFormat,
     /// Filter of the look-up.
     pub filter: FilterKind,
-    /// Width of the filters that are soft.
+    /// Width of the soft filters.
     pub softness: Softness,
-    /// View depth from which on shadows fade, and the one where they have vanished, in metres: of a technique the last
-    /// share [`Technique::fade`] of its shadow distance. Between them shadows are mixed with light by s² (3 - 2 s), s
-    /// being the share of the way; points beyond are lit. Both are `f32::MAX` for shadows that end with their maps.
+    /// View depths, in metres, where shadows begin to fade and where they end. A technique fades its shadows
+    /// over the last share [`Technique::fade`] of its shadow distance. At a share s of the way from the first
+    /// depth to the second, shadows are blended with light by s² (3 - 2 s). Points beyond are lit. Both
+    /// depths are `f32::MAX` for shadows that end with their maps.
     pub fade: [f32; 2],
-    /// Which of the maps a point reads. By view depth
-    /// [`DepthRange::covered_from`](shadowfit::selection::DepthRange::covered_from) says where maps are blended.
+    /// How a point selects a map. With selection by view depth, the blend of two maps begins at
+    /// [`DepthRange::covered_from`](shadowfit::selection::DepthRange::covered_from).
     pub selection: MapSelection,
-    /// Whether an edge pass traces rays where the maps are not sure. The maps, their look-up and its WGSL are the same
-    /// either way.
+    /// Whether an edge pass traces rays where the texels of a map disagree. This changes neither the maps nor
+    /// the WGSL of the look-up.
     pub edges: Edges,
-    /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
+    /// Depth convention of the fits: 0..1, plain or reversed. wgpu has no -1..1.
     pub depth: DepthConvention,
-    /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
-    /// [`CasterPolicy::DepthClamp`] need it. On devices without [`wgpu::Features::DEPTH_CLIP_CONTROL`] the
-    /// engine's fragment shaders do it: [`ShadowMap::clamps_in_fragment`](crate::ShadowMap::clamps_in_fragment).
+    /// Whether casters in front of the near plane are kept, flattened onto it ("pancaking"). Fits with
+    /// [`CasterPolicy::DepthClamp`] require it. On devices without [`wgpu::Features::DEPTH_CLIP_CONTROL`] the
+    /// engine's fragment shaders must clamp:
+    /// [`ShadowMap::clamps_in_fragment`](crate::ShadowMap::clamps_in_fragment).
     pub depth_clamp: bool,
-    /// Whether there is a second set of layers, and a look-up that goes over from one set of maps to the other: of a
-    /// [`SunShadows`](crate::SunShadows) what its [light steps](crate::SunShadows::set_light_steps) ask for, whatever is
-    /// given here. A [`ShadowMap`](crate::ShadowMap) by itself leaves the second set empty. Default: `false`.
+    /// Whether there is a second set of layers, and a look-up that fades from one set of maps to the other.
+    /// [`SunShadows`](crate::SunShadows) ignores this field and follows its [light
+    /// steps](crate::SunShadows::set_light_steps). A [`ShadowMap`](crate::ShadowMap) alone leaves the second
+    /// set empty. Default: `false`.
     pub cross_fades: bool,
-    /// First binding of the bind groups of casters and receivers; the others follow it. With another one for each sun
-    /// several suns fit into one bind group: [`ShadowMap::receiver_entries`](crate::ShadowMap::receiver_entries).
-    /// Default: 0.
+    /// First binding of the bind groups of casters and receivers. Their other bindings follow it. Several
+    /// suns with different first bindings can share a bind group:
+    /// [`ShadowMap::receiver_entries`](crate::ShadowMap::receiver_entries). Default: 0.
     pub first_binding: u32,
 }
 
 impl Default for ShadowMapDescriptor {
-    /// The maps of the recommended technique: four of 2048² texels.
+    /// Returns the maps of the recommended technique: four maps of 2048² texels.
     fn default() -> Self {
         Self::from(&Technique::default())
     }
 }
 
 impl From<&Technique> for ShadowMapDescriptor {
-    /// Layers for the technique's maps.
+    /// Returns the description of the technique's maps.
     fn from(technique: &Technique) -> Self {
         Self {
             resolution: technique.fit.resolution.to_array(),
@@ -78,25 +81,26 @@ impl From<&Technique> for ShadowMapDescriptor {
     }
 }
 
-/// View depths between which the shadows of a technique fade.
+/// Returns the view depths between which the shadows of a technique fade.
 fn fade(technique: &Technique) -> [f32; 2] {
     let (end, share) = (technique.fit.max_distance, technique.fade);
     if end < f32::MAX { [end * (1.0 - share.clamp(0.0, 1.0)), end] } else { [f32::MAX; 2] }
 }
 
 impl ShadowMapDescriptor {
-    /// How points read the maps.
+    /// Returns how points read the maps.
     pub const fn reading(&self) -> MapReading {
         let Self { selection: choice, filter, softness, .. } = *self;
         MapReading { selection: choice, filter, softness }
     }
 
-    /// Usages that the texture of the maps needs.
+    /// Usages that the texture of the maps requires.
     pub(crate) const USAGES: wgpu::TextureUsages =
         wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 
-    /// The texture of the maps, for engines that make it themselves ([`MapTexture`](crate::MapTexture)): as many layers
-    /// as there are maps, twice as many where they cross-fade, with the usages that they need. It may have more layers, usages and mip levels.
+    /// Returns the description of the maps' texture, for engines that create it themselves
+    /// ([`MapTexture`](crate::MapTexture)). It has one layer per map, or two if the maps cross-fade, and the
+    /// required usages. The engine's texture may have more layers, usages and mip levels.
     pub fn texture(&self) -> wgpu::TextureDescriptor<'static> {
         let [width, height] = self.resolution;
         wgpu::TextureDescriptor {
@@ -111,12 +115,12 @@ impl ShadowMapDescriptor {
         }
     }
 
-    /// Layers of the texture that shaders read.
+    /// Returns the number of layers of the texture that shaders read.
     pub(crate) const fn layers(&self) -> u32 {
         if self.cross_fades { 2 * self.maps } else { self.maps }
     }
 
-    /// Refuses a descriptor that is impossible, in general or on this device.
+    /// Refuses a descriptor that is invalid or that this device does not support.
     pub(crate) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowMapError> {
         let device_limit = device.limits().max_texture_dimension_2d;
         let resolution = self.resolution;
@@ -138,7 +142,7 @@ impl ShadowMapDescriptor {
             return Err(ShadowMapError::Depth(self.depth));
         }
         let [near, far] = self.fade;
-        // NaN has no order, and infinity no difference.
+        // NaN has no order, and the difference of infinities is NaN.
         if !(near <= far && near.is_finite() && far.is_finite()) {
             return Err(ShadowMapError::Fade(self.fade));
         }
@@ -153,7 +157,8 @@ impl ShadowMapDescriptor {
         self.check_distances(device.adapter_info().backend)
     }
 
-    /// Refuses filters that need casters' distances where these are lost, or where shaders cannot read them.
+    /// Refuses filters that need the distances of casters if depth clamp loses them or shaders cannot read
+    /// them.
     fn check_distances(&self, backend: wgpu::Backend) -> Result<(), ShadowMapError> {
         if self.edges.need_distances(self.filter) && self.depth_clamp {
             return Err(ShadowMapError::SoftDepthClamp(self.filter));
@@ -164,7 +169,7 @@ impl ShadowMapDescriptor {
         Ok(())
     }
 
-    /// Format of the texture that shaders read.
+    /// Returns the format of the texture that shaders read.
     pub(crate) fn texture_format(&self) -> wgpu::TextureFormat {
         match self.format {
             MapFormat::Depth32Float => wgpu::TextureFormat::Depth32Float,
@@ -176,12 +181,13 @@ impl ShadowMapDescriptor {
         }
     }
 
-    /// Format of the depth attachment: the map itself, or what lies beside a colour.
+    /// Returns the format of the depth attachment: the map itself, or the depth buffer that belongs to a
+    /// colour map.
     pub(crate) fn depth_format(&self) -> wgpu::TextureFormat {
         if self.format.is_depth() { self.texture_format() } else { wgpu::TextureFormat::Depth32Float }
     }
 
-    /// The colour that stores a depth of 0 or 1 in a colour format.
+    /// Returns the colour that stores a depth of 0 or 1 in a colour format.
     pub(crate) fn color_of(&self, depth: f32) -> wgpu::Color {
         if self.format != MapFormat::Rgba8Packed {
             return wgpu::Color { r: depth.into(), g: 0.0, b: 0.0, a: 1.0 };
@@ -200,7 +206,7 @@ mod tests {
         let mut technique = Technique::default().with_fade(0.25);
         technique.fit.max_distance = 80.0;
         assert_eq!(ShadowMapDescriptor::from(&technique).fade, [60.0, 80.0]);
-        assert_eq!(ShadowMapDescriptor::from(&technique.with_fade(0.0)).fade, [80.0; 2], "an end, if without a fade");
+        assert_eq!(ShadowMapDescriptor::from(&technique.with_fade(0.0)).fade, [80.0; 2], "an end without a fade");
         technique.fit.max_distance = f32::MAX;
         assert_eq!(ShadowMapDescriptor::from(&technique).fade, [f32::MAX; 2]);
     }
@@ -212,7 +218,7 @@ mod tests {
         let clamped = ShadowMapDescriptor { depth_clamp: true, ..pcss };
         let error = clamped.check_distances(wgpu::Backend::Vulkan).expect_err("clamped casters have no distance");
         assert!(error.to_string().contains("caster policy"), "{error}");
-        let error = pcss.check_distances(wgpu::Backend::Gl).expect_err("no loads of depth");
+        let error = pcss.check_distances(wgpu::Backend::Gl).expect_err("OpenGL cannot load depths");
         assert!(error.to_string().contains("Depth32Float") && error.to_string().contains("R32Float"), "{error}");
         let color = ShadowMapDescriptor { format: MapFormat::R32Float, ..pcss };
         assert_eq!(color.check_distances(wgpu::Backend::Gl), Ok(()));

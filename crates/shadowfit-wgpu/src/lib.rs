@@ -1,10 +1,12 @@
-//! Directional-light shadow maps for any wgpu renderer. The engine keeps its scene, its materials and its passes: it gives
-//! boxes and a camera, draws casters by number, and pastes WGSL into its own shaders.
+//! Shadow maps of a directional light for any wgpu renderer. The engine keeps its scene, its materials and
+//! its render passes. It provides a camera and bounding boxes, draws the casters whose numbers it gets back,
+//! and pastes WGSL into its shaders. A caster's number is the index of its box.
 //!
 //! # One object, one loop
 //!
-//! [`SunShadows`] holds the shadows of one sun. It fits the maps, finds which parts have to be drawn, keeps static
-//! casters from frame to frame, and reads from the depth buffer where fine texels help:
+//! [`SunShadows`] holds the shadows of one sun. In each frame it fits the maps, finds the regions that must
+//! be redrawn, and keeps static casters from earlier frames. It also counts the visible points of the depth
+//! buffer, so that the next fits make texels fine where the picture needs it:
 //!
 //! ```no_run
 //! # struct Engine { moves: Vec<bool>, pipeline: wgpu::RenderPipeline, depth: wgpu::TextureView }
@@ -51,38 +53,40 @@
 //! # Ok(()) }
 //! ```
 //!
-//! | name | is |
+//! | name | meaning |
 //! |---|---|
-//! | [`SunShadows`] | the shadows of one sun: one object for each |
-//! | [`SunShadowsDescriptor`] | how they are made: technique, bindings, texture |
-//! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, which of them move, and what stands |
-//! | [`DrawRegion`] | one draw of a pass: casters by number, viewport, scissor rectangle |
+//! | [`SunShadows`] | the shadows of one sun |
+//! | [`SunShadowsDescriptor`] | technique, bindings and texture of a sun's shadows |
+//! | [`SunFrame`], [`Casters`] | the input of a frame: views, light, bounding boxes and static boxes |
+//! | [`DrawRegion`] | a part of a pass: numbers of its casters, viewport, scissor rectangle |
 //! | [`ShadowPass`], [`PassKind`](shadowfit::cache::PassKind) | a pass, for engines that schedule passes themselves |
-//! | [`UpdatedRect`](shadowfit::cache::UpdatedRect) | a rectangle that a frame draws, for tools that show it |
+//! | [`UpdatedRect`](shadowfit::cache::UpdatedRect) | a rectangle that a frame redraws, for debug views |
 //! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
-//! | [`LightSteps`] | how the maps of a sun that moves are held still, and cross-faded |
-//! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
-//! | `exact_edges`, with the feature `rays` | rays instead of the filter where the texels of a map disagree |
-//! | [`SunShadowsError`] | why a technique or a frame is refused; earlier maps stay as they are |
+//! | [`LightSteps`] | how often the maps follow a moving sun, and how they cross-fade |
+//! | [`UpdateSchedule`], [`Culling`] | the maps that may wait for another frame, and the casters that are culled |
+//! | `exact_edges`, with the feature `rays` | shadow rays instead of the filter, for pixels whose texels disagree |
+//! | [`SunShadowsError`] | the reason why a technique or a frame is refused; earlier maps stay as they are |
 //!
-//! The example `engine_integration` of the repository is a whole engine around this loop, and its guide
-//! (`docs/INTEGRATION.md`) goes through it step by step.
+//! The example `engine_integration` in the repository is a complete engine around this loop. The guide
+//! (`docs/INTEGRATION.md`) explains it step by step.
 //!
-//! # Every step by itself
+//! # Using single steps
 //!
-//! - [`SunShadows::fit`] and [`SunShadows::prepare`] are the halves of [`SunShadows::update`]: maps that are frozen, or
-//!   fitted by other code, are drawn and kept by the second alone.
-//! - [`ShadowMap`] holds the maps on the GPU: textures, layouts, bind groups, states for pipelines, and a pass for each
-//!   map that redraws it. [`ShadowMapDescriptor`] says how large and of which format they are, and [`MapView`] from
-//!   where they are read.
+//! - [`SunShadows::fit`] and [`SunShadows::prepare`] are the two halves of [`SunShadows::update`]. Call only
+//!   `prepare` for maps that are frozen or fitted by other code.
+//! - [`ShadowMap`] holds the maps on the GPU: textures, layouts, bind groups, pipeline states, and one pass
+//!   per map that redraws it. [`ShadowMapDescriptor`] gives their size and format, and [`MapView`] the origin
+//!   and the eye that shaders read them with.
 //! - [`demand`] counts the visible points of a depth buffer.
-//! - [`SunShadows::culling_regions`] and [`culling_wgsl`] cull casters on the GPU, for engines that keep them there.
-//! - [`MapTexture`] puts the maps into a texture of the engine's: one that a frame graph owns, or that suns share.
-//! - [`uniforms`] has those of the WGSL, for engines that bind them themselves.
+//! - [`SunShadows::culling_regions`] and [`culling_wgsl`] cull casters on the GPU, for engines that keep
+//!   their casters there.
+//! - [`MapTexture`] puts the maps into a texture of the engine, such as a frame graph's texture or one that
+//!   several suns share.
+//! - [`uniforms`] contains the uniforms of the WGSL, for engines that bind them themselves.
 
-// Rooms, each of which uses those above it: `descriptor` says how maps are, `wgsl` writes the text of the look-ups, `maps`
-// holds the maps on the GPU, `demand` counts visible points, `sun` is the object that engines use, and `exact_edges`
-// makes its edges exact.
+// Each module uses only the modules before it in this list: `descriptor` describes the maps, `wgsl` generates
+// the WGSL of the look-ups, `maps` holds the maps on the GPU, `demand` counts visible points, `sun` is the
+// object that engines use, and `exact_edges` traces rays at shadow edges.
 pub mod demand;
 mod descriptor;
 #[cfg(feature = "rays")]
@@ -92,7 +96,7 @@ mod pixels;
 mod sun;
 mod wgsl;
 
-/// The uniforms of the WGSL as `bytemuck` types, for engines that fill buffers of their own.
+/// Uniforms of the WGSL as `bytemuck` types, for engines that fill their own buffers.
 pub mod uniforms {
     pub use crate::maps::{CasterUniform, FadingUniform, MapUniform, ReceiverUniform};
 }

@@ -1,4 +1,4 @@
-//! The maps on the GPU: textures, uniforms, bind groups, passes, and the layers of static casters beside them.
+//! Shadow maps on the GPU: textures, uniforms, bind groups, passes, and separate layers for static casters.
 
 pub(crate) mod cached_maps;
 pub(crate) mod shadow_map;

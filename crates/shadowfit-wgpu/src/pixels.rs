@@ -1,33 +1,33 @@
-//! The pixels of a depth buffer in the world, and the reasons to refuse a depth buffer.
+//! World positions of a depth buffer's pixels, and the checks of a depth buffer.
 
 use core::fmt;
 
 use shadowfit::DepthConvention;
 use shadowfit::glam::{DMat4, DVec4, Mat4};
 
-/// Why a pass cannot read the depth buffer of a view.
+/// The reason why a pass cannot read the depth buffer of a view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DepthBufferError {
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
-    /// The matrix has another depth convention than the view, whose convention this is.
+    /// The matrix has a different depth convention from the view, whose convention this is.
     OtherDepth(DepthConvention),
     /// The matrix has no inverse, or one that is not finite.
     SingularMatrix,
-    /// The texture has another format, sample count or usage than the pass reads.
+    /// The pass cannot read the texture's format, sample count or usage.
     Texture {
         /// Format of the texture.
         format: wgpu::TextureFormat,
-        /// Its samples per pixel.
+        /// Samples per pixel of the texture.
         samples: u32,
-        /// Its usages.
+        /// Usages of the texture.
         usage: wgpu::TextureUsages,
         /// Sample counts that the pass reads.
         expected_samples: Vec<u32>,
     },
-    /// The picture is empty or reaches out of the texture.
+    /// The view's rectangle is empty or reaches outside the texture.
     Rectangle {
-        /// Left, top, width and height of the picture, in pixels.
+        /// Left, top, width and height of the rectangle, in pixels.
         rectangle: [u32; 4],
         /// Width and height of the texture, in pixels.
         texture: [u32; 2],
@@ -42,13 +42,13 @@ impl fmt::Display for DepthBufferError {
             }
             Self::OtherDepth(depth) => write!(
                 f,
-                "the view's matrix has another depth convention than {depth:?}: give the convention that the depth buffer \
-                 was drawn with"
+                "the view's matrix has a different depth convention from {depth:?}: pass the convention that the depth \
+                 buffer was drawn with"
             ),
             Self::SingularMatrix => {
                 write!(
                     f,
-                    "the view's matrix has no finite inverse: give the matrix that the depth buffer was drawn with"
+                    "the view's matrix has no finite inverse: pass the matrix that the depth buffer was drawn with"
                 )
             }
             Self::Texture { format, samples, usage, expected_samples } => {
@@ -70,7 +70,8 @@ impl fmt::Display for DepthBufferError {
 
 impl core::error::Error for DepthBufferError {}
 
-/// Refuses a depth texture with other samples than these, one that cannot be bound, and a picture that does not lie in it.
+/// Refuses a depth texture that has none of these sample counts or cannot be bound, and a rectangle outside
+/// it.
 pub(crate) fn check(texture: &wgpu::Texture, samples: &[u32], rectangle: [u32; 4]) -> Result<(), DepthBufferError> {
     let (format, usage) = (texture.format(), texture.usage());
     let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) && format.has_depth_aspect();
@@ -82,21 +83,22 @@ pub(crate) fn check(texture: &wgpu::Texture, samples: &[u32], rectangle: [u32; 4
     check_rectangle(rectangle, [texture.width(), texture.height()])
 }
 
-/// Refuses a picture that is empty or does not lie in a texture of a size.
+/// Refuses a rectangle that is empty or lies partly outside a texture of this size.
 pub(crate) fn check_rectangle(rectangle: [u32; 4], texture: [u32; 2]) -> Result<(), DepthBufferError> {
     if lies_in(rectangle, texture) { Ok(()) } else { Err(DepthBufferError::Rectangle { rectangle, texture }) }
 }
 
-/// Whether a part (left, top, width, height) is not empty and lies in a texture of a size, all in pixels.
+/// Returns whether a rectangle (left, top, width, height) is not empty and lies inside a texture of this
+/// size. All values are in pixels.
 fn lies_in([left, top, width, height]: [u32; 4], [columns, rows]: [u32; 2]) -> bool {
     let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
     is_inside(left, width, columns) && is_inside(top, height, rows)
 }
 
-/// From a pixel's column and row (its centre), and its depth minus the far plane's, to homogeneous positions in the space
-/// that `clip_from_world` takes; `None` for a matrix without an inverse. `size`: of the picture, in pixels. Most of the
-/// view lies near depth 1 where depth is not reversed: differences from it are exact in f32, and so small that the matrix
-/// needs no more.
+/// Returns the matrix that takes a pixel's column and row (at its centre) and its depth minus the far plane's
+/// depth to homogeneous positions in the source space of `clip_from_world`. Returns `None` if the matrix has
+/// no inverse. `size` is the size of the view's rectangle, in pixels. If depth is not reversed, most of the
+/// view lies near depth 1. Differences from 1 are exact in f32, and small enough for an f32 matrix.
 pub(crate) fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], convention: DepthConvention) -> Option<DMat4> {
     let [width, height] = size.map(f64::from);
     let clip_from_pixel = DMat4::from_cols(

@@ -1,4 +1,4 @@
-//! The shadows of one sun, from camera and boxes to bind group: the one object that an engine needs.
+//! Shadows of one sun, from camera and bounding boxes to the bind group: the one object that an engine needs.
 //!
 //! ```text
 //!   update(frame) = fit ──▶ prepare: which parts are kept ──▶ passes: the engine draws casters by number
@@ -31,10 +31,10 @@ pub use error::SunShadowsError;
 pub use frame::SunFrame;
 pub use steps::LightSteps;
 
-/// The shadows of one directional light: its maps, the parts of them that are kept, and what the last frames showed.
+/// Shadows of one directional light: its maps, their cached regions, and the visible demand of recent frames.
 ///
-/// Make one for each sun. It does not know the scene, starts no thread, has no global state, and never waits for the
-/// GPU except in [`Self::wait_for_demand`].
+/// Make one for each sun. It does not know the scene, starts no thread, has no global state, and never waits
+/// for the GPU except in [`Self::wait_for_demand`].
 #[derive(Debug)]
 pub struct SunShadows {
     device: wgpu::Device,
@@ -42,41 +42,41 @@ pub struct SunShadows {
     fitter: ShadowFitter,
     maps: CachedMaps,
     steps: Option<StepState>,
-    /// The maps of the sun's next direction or of the one before, where steps cross-fade.
+    /// Maps of the sun's next or previous direction, if light steps cross-fade.
     other: Option<OtherSet>,
     demand: Demand,
     last: Option<LastFrame>,
 }
 
-/// Counts the visible points of depth buffers.
+/// Counter of the visible points of depth buffers.
 #[derive(Debug)]
 struct Demand {
-    /// Whether the device can do that.
+    /// Whether the device supports the pass.
     is_supported: bool,
     pass: Option<DemandPass>,
     samples: u32,
 }
 
-/// The view and light of the frame that was prepared last, for [`SunShadows::record_demand`].
+/// View and light of the last prepared frame, for [`SunShadows::record_demand`].
 #[derive(Clone, Copy, Debug)]
 struct LastFrame {
     view: ViewFrustum,
     direction: Vec3,
 }
 
-/// # In each frame
+/// # Every frame
 impl SunShadows {
-    /// Fits the maps to a frame, finds which parts must be drawn, and writes the uniforms. Where all views begin beyond the
-    /// [shadow distance](shadowfit::settings::MapSettings::max_distance) there are no maps and no passes, and all factors
-    /// are 1. [`Self::passes`] then has
-    /// the passes of this frame; they count as drawn from the next call on. It is [`Self::fit`] and [`Self::prepare`]
-    /// in one, for the direction that is held where the sun has [light steps](Self::set_light_steps).
+    /// Fits the maps to a frame, finds the regions that must be drawn, and writes the uniforms. Afterwards
+    /// [`Self::passes`] returns the passes of this frame. They count as drawn from the next call on. If all
+    /// views begin beyond the [shadow distance](shadowfit::settings::MapSettings::max_distance), the frame
+    /// has no maps and no passes, and all factors are 1. This method calls [`Self::fit`] and
+    /// [`Self::prepare`], with the held direction if the sun has [light steps](Self::set_light_steps).
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Map`] for maps that
-    /// the layers cannot hold; [`SunShadowsError::Demand`] if the device was lost. There is nothing to draw then, and the
-    /// shaders read the maps of the frame before.
+    /// [`SunShadowsError::Fit`] for invalid views, light or boxes, [`SunShadowsError::Map`] for maps that the
+    /// layers cannot hold, and [`SunShadowsError::Demand`] if the device was lost. Then the frame has no
+    /// passes, and shaders read the maps of the previous frame.
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
         self.skip();
         frame.check()?;
@@ -85,25 +85,25 @@ impl SunShadows {
         self.fit(&held.input())?;
         let fitted = *self.fitter.fitted();
         self.prepare_present(queue, &held, &fitted)?;
-        // What this frame shows serves the newest maps, also before they are read.
+        // The visible points of this frame are for the newest maps, even while shaders do not read them yet.
         if let (Some(last), Some(steps)) = (&mut self.last, &self.steps) {
             last.direction = steps.newest().unwrap_or(last.direction);
         }
         self.update_other(queue, &held, &step).inspect_err(|_| {
-            // The passes of the other half are not drawn either.
+            // The passes of the present set are dropped, too.
             self.invalidate_all();
             self.skip();
         })
     }
 
-    /// The maps on the GPU: layouts and states for the engine's pipelines.
+    /// Returns the maps on the GPU, with layouts and states for the engine's pipelines.
     pub fn map(&self) -> &ShadowMap {
         self.maps.map()
     }
 
-    /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
-    /// pipeline and buffers, and draws the part's casters. The map's matrix is bound at `group`; viewport and scissor
-    /// rectangle are set, and must stay.
+    /// Records all passes of this frame. `draw` is called for each region that has casters. It must set the
+    /// engine's pipeline and buffers and draw the region's casters. The map's matrix is bound at `group`.
+    /// Viewport and scissor rectangle are already set and must not change.
     pub fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -115,23 +115,26 @@ impl SunShadows {
         }
     }
 
-    /// The bind group that [`receiver_wgsl`](crate::receiver_wgsl) reads.
+    /// Returns the bind group that [`receiver_wgsl`](crate::receiver_wgsl) reads.
     pub fn receiver_group(&self) -> &wgpu::BindGroup {
         self.maps.map().receiver_group()
     }
 
-    /// Counts the visible points of a picture, for the fits of the next frames. Call it after the pass that fills the
-    /// depth buffer. `depth` is a view of the depth aspect of the whole texture, which fills the picture, is stored,
-    /// and has the usage `TEXTURE_BINDING`; `clip_from_world` and `convention` are those that it was drawn with, for
-    /// positions relative to the eye, [`ViewFrustum::origin`] of the first view.
+    /// Counts the visible points of a frame, for the fits of the next frames. Call it after the pass that
+    /// fills the depth buffer. `depth` is a view of the depth aspect of the whole texture. The frame must
+    /// fill the texture, its depths must be stored, and its usages must include `TEXTURE_BINDING`.
+    /// `clip_from_world` and `convention` are the matrix and the depth convention that the depth buffer was
+    /// drawn with. The matrix takes positions relative to the eye, which is the [`ViewFrustum::origin`] of
+    /// the first view.
     ///
-    /// Returns whether it was recorded: never on devices that [cannot count](Self::can_record_demand), where maps are placed
-    /// by the boxes; nor for a frame that was refused, or whose first view begins beyond the shadow distance; nor while
-    /// many pictures are still on their way.
+    /// Returns whether the count was recorded. Devices that [cannot count](Self::can_record_demand) never
+    /// record it, and the bounding boxes place their maps. It is skipped for a frame that was refused or
+    /// whose first view begins beyond the shadow distance, and while the counts of many earlier frames have
+    /// not arrived.
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Demand`] for the matrix, the texture, and a device out of memory.
+    /// [`SunShadowsError::Demand`] for an invalid matrix or texture, and if the device is out of memory.
     pub fn record_demand(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -156,13 +159,13 @@ impl SunShadows {
         Ok(pass.record(encoder, depth, &seen, None)?)
     }
 
-    /// Whether the device can count the visible points of depth buffers: those of OpenGL cannot.
+    /// Returns whether the device can count the visible points of depth buffers. OpenGL devices cannot.
     pub fn can_record_demand(&self) -> bool {
         self.demand.is_supported
     }
 
-    /// Forgets the earlier views and what they showed: after a camera cut. Static casters stay in the maps. A step of
-    /// the sun that is under way ends with the next frame.
+    /// Forgets the earlier views and their visible points, after a camera cut. Static casters stay in the
+    /// maps. A light step in progress ends with the next frame.
     pub fn cut(&mut self) {
         self.end_step();
         self.fitter.reset();
@@ -171,19 +174,19 @@ impl SunShadows {
         }
     }
 
-    /// Forgets all earlier frames and redraws all maps in the next one: when a new level begins.
+    /// Forgets all earlier frames and redraws all maps in the next one, such as when a new level begins.
     pub fn reset(&mut self) {
         self.cut();
         self.steps.iter_mut().for_each(StepState::reset);
         self.maps.invalidate_all();
     }
 
-    /// Says that the sun gives nothing, instead of [`Self::update`]: at night, behind clouds, in a cellar. All factors
-    /// are 0 then, there are no maps, no passes and nothing to fit, and [`Self::record_demand`] records nothing, until the
-    /// next [`Self::update`]. That one begins as after a [cut](Self::cut), and its maps are right. The passes of the
-    /// frame before count as drawn.
+    /// Turns the sun off: at night, behind clouds, in a cellar. Call it instead of [`Self::update`]. Until
+    /// the next [`Self::update`] all factors are 0, no map is fitted or drawn, and [`Self::record_demand`]
+    /// records nothing. The next update begins as after a [cut](Self::cut), with correct maps. The passes of
+    /// the previous frame count as drawn.
     ///
-    /// It is never guessed from the sun's direction: worlds without a ground are lit from below.
+    /// The sun is never turned off because of its direction: worlds without a ground are lit from below.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {
         self.skip();
         if !self.is_off() {
@@ -192,21 +195,21 @@ impl SunShadows {
         }
     }
 
-    /// Whether the sun gives nothing: from [`Self::turn_off`] to the next [`Self::update`].
+    /// Returns whether the sun is off: from [`Self::turn_off`] to the next [`Self::update`].
     pub fn is_off(&self) -> bool {
         self.maps.is_off()
     }
 }
 
-/// # Passes of the engine's own
+/// # Passes that the engine schedules
 impl SunShadows {
-    /// The passes of this frame, in the order in which they must be drawn.
+    /// Returns the passes of this frame, in draw order.
     pub fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
         self.all_passes()
     }
 
-    /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
-    /// `group`. Each of its regions is then [set](DrawRegion::set) and drawn.
+    /// Opens a pass, for engines that schedule passes themselves. The layer is cleared or restored, and the
+    /// map's matrix is bound at `group`. Then [set](DrawRegion::set) and draw each of its regions.
     pub fn begin_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
@@ -217,9 +220,9 @@ impl SunShadows {
         pass.begin(encoder, group, timestamps)
     }
 
-    /// What a shader finds the casters of each region by ([`culling_wgsl`](crate::culling_wgsl)), for engines that keep
-    /// their casters on the GPU: a record for each [`DrawRegion`] of [`Self::passes`], by its
-    /// [number](DrawRegion::number). Planes are relative to [`SunFrame::origin`].
+    /// Returns a record for each [`DrawRegion`] of [`Self::passes`], by its [number](DrawRegion::number). A
+    /// shader finds the region's casters with it ([`culling_wgsl`](crate::culling_wgsl)), for engines that
+    /// keep their casters on the GPU. Planes are relative to [`SunFrame::origin`].
     pub fn culling_regions(&self) -> impl Iterator<Item = CullingRegion> {
         self.passes().flat_map(|pass| pass.culling_regions())
     }
@@ -227,24 +230,24 @@ impl SunShadows {
 
 /// # Caching
 impl SunShadows {
-    /// Whether static casters are kept from frame to frame. They are by default. Pictures are the same either way
-    /// but for 3 in 100,000 factors, at edges that were drawn with a matrix that is rounded otherwise.
+    /// Sets whether static casters are kept from frame to frame. Default: `true`. Results are identical
+    /// except for 3 in 100,000 edge pixels, where matrix rounding differs.
     pub fn set_caching(&mut self, caching: bool) {
         self.each_set(|maps| maps.caching = caching);
     }
 
-    /// Spreads redraws over frames; see [`UpdateSchedule`].
+    /// Spreads redraws over several frames; see [`UpdateSchedule`].
     pub fn set_schedule(&mut self, schedule: UpdateSchedule) {
         self.each_set(|maps| maps.schedule = schedule);
     }
 
-    /// Which casters are drawn; see [`Culling`]. Pictures are the same either way.
+    /// Sets the rule that decides which casters are drawn; see [`Culling`]. Results are identical.
     pub fn set_culling(&mut self, culling: Culling) {
         self.each_set(|maps| maps.culling = culling);
     }
 
-    /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
-    /// metres, relative to an origin in world space.
+    /// Redraws the static casters in a box in the next frame. Call it if a caster changed its shape but not
+    /// its bounding box. The box is in metres, relative to `origin` in world space.
     pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         self.each_set(|maps| maps.invalidate(aabb, origin));
     }
@@ -254,33 +257,35 @@ impl SunShadows {
         self.each_set(CachedMaps::invalidate_all);
     }
 
-    /// Whether the static casters of a map, by its number, are kept for later frames.
+    /// Returns whether the static casters of a map are kept for later frames. `map` is its index.
     pub fn is_cached(&self, map: usize) -> bool {
         self.maps.is_cached(map)
     }
 }
 
-/// # A sun that moves
+/// # Moving sun
 impl SunShadows {
-    /// Holds the maps of a sun that moves: its **light steps**. [`Self::update`] is given the true direction in each
-    /// frame, and makes the maps for a direction that it holds until a map's edge would be off by
-    /// [some texels](LightSteps::texels), so that what is drawn is kept in between. Shading goes on with the true
-    /// direction. `None`, as it is in the beginning, follows the sun in each frame.
+    /// Sets the **light steps** of a moving sun. [`Self::update`] receives the true direction in each frame,
+    /// but fits the maps to a held direction. The true direction replaces the held one once their difference
+    /// moves a map's edge by more than [a number of texels](LightSteps::texels). Between two steps the drawn
+    /// maps are kept. Shade with the true direction. With `None`, the default, the maps follow the sun in
+    /// each frame.
     ///
-    /// With a [fade](LightSteps::fade) there is a second set of maps, of as many bytes. When the sun steps, its maps are
-    /// drawn one by one, a map in each frame, while the old ones are read; then the look-up reads both for as many
-    /// frames as the fade has, and the new ones alone after that. Maps that cannot be kept are drawn all at once. While
-    /// a step is under way no other begins, and windows follow [what is seen](Self::record_demand) in the new maps alone,
-    /// so that they fade in, too. A sun that is farther from its maps than 2° was set elsewhere: there is no
-    /// fade then, and all maps are drawn anew in that frame. So it is after a [cut](Self::cut).
+    /// With a [fade](LightSteps::fade) there is a second set of maps of the same size in memory. When the sun
+    /// steps, the new maps are drawn, one per frame, while shaders read the old ones. Then the look-up mixes
+    /// both sets during the frames of the fade, and reads only the new set afterwards. Maps that cannot be
+    /// kept are drawn all at once. No other step begins meanwhile. The [visible demand](Self::record_demand)
+    /// moves only the windows of the new set, so that this change fades in, too. If the sun is more than 2°
+    /// from the direction of its maps, it was moved elsewhere: all maps are redrawn in that frame, without a
+    /// fade. A step right after a [cut](Self::cut) has no fade, either.
     ///
-    /// Returns whether the maps were recreated, as [`Self::set_technique`] does: where there is a fade now and was none,
-    /// or the other way round.
+    /// Returns whether the maps were recreated, as [`Self::set_technique`] does. They are if a fade was added
+    /// or removed.
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] for a number of texels that makes no sense, and as [`Self::new`]. Everything stays as
-    /// it is then.
+    /// [`SunShadowsError::Fit`] for an invalid number of texels, and the errors of [`Self::new`]. On an
+    /// error, the shadows do not change.
     pub fn set_light_steps(&mut self, steps: Option<LightSteps>) -> Result<bool, SunShadowsError> {
         if let Some(steps) = &steps {
             steps.check()?;
@@ -294,20 +299,20 @@ impl SunShadows {
         Ok(is_new)
     }
 
-    /// The light steps.
+    /// Returns the light steps.
     pub fn light_steps(&self) -> Option<LightSteps> {
         self.steps.map(|state| state.settings)
     }
 }
 
 impl SunShadows {
-    /// The maps that are read, and what is kept of them.
+    /// Returns the present maps with their cache.
     #[cfg(feature = "rays")]
     pub(crate) fn cached(&self) -> &CachedMaps {
         &self.maps
     }
 
-    /// Whether two sets of maps are mixed.
+    /// Returns whether the look-up mixes two sets of maps.
     #[cfg(feature = "rays")]
     pub(crate) fn is_fading(&self) -> bool {
         self.faded().is_some()
@@ -318,12 +323,12 @@ impl SunShadows {
         self.other.iter_mut().for_each(|other| set(&mut other.maps));
     }
 
-    /// Goes on with one set of maps, for the newest direction, from the next frame on.
+    /// Keeps one set of maps, for the newest direction, from the next frame on.
     fn end_step(&mut self) {
         self.steps.iter_mut().for_each(StepState::cut);
     }
 
-    /// [`Self::prepare`] of the maps that are read.
+    /// Calls [`Self::prepare`] for the present maps.
     fn prepare_present(
         &mut self,
         queue: &wgpu::Queue,
@@ -335,15 +340,14 @@ impl SunShadows {
         Ok(())
     }
 
-    /// Leaves the frame without passes.
+    /// Gives the frame no passes.
     fn skip(&mut self) {
         self.each_set(CachedMaps::skip);
         self.last = None;
     }
 
-    /// Tells what a picture showed to the maps of the newest direction. Those that are read before them, or are faded out,
-    /// keep their windows where they are: a window that is replaced while it is read changes the shadow from one frame to
-    /// the next.
+    /// Passes visible demand to the maps of the newest direction. The older set keeps its windows in place:
+    /// moving a window while shaders read it changes shadows from one frame to the next.
     fn see(&mut self, seen: VisibleDemand) {
         match &mut self.other {
             Some(other) if self.steps.is_some_and(|steps| steps.is_drawing()) => other.fitter.set_visible_demand(seen),
@@ -358,7 +362,7 @@ impl Demand {
         Self { is_supported, pass: None, samples: 0 }
     }
 
-    /// The pass for depth buffers of so many samples.
+    /// Returns the pass for depth buffers of this sample count.
     fn pass(
         &mut self,
         device: &wgpu::Device,

@@ -1,5 +1,5 @@
-//! The WGSL of casters and receivers, put together from the pieces in `wgsl/`. Every name starts with a prefix, so
-//! that the text can be pasted into any shader, and that of several suns into one.
+//! WGSL for casters and receivers, assembled from the pieces in `wgsl/`. All names start with a prefix, so
+//! that the text can be pasted into any shader, even for several suns.
 
 mod culling_region;
 mod fading;
@@ -14,31 +14,31 @@ pub use culling_region::CullingRegion;
 /// Look-ups over the disc of [`FilterKind::Pcss`].
 const PCSS_TAPS: u32 = 16;
 
-/// How the WGSL fits into an engine's shader.
+/// Bind group and name prefix of the WGSL in an engine's shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WgslOptions<'a> {
-    /// Bind group that it reads; any will do.
+    /// Bind group that the WGSL reads; any number.
     pub group: u32,
-    /// Prefix of all its names, before an underscore: with `sun` the function `shadowfit_factor` is called `sun_factor`
-    /// and constants begin with `SUN_`. Prefixes in one shader differ in more than case. A prefix that is not an
-    /// identifier makes invalid WGSL; [`Self::with_prefix`] refuses it.
+    /// Prefix of all names, before an underscore: with `sun` the function `shadowfit_factor` is called
+    /// `sun_factor`, and constants begin with `SUN_`. Prefixes in one shader must differ in more than case. A
+    /// prefix that is not an identifier makes the WGSL invalid; [`Self::with_prefix`] refuses it.
     pub prefix: &'a str,
 }
 
 impl WgslOptions<'_> {
-    /// The usual prefix.
+    /// The default prefix.
     pub const PREFIX: &'static str = "shadowfit";
 
-    /// Bind group `group` and the prefix `shadowfit`.
+    /// Returns options with bind group `group` and the prefix `shadowfit`.
     pub const fn group(group: u32) -> Self {
         Self { group, prefix: Self::PREFIX }
     }
 
-    /// The same with another prefix: ASCII letters, digits and underscores, with a letter first.
+    /// Returns these options with another prefix: ASCII letters, digits and underscores, with a letter first.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::Prefix`] for anything else.
+    /// [`ShadowMapError::Prefix`] for any other prefix.
     pub fn with_prefix(self, prefix: &str) -> Result<WgslOptions<'_>, ShadowMapError> {
         let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         if prefix.starts_with(|c: char| c.is_ascii_alphabetic()) && prefix.chars().all(is_word) {
@@ -48,7 +48,7 @@ impl WgslOptions<'_> {
         }
     }
 
-    /// The pieces with group, bindings and names filled in.
+    /// Returns the pieces with group, bindings and names filled in.
     pub(crate) fn fill(&self, pieces: &str, first_binding: u32) -> String {
         let mut text = pieces
             .replace("GROUP", &self.group.to_string())
@@ -65,20 +65,20 @@ impl WgslOptions<'_> {
     }
 }
 
-/// WGSL for the shadow pass:
+/// Returns the WGSL for the shadow pass:
 ///
-/// | function | gives |
+/// | function | use |
 /// |---|---|
-/// | `shadowfit_caster_position(position) -> vec4<f32>` | for vertex shaders: the clip position |
-/// | `shadowfit_caster_color(depth) -> vec4<f32>` | only for colour formats, for fragment shaders: what to write to the [`color_target`](crate::ShadowMap::color_target), from z of `@builtin(position)` or the clamped depth |
-/// | `shadowfit_caster_depth(position) -> f32` | for vertex shaders where [the fragment shader clamps](crate::ShadowMap::clamps_in_fragment): a varying with the usual interpolation |
-/// | `shadowfit_clamped_depth(depth) -> f32` | for fragment shaders there: what to write to `@builtin(frag_depth)`, from that varying |
+/// | `shadowfit_caster_position(position) -> vec4<f32>` | for vertex shaders: returns the clip position |
+/// | `shadowfit_caster_color(depth) -> vec4<f32>` | for fragment shaders, only with colour formats: returns the colour for the [`color_target`](crate::ShadowMap::color_target), from z of `@builtin(position)` or the clamped depth |
+/// | `shadowfit_caster_depth(position) -> f32` | for vertex shaders if [the fragment shader clamps](crate::ShadowMap::clamps_in_fragment): returns a varying with the default interpolation |
+/// | `shadowfit_clamped_depth(depth) -> f32` | for fragment shaders in this case: returns the value for `@builtin(frag_depth)` from that varying |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`].
 ///
-/// It reads binding [`ShadowMapDescriptor::first_binding`] of the group: [`crate::ShadowMap::render`] and
-/// [`crate::ShadowMap::begin_pass`] bind the map's [`caster_group`](crate::ShadowMap::caster_group) where they are told
-/// to.
+/// It reads binding [`ShadowMapDescriptor::first_binding`] of the group. [`crate::ShadowMap::render`] and
+/// [`crate::ShadowMap::begin_pass`] bind the map's [`caster_group`](crate::ShadowMap::caster_group) at the
+/// group that is passed to them.
 pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let color = match descriptor.format {
         MapFormat::Depth32Float | MapFormat::Depth16Unorm => "",
@@ -88,37 +88,38 @@ pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) 
     options.fill(&[include_str!("wgsl/caster.wgsl"), color].concat(), descriptor.first_binding)
 }
 
-/// WGSL for shaders that cull casters:
+/// Returns the WGSL for shaders that cull casters:
 ///
-/// | function | tells |
+/// | function | result |
 /// |---|---|
 /// | `shadowfit_draws_box(region, moves, min, max) -> bool` | whether a caster in a box must be drawn into a region: `region` is its number, `moves` whether the caster moves |
-/// | `shadowfit_draws_sphere(region, moves, centre, radius) -> bool` | the same of a sphere |
-/// | `shadowfit_draws_oriented_box(region, moves, centre, half_axes) -> bool` | the same of a turned box; `half_axes` are the three from its centre to the middles of its faces |
+/// | `shadowfit_draws_sphere(region, moves, centre, radius) -> bool` | whether a caster in a sphere must be drawn |
+/// | `shadowfit_draws_oriented_box(region, moves, centre, half_axes) -> bool` | whether a caster in an oriented box must be drawn; `half_axes` are the vectors from its centre to the centres of three faces |
 ///
-/// Shapes are in world axes, in metres, relative to the origin of the frame. They are the twins of the tests of
-/// [`shadowfit::CasterVolume`].
+/// Shapes are in world axes, in metres, relative to the origin of the frame. The functions are GPU versions
+/// of the tests of [`shadowfit::CasterVolume`].
 ///
-/// Reads a storage buffer of [`CullingRegion`]s at binding 0 of the group: those of
+/// It reads a storage buffer of [`CullingRegion`]s at binding 0 of the group; see
 /// [`SunShadows::culling_regions`](crate::SunShadows::culling_regions).
 pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
     options.fill(include_str!("wgsl/culling.wgsl"), 0)
 }
 
-/// WGSL for the shaders that light what receives shadows, in any stage:
+/// Returns the WGSL for shaders that light receivers, in any stage:
 ///
-/// | function | gives |
+/// | function | result |
 /// |---|---|
-/// | `shadowfit_factor_at(position, normal, pixel) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map, and 0 everywhere while the light is [off](crate::SunShadows::turn_off). `pixel` is xy of the fragment's `@builtin(position)`: filters that spread look-ups over a disc turn it from pixel to pixel, others ignore it. Half of it turns them for each 2 × 2 pixels, which costs less, and is grainier |
-/// | `shadowfit_factor(position, normal) -> f32` | the same without turning the discs: their look-ups then show as bands instead of noise |
-/// | `shadowfit_map_index(position) -> i32` | the index of the map that weighs more in the factor there, for tints that show it; -1 outside every map |
-/// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth and that shadows fade by: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
+/// | `shadowfit_factor_at(position, normal, pixel) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map, and 0 everywhere while the light is [off](crate::SunShadows::turn_off). `pixel` is xy of the fragment's `@builtin(position)`. Filters with a disc of look-ups rotate the disc from pixel to pixel. Other filters ignore `pixel`. Pass half of it to rotate the disc per 2 × 2 pixels, which costs less, and is grainier |
+/// | `shadowfit_factor(position, normal) -> f32` | the same share without rotating the discs, whose look-ups then show as bands instead of noise |
+/// | `shadowfit_map_index(position) -> i32` | the index of the map with the greatest weight in the factor, for debug colours; -1 outside every map |
+/// | `shadowfit_view_depth(position) -> f32` | the view depth in metres, for selection by view depth and for the fade: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
 ///
-/// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
-/// `normal` is the unit geometric normal on the side that is seen, for which 10 bits an axis are enough. Which map a
-/// point reads is [`ShadowMapDescriptor::selection`], by the rule of [`shadowfit::selection`]. Reads the bindings from
-/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives. Where it
-/// [cross-fades](ShadowMapDescriptor::cross_fades), the factor is a mix of two sets of maps while one of them fades out.
+/// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`]. `normal` is
+/// the unit geometric normal of the visible side, with at least 10 bits per axis.
+/// [`ShadowMapDescriptor::selection`] decides which map a point reads, by the rules of
+/// [`shadowfit::selection`]. The WGSL uses two bindings from [`ShadowMapDescriptor::first_binding`] on, or
+/// three for depth formats, and no derivatives. With [cross-fades](ShadowMapDescriptor::cross_fades), the
+/// factor blends two sets of maps while one of them fades out.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
     let texel = if loads_texels(descriptor) { [load, include_str!("wgsl/texel.wgsl")].concat() } else { String::new() };
@@ -146,10 +147,11 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
     options.fill(&text, descriptor.first_binding)
 }
 
-/// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
-/// map, by its index (`i32`, as `shadowfit_map_index` gives it), holds at a texel (`vec2<i32>`). Shaders of the backend
-/// [`wgpu::Backend::Gl`] cannot read depth textures as numbers: they find the depth by 31 comparisons. Drivers may round the
-/// compared number to the format of the map, and may give the least normal number for zero.
+/// Returns the WGSL for debug views of the maps. Put it after the WGSL of [`receiver_wgsl`].
+/// `shadowfit_stored(map, texel) -> f32` returns the depth of a map, by its index (`i32`, as in
+/// `shadowfit_map_index`), at a texel (`vec2<i32>`). Shaders of the backend [`wgpu::Backend::Gl`] cannot read
+/// depth textures as numbers, and find the depth by 31 comparisons. Drivers may round the compared number to
+/// the format of the map, and may return the smallest normal number instead of zero.
 pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>, backend: wgpu::Backend) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
     let texel_offset = |entry: u32| {
@@ -160,7 +162,7 @@ pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>, 
     };
     let offsets = format!(
         "
-// Where the first texel of a map lies in its layer.
+// Returns the position of a map's first texel in its layer.
 fn shadowfit_texel_offset(layer: u32) -> vec2<f32> {{
 {}    return vec2<f32>(0.0);
 }}
@@ -179,19 +181,20 @@ fn shadowfit_texel_offset(layer: u32) -> vec2<f32> {{
     options.fill(&text, descriptor.first_binding)
 }
 
-/// WGSL that reads the texels of layers: after the look-up's declarations, `shadowfit_load(layer, texel) -> f32`.
+/// Returns WGSL that reads the texels of layers: `shadowfit_load(layer, texel) -> f32`, after the look-up's
+/// declarations.
 #[cfg(feature = "rays")]
 pub(crate) fn loads_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
     options.fill(&[texture, load].concat(), descriptor.first_binding)
 }
 
-/// Whether the look-up reads texels by itself.
+/// Returns whether the look-up reads single texels.
 fn loads_texels(descriptor: &ShadowMapDescriptor) -> bool {
     !descriptor.format.is_depth() || descriptor.filter == FilterKind::Pcss
 }
 
-/// The texture of a format, and how a texel of it is read.
+/// Returns the WGSL that declares the texture of a format, and the WGSL that reads one of its texels.
 fn texture(format: MapFormat) -> (&'static str, &'static str) {
     match format {
         MapFormat::Depth32Float | MapFormat::Depth16Unorm => {
@@ -204,7 +207,7 @@ fn texture(format: MapFormat) -> (&'static str, &'static str) {
     }
 }
 
-/// How a filter gathers its look-ups.
+/// Returns the WGSL of a filter, which combines several look-ups.
 fn filter(filter: FilterKind) -> String {
     let disc = |taps: u32, file: &str| {
         let constants = format!(
@@ -225,15 +228,16 @@ fn filter(filter: FilterKind) -> String {
     }
 }
 
-/// One of several places in the unit disc: each turned from the last by the golden angle, at radii that give each the same
-/// area (H. Vogel, "A better way to construct the sunflower head", 1979).
+/// Returns one of several positions in the unit disc. Each is rotated from the previous one by the golden
+/// angle, at radii that give each the same area (H. Vogel, "A better way to construct the sunflower head",
+/// 1979).
 pub(crate) fn in_disc(index: u32, count: u32) -> [f32; 2] {
     let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let (radius, angle) = (((f64::from(index) + 0.5) / f64::from(count)).sqrt(), f64::from(index) * golden);
     [(radius * angle.cos()) as f32, (radius * angle.sin()) as f32]
 }
 
-/// The look-ups over a disc one by one, so that their places are constants.
+/// Returns WGSL with one statement per look-up over a disc, so that the positions are constants.
 fn disc_taps(taps: u32) -> String {
     let tap = |index: u32| {
         let [x, y] = in_disc(index, taps);
@@ -241,7 +245,7 @@ fn disc_taps(taps: u32) -> String {
     };
     format!(
         "
-// Sum of the look-ups over a disc that lies inside its map.
+// Returns the sum of the look-ups over a disc that lies inside its map.
 fn shadowfit_disc_taps(disc: shadowfit_Disc, projected: shadowfit_Projected) -> f32 {{
     var sum = 0.0;
 {}    return sum;
@@ -252,8 +256,9 @@ fn shadowfit_disc_taps(disc: shadowfit_Disc, projected: shadowfit_Projected) -> 
     )
 }
 
-/// The search for a point's maps, and a map by its place in the order: one branch per map, since software rasterisers
-/// take twenty times as long for a loop over an array of uniforms.
+/// Returns the WGSL that selects a point's maps, and that returns a map by its index in the order. It has one
+/// branch per map, because software rasterisers take twenty times as long for a loop over an array of
+/// uniforms.
 fn selection(descriptor: &ShadowMapDescriptor) -> String {
     let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
     let map = |entry: u32| format!("shadowfit_receiver.maps[{entry}]");
@@ -279,7 +284,7 @@ const SHADOWFIT_REACH: f32 = {reach:?};
 const SHADOWFIT_BLEND: f32 = {blend:?};
 
 {rule}
-// The maps that a point reads: none beyond the end of shadows.
+// Returns the maps that a point reads. There are none beyond the shadow distance.
 fn shadowfit_select(position: vec3<f32>) -> shadowfit_Selection {{
     let view_depth = shadowfit_view_depth(position);
     var selection = shadowfit_Selection(-1, -1, 1.0, -1, 0.0);
@@ -290,7 +295,7 @@ fn shadowfit_select(position: vec3<f32>) -> shadowfit_Selection {{
     return selection;
 }}
 
-// The map at a place in the order.
+// Returns the map at an index in the order.
 fn shadowfit_entry(entry: i32) -> shadowfit_Map {{
 {}    return {};
 }}

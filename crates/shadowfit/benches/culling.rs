@@ -1,8 +1,9 @@
-//! Culling boxes against the volumes of four maps: one by one, as an engine would write it by hand, and batched.
+//! Culling of boxes against the volumes of four maps: one by one, as an engine would write it by hand, and
+//! batched.
 //!
-//! Each call gets other boxes than the one before, as each frame does: over the same 1,000 boxes again and again a
-//! branch predictor learns every outcome, which no frame of an engine sees. The last group shows how much that
-//! matters.
+//! Each call gets other boxes than the one before, as in real frames. With the same 1,000 boxes in each call,
+//! a branch predictor learns every outcome, which never happens in an engine. The last group shows the
+//! difference.
 
 use std::hint::black_box;
 
@@ -17,7 +18,7 @@ use shadowfit::{
 /// Boxes in the pool; calls cycle through them.
 const POOL: usize = 1 << 20;
 
-/// Planes of a box, which hand-written loops have.
+/// Planes of a volume in hand-written loops.
 const SIX: usize = 6;
 
 fn views() -> [ViewFrustum; 1] {
@@ -53,7 +54,7 @@ fn swept(fitted: &FittedMaps) -> Vec<CasterVolume> {
     volumes.collect::<Result<_, _>>().expect("good sweeps")
 }
 
-/// In which order boxes come.
+/// Order of the boxes.
 #[derive(Clone, Copy, PartialEq)]
 enum Order {
     Random,
@@ -61,7 +62,7 @@ enum Order {
     Spatial,
 }
 
-/// Boxes of up to 10 m, at random in a square with a side of this many metres around the camera.
+/// Returns boxes of up to 10 m, at random in a square with a side of this many metres around the camera.
 fn boxes(side: f32, order: Order) -> Vec<Aabb> {
     // G. Marsaglia, "Xorshift RNGs", 2003.
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -85,7 +86,7 @@ fn boxes(side: f32, order: Order) -> Vec<Aabb> {
     boxes
 }
 
-/// What an engine would write: each box against each volume, plane by plane, until one culls it.
+/// Culls by hand, as an engine would: each box against each volume, plane by plane, until one culls it.
 fn by_hand(volumes: &[[Vec4; SIX]], boxes: &[Aabb], masks: &mut [u8]) {
     for (b, mask) in boxes.iter().zip(masks) {
         *mask = 0;
@@ -103,7 +104,7 @@ fn by_hand(volumes: &[[Vec4; SIX]], boxes: &[Aabb], masks: &mut [u8]) {
     }
 }
 
-/// The single test in a loop.
+/// Calls the single test in a loop.
 fn one_by_one(volumes: &[CasterVolume], boxes: &[Aabb], masks: &mut [u8]) {
     for (b, mask) in boxes.iter().zip(masks) {
         *mask = 0;
@@ -113,7 +114,7 @@ fn one_by_one(volumes: &[CasterVolume], boxes: &[Aabb], masks: &mut [u8]) {
     }
 }
 
-/// Measures one way to cull, over boxes that change from call to call or stay the same.
+/// Measures one way of culling, over boxes that change from call to call or stay the same.
 fn measure(
     group: &mut BenchmarkGroup<WallTime>,
     name: &str,

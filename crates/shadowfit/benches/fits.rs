@@ -1,7 +1,8 @@
-//! The fits, beside plain transcriptions of the two best-known ones: the XNA sample's steps and Bevy's cascades.
+//! The fits, compared with plain transcriptions of the two best-known ones: the XNA sample's steps and Bevy's
+//! cascades.
 //!
-//! Transcriptions take the shortest way that glam offers in f32, as their sources do. All start from camera parameters
-//! and a light direction and end with the matrices that a renderer uploads.
+//! The transcriptions take the shortest way that glam offers in f32, like their sources. All start from
+//! camera parameters and a light direction, and end with the matrices that a renderer uploads.
 
 use std::hint::black_box;
 
@@ -12,7 +13,7 @@ use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapSettings, Shape, SplitScheme, Stabilise};
 use shadowfit::{Aabb, Boxes, Cascades, FitInput, FitState, FittedMaps, PerspectiveCamera, Scratch, Technique, fit};
 
-/// A camera that turns a little with each call, so that no result can be kept.
+/// Returns a camera that turns a little with each call, so that no result can be reused.
 fn camera(turn: &mut f32) -> PerspectiveCamera {
     *turn = (*turn + 0.001) % 1.0;
     PerspectiveCamera {
@@ -29,8 +30,8 @@ fn camera(turn: &mut f32) -> PerspectiveCamera {
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
 
 mod xna {
-    //! The sample's `CreateLightViewProjectionMatrix`, with the frustum that XNA's `BoundingFrustum` makes of the
-    //! camera's matrix.
+    //! The sample's `CreateLightViewProjectionMatrix`, with the frustum that XNA's `BoundingFrustum` computes
+    //! from the camera's matrix.
 
     use super::{Mat4, PerspectiveCamera, Vec3, Vec3Swizzles, Vec4, look_at, orthographic, perspective};
 
@@ -53,7 +54,7 @@ mod xna {
         orthographic(size.xy(), -size.z, size.z) * light_view
     }
 
-    /// Corners where three planes of a clip space meet, as `BoundingFrustum` finds them.
+    /// Returns the corners where three planes of a clip space meet, like `BoundingFrustum`.
     fn corners(clip_from_world: Mat4) -> [Vec3; 8] {
         let m = clip_from_world.transpose();
         let plane = |p: Vec4| p / p.truncate().length();
@@ -104,7 +105,7 @@ mod bevy {
 
     use super::{Mat4, PerspectiveCamera, Vec3, Vec3Swizzles, Vec4, look_at, perspective};
 
-    /// What Bevy keeps of each cascade.
+    /// Data that Bevy keeps for each cascade.
     pub(super) struct Map {
         pub(super) world_from_light_clip: Mat4,
         pub(super) clip_from_light_space: Mat4,
@@ -218,7 +219,7 @@ fn settings(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> Techniq
     Technique::default().with_maps(cascades).with_fit(fit)
 }
 
-/// Boxes of 2 to 6 m on a plain of 120 m around the camera.
+/// Returns boxes of 2 to 6 m on a plain of 120 m around the camera.
 fn objects(count: usize) -> Vec<Aabb> {
     let side = (count as f32).sqrt().ceil() as usize;
     let step = 120.0 / side as f32;
@@ -258,20 +259,20 @@ fn focused(c: &mut Criterion) {
     group.finish();
 }
 
-/// Frames of a walk along a circle, 18 cm and 0.7 degrees apart. After the last one comes the first.
+/// Frames of a walk along a circle, 18 cm and 0.7 degrees apart. The first frame follows the last.
 const WALK: usize = 512;
 
-/// The camera of a frame of the walk, which looks ahead.
+/// Returns the camera of a frame of the walk, which looks ahead.
 fn walk(frame: usize) -> PerspectiveCamera {
     let (sin, cos) = (std::f64::consts::TAU * frame as f64 / WALK as f64).sin_cos();
     let forward = DVec3::new(-sin, -0.1, cos).as_vec3();
     PerspectiveCamera { eye: DVec3::new(15.0 * cos, 1.7, 15.0 * sin), forward, ..camera(&mut 0.0) }
 }
 
-/// Rays across and down the picture, by which need is counted.
+/// Rays across and down the picture, for counting demand.
 const RAYS: (usize, usize) = (48, 27);
 
-/// What a camera sees of boxes, counted as from its depth buffer.
+/// Counts the visible demand of a camera from boxes, as from its depth buffer.
 fn demand(camera: &PerspectiveCamera, boxes: &[Aabb]) -> (DemandSpace, Vec<u32>) {
     let view = camera.frustum().expect("a good camera");
     let space = DemandSpace::new(&view, DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
@@ -294,7 +295,7 @@ fn demand(camera: &PerspectiveCamera, boxes: &[Aabb]) -> (DemandSpace, Vec<u32>)
     (space, counts)
 }
 
-/// Where a ray meets a box, in lengths of the ray, and the face's normal.
+/// Returns the distance at which a ray meets a box, in lengths of the ray, and the face's normal.
 fn hit(eye: Vec3, ray: Vec3, aabb: &Aabb) -> Option<(f32, Vec3)> {
     let (a, b) = ((aabb.min - eye) / ray, (aabb.max - eye) / ray);
     let (enter, leave) = (a.min(b), a.max(b).min_element());
@@ -303,7 +304,8 @@ fn hit(eye: Vec3, ray: Vec3, aabb: &Aabb) -> Option<(f32, Vec3)> {
     (enter[axis] > 0.0 && enter[axis] < leave).then_some((enter[axis], normal))
 }
 
-/// Presets along a walk: windows with what the frame before showed and without, and the stillest cascades beside them.
+/// Measures presets along a walk: windows with and without the last frame's visible demand, and the stillest
+/// cascades.
 fn windows(c: &mut Criterion) {
     let mut group = c.benchmark_group("4 windows beside stable maps");
     for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {
@@ -339,7 +341,7 @@ fn windows(c: &mut Criterion) {
     group.finish();
 }
 
-/// A wavy plain of 2 · n² triangles.
+/// Returns a wavy plain of 2 · n² triangles.
 fn terrain(n: usize) -> Vec<[Vec3; 3]> {
     let at = |i: usize, j: usize| {
         let (x, z) = (i as f32, j as f32);

@@ -1,8 +1,8 @@
-//! How good a fit is, as numbers that any engine can compute: pure functions of the fit.
+//! Figures that rate a fit, as pure functions of the fit, for any engine.
 //!
-//! A map's sharpness is measured in *screen pixels per shadow texel along the worse axis*: above
-//! one, texels show as jagged edges. Other figures say what the map covers, how much of it is used,
-//! how finely it stores depth and how far a bias is from acne.
+//! Sharpness is measured in *screen pixels per shadow texel along the worse axis*. Above 1, texels show as
+//! jagged edges. Other figures give a map's coverage, the used share of its area, the precision of its depth,
+//! and the margin of a bias against acne.
 
 pub use crate::bias::depth_storage::{DepthStorage, depth_step, depth_step_at};
 
@@ -16,18 +16,18 @@ use crate::projection::LightProjection;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PixelsPerTexel {
-    /// Along the worse axis: pixels per texel in the direction in which texels look longest.
+    /// Pixels per texel in the direction in which texels look longest.
     pub worse_axis: f32,
-    /// By area: pixels² per texel.
+    /// Square pixels per texel.
     pub area: f32,
 }
 
-/// Screen pixels per shadow texel on the surface through `point` with the given normal.
+/// Returns the screen pixels per shadow texel on the surface through `point` with the given normal.
 ///
-/// `point` (metres) and `normal` (any length) are in world axes, the point and the input of
-/// `clip_from_world` (the **camera's**, any depth range) **relative to the fit's origin**;
-/// `viewport` is the picture's size in pixels. `None` where the point is not in front of the
-/// camera, or where the surface is edge-on to the light, so that its texels are infinitely long.
+/// `point` (metres) and `normal` (any length) are in world axes. `clip_from_world` is the **camera's**
+/// matrix, with any depth range. The point and the matrix's input are **relative to the fit's origin**.
+/// `viewport` is the picture's size in pixels. Returns `None` if the point is not in front of the camera, or
+/// if the surface is edge-on to the light, which makes its texels infinitely long.
 ///
 /// # Errors
 ///
@@ -35,11 +35,11 @@ pub struct PixelsPerTexel {
 ///
 /// # Derivation
 ///
-/// Let a and b be coordinates in the surface's tangent plane. The chain surface → screen has the
-/// Jacobian S = ∂(pixel)/∂(a, b), surface → map has T = ∂(texel)/∂(a, b), so
-/// J = ∂(pixel)/∂(texel) = S T⁻¹. J takes a circle of one texel to an ellipse of pixels; the
-/// worse axis is J's greatest singular value, the area |det J|. For clip = M p the screen
-/// position is x/w, whose derivative along a tangent t is (Mt.x - (x/w) Mt.w) / w.
+/// Let a and b be coordinates in the surface's tangent plane. The map from surface to screen has the Jacobian
+/// S = ∂(pixel)/∂(a, b), and the map from surface to shadow map has T = ∂(texel)/∂(a, b), so J =
+/// ∂(pixel)/∂(texel) = S T⁻¹. J takes a circle of one texel to an ellipse of pixels. The worse axis is J's
+/// greatest singular value, and the area is |det J|. For clip = M p the screen position is x/w, whose
+/// derivative along a tangent t is (Mt.x - (x/w) Mt.w) / w.
 pub fn pixels_per_texel(
     fit: &LightProjection,
     clip_from_world: &Mat4,
@@ -62,7 +62,7 @@ pub fn pixels_per_texel(
     Ok(Some(pixels_of_texels(screen, tangents.map(|tangent| texels_along(fit, tangent)))))
 }
 
-/// Pixels per texel from the pixels and the texels per metre along the same two tangents.
+/// Computes pixels per texel from the pixels and the texels per metre along the same two tangents.
 pub(crate) fn pixels_of_texels([sa, sb]: [DVec2; 2], [ta, tb]: [DVec2; 2]) -> PixelsPerTexel {
     let determinant = ta.x * tb.y - tb.x * ta.y;
     let along_u = (sa * tb.y - sb * ta.y) / determinant;
@@ -71,11 +71,11 @@ pub(crate) fn pixels_of_texels([sa, sb]: [DVec2; 2], [ta, tb]: [DVec2; 2]) -> Pi
     PixelsPerTexel { worse_axis: greatest_singular_value(along_u, along_v) as f32, area: area as f32 }
 }
 
-/// Below this cosine between normal and light a surface counts as edge-on to the light: f32 axes
-/// are rounded by as much.
+/// Cosine between normal and light below which a surface counts as edge-on to the light. The rounding of f32
+/// axes is of this size.
 pub(crate) const EDGE_ON_COSINE: f64 = 1e-6;
 
-/// Two unit vectors that span the plane with the given unit normal.
+/// Returns two unit vectors that span the plane with the given unit normal.
 pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
     let axis = if normal.x.abs() < 0.6 { DVec3::X } else { DVec3::Y };
     let a = normal.cross(axis);
@@ -83,7 +83,7 @@ pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
     [a, normal.cross(a)]
 }
 
-/// Pixels per metre along both tangents at a point, or `None` behind the camera.
+/// Computes the pixels per metre along both tangents at a point. Returns `None` behind the camera.
 pub(crate) fn screen_jacobian(
     clip_from_world: &Mat4,
     viewport: UVec2,
@@ -106,14 +106,14 @@ pub(crate) fn screen_jacobian(
     }))
 }
 
-/// Texels per metre along a tangent.
+/// Computes the texels per metre along a tangent.
 fn texels_along(fit: &LightProjection, tangent: DVec3) -> DVec2 {
     let m = fit.uv_from_world.as_dmat4();
     let d = m.x_axis * tangent.x + m.y_axis * tangent.y + m.z_axis * tangent.z;
     DVec2::new(d.x, d.y) * fit.resolution.as_dvec2()
 }
 
-/// Greatest singular value of the 2×2 matrix with these columns, in the form that does not
+/// Computes the greatest singular value of the 2×2 matrix with these columns, in the form that does not
 /// cancel: half the sum of the radii of its rotating and its mirroring part.
 fn greatest_singular_value(c0: DVec2, c1: DVec2) -> f64 {
     let rotating = DVec2::new(c0.x + c1.y, c0.y - c1.x);
@@ -121,43 +121,43 @@ fn greatest_singular_value(c0: DVec2, c1: DVec2) -> f64 {
     0.5 * (libm::sqrt(rotating.dot(rotating)) + libm::sqrt(mirroring.dot(mirroring)))
 }
 
-/// Where a point lies in a map.
+/// Position of a point relative to a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coverage {
-    /// Inside, with every texel that the filter reads.
+    /// Inside, with the whole footprint of the filter.
     Covered,
-    /// Inside, but the filter reads texels beyond the map's border.
+    /// Inside, but the footprint of the filter extends beyond the map's border.
     Border,
-    /// Outside, across the light.
+    /// Outside, beside the map.
     Aside,
-    /// Outside, nearer to the light than the near plane: it neither receives nor casts a shadow.
+    /// Outside, nearer to the light than the near plane. The point neither receives nor casts a shadow.
     BeforeNear,
     /// Outside, behind the far plane.
     BehindFar,
 }
 
 impl Coverage {
-    /// Whether the map can be read for the point: [`LightProjection::covers`].
+    /// Returns whether the map can be read for the point; see [`LightProjection::covers`].
     pub const fn is_inside(self) -> bool {
         matches!(self, Self::Covered | Self::Border)
     }
 }
 
-/// Where a world position, in metres, lies in a map, for a filter of the given [`FilterRadius`]. Inside is
-/// defined by [`LightProjection::covers`]; a point outside across the light is [`Coverage::Aside`] at any
-/// depth.
+/// Classifies a world position, in metres, by its place in a map, for a filter of the given [`FilterRadius`].
+/// A point is inside if [`LightProjection::covers`] returns true. A point beside the map is
+/// [`Coverage::Aside`] at any depth.
 ///
 /// # Errors
 ///
-/// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the point or the reach.
+/// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the point or the filter radius.
 pub fn coverage(fit: &LightProjection, reach: impl Into<FilterRadius>, point: DVec3) -> Result<Coverage, FitError> {
     checks::point("the point", point)?;
     let reach = reach.into().checked()?;
     let at = texture_point(fit, point - fit.origin)?;
     let uv = DVec2::new(at.x, at.y);
     if fit.covers(point) {
-        // A texel beyond the border has its centre half a texel out.
+        // The centre of the first texel beyond the border lies half a texel outside.
         let free = uv.min(1.0 - uv) * fit.resolution.as_dvec2() + 0.5;
         let read = reach.disc.as_dvec2() + f64::from(reach.taps);
         return Ok(if free.cmpge(read).all() { Coverage::Covered } else { Coverage::Border });
@@ -175,16 +175,16 @@ pub fn coverage(fit: &LightProjection, reach: impl Into<FilterRadius>, point: DV
     })
 }
 
-/// Share of the map's extent by which a point may lie beside it by rounding alone; below it, the
-/// side with the greater excess is reported.
+/// Tolerance for rounding at the map's sides, as a share of the map's extent. Within it, the side with the
+/// greater excess is reported.
 const ASIDE_TOLERANCE: f64 = 1e-6;
 
-/// Share of the map's area, 0..=1, inside the convex hull of `points` as seen by the light: the
-/// corners of a frustum's slice, of the receivers' boxes or of anything else that the map must
-/// cover. They are in world axes **relative to the fit's origin**, in metres, in any order; depth
-/// is ignored, and the part outside the map is cut off. Fewer than three points have no area.
+/// Returns the share of the map's area, 0..=1, inside the convex hull of `points` as seen from the light.
+/// Pass the corners of a frustum slice, of the receivers' boxes, or any other points that the map must cover.
+/// They are in world axes **relative to the fit's origin**, in metres, in any order. Depth is ignored, and
+/// the part of the hull outside the map is cut off. Fewer than three points have no area.
 ///
-/// It is an upper bound of the share that visible points use, since they may not fill their hull.
+/// The result is an upper bound of the share that visible points use, since they may not fill their hull.
 ///
 /// # Errors
 ///
@@ -192,17 +192,17 @@ const ASIDE_TOLERANCE: f64 = 1e-6;
 ///
 /// # Algorithm
 ///
-/// The hull's upper chain starts at the leftmost point and goes to the point of greatest slope
-/// ahead, again and again (R. A. Jarvis, "On the identification of the convex hull of a finite
-/// set of points in the plane", 1973, by slopes instead of angles, so that it always moves on);
-/// the lower chain likewise. Their difference, clamped to the map, is integrated edge by edge, so
-/// no hull is stored: for n points and h corners n·h steps, and no limit to either.
+/// The hull's upper chain starts at the leftmost point and repeatedly goes to the point of greatest slope
+/// ahead (R. A. Jarvis, "On the identification of the convex hull of a finite set of points in the plane",
+/// 1973). It compares slopes instead of angles, so it always advances. The lower chain works likewise. The
+/// difference of the two chains, clamped to the map, is integrated edge by edge, so no hull is stored. For n
+/// points and h corners it takes n·h steps, without a limit on either.
 pub fn share_of_map(fit: &LightProjection, points: &[Vec3]) -> Result<f32, FitError> {
     for point in points {
-        checks::point("a point of what the map is for", point.as_dvec3())?;
+        checks::point("a point that the map must cover", point.as_dvec3())?;
         texture_point(fit, point.as_dvec3())?;
     }
-    // Checked above, so that no point is dropped here.
+    // All points were checked above, so none is dropped here.
     let seen = || points.iter().filter_map(|p| texture_point(fit, p.as_dvec3()).ok()).map(|p| DVec2::new(p.x, p.y));
     let (least, greatest) = seen().fold((1.0, 0.0), |(min, max): (f64, f64), p| (min.min(p.x), max.max(p.x)));
     let width = (greatest.min(1.0) - least.max(0.0)).max(0.0);
@@ -211,7 +211,7 @@ pub fn share_of_map(fit: &LightProjection, points: &[Vec3]) -> Result<f32, FitEr
     Ok((area_below_chain(seen) + above - width).clamp(0.0, 1.0) as f32)
 }
 
-/// Area of the unit square below the upper chain of the points' hull.
+/// Computes the area of the unit square below the upper chain of the points' hull.
 fn area_below_chain<I: Iterator<Item = DVec2>>(points: impl Fn() -> I) -> f64 {
     let leftmost = |a: DVec2, b: DVec2| if b.x < a.x || (b.x == a.x && b.y > a.y) { b } else { a };
     let Some(mut from) = points().reduce(leftmost) else { return 0.0 };
@@ -229,7 +229,7 @@ fn area_below_chain<I: Iterator<Item = DVec2>>(points: impl Fn() -> I) -> f64 {
     area
 }
 
-/// Area of the unit square below an edge that goes to the right.
+/// Computes the area of the unit square below an edge that goes to the right.
 fn area_below_edge(from: DVec2, to: DVec2) -> f64 {
     let (left, right) = (from.x.max(0.0), to.x.min(1.0));
     if left >= right {
@@ -244,11 +244,11 @@ fn area_below_edge(from: DVec2, to: DVec2) -> f64 {
     mean * (right - left)
 }
 
-/// Rise below which an edge counts as level: the mean height is then off by less than this
-/// squared, and the quotient of differences would lose more.
+/// Rise below which an edge counts as level. The error of the mean height is then below the square of this
+/// number; the quotient of differences would lose more.
 const LEVEL: f64 = 1e-6;
 
-/// Texture coordinates and stored depth of a point relative to the fit's origin, in f64.
+/// Computes the texture coordinates and stored depth of a point relative to the fit's origin, in f64.
 fn texture_point(fit: &LightProjection, point: DVec3) -> Result<DVec3, FitError> {
     let m = fit.uv_from_world.as_dmat4();
     let at = m.x_axis * point.x + m.y_axis * point.y + m.z_axis * point.z + m.w_axis;
@@ -258,21 +258,22 @@ fn texture_point(fit: &LightProjection, point: DVec3) -> Result<DVec3, FitError>
     Ok(at.truncate())
 }
 
-/// The constant bias of a map beside the rounding that it must cover, in metres along the light.
+/// Constant bias of a map and the rounding that it must cover, in metres along the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthRounding {
     /// [Step](depth_step) of the map's format over its depth range.
     pub step: f32,
-    /// The step, and how far f32 arithmetic shifts a receiver against the surface that the map stores: the
-    /// [`depth_precision`].
+    /// Required bias, [`depth_precision`]: the step, plus the shift that f32 arithmetic causes between a
+    /// receiver and the surface that the map stores.
     pub needed: f32,
     /// [`Bias::constant_depth`].
     pub bias: f32,
 }
 
 impl DepthRounding {
-    /// Whether the bias covers the rounding. Otherwise surfaces that face the light shadow themselves in bands.
+    /// Returns whether the bias covers the rounding. If not, surfaces that face the light shadow themselves
+    /// in bands.
     pub fn is_covered(&self) -> bool {
         // The bias itself is rounded, too.
         self.bias >= self.needed * (1.0 - 1e-5)
@@ -291,31 +292,30 @@ pub fn depth_rounding(fit: &LightProjection, bias: &Bias, storage: impl Into<Dep
     }
 }
 
-/// Bias less what a plane needs. Where it is negative, so much bias is missing, and the plane
-/// shadows itself in stripes.
+/// Bias minus the bias that a plane needs. If it is negative, the plane shadows itself in stripes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AcneMargin {
-    /// In metres along the normal: the distance by which the point could sink into its surface
-    /// without acne.
+    /// Margin in metres along the normal: the distance that the point could sink into its surface without
+    /// acne.
     pub metres: f32,
-    /// The same in texels, by the longer side of a texel, as biases are set.
+    /// Margin in texels, by the longer side of a texel, as biases are set.
     pub texels: f32,
 }
 
-/// Predicted margin of a bias against acne at a world position (f64, metres) on a surface with the
-/// given **geometric** normal (world axes, any length, either side): the bias given there less the
-/// bias that its plane needs for a filter of the given reach [on hardware](FilterRadius::on_hardware) and
-/// a map of the given storage. `None` where the map does not cover the point.
+/// Predicts the margin of a bias against acne at a world position (f64, metres) on a surface with the given
+/// **geometric** normal (world axes, any length, either side). The margin is the bias that is applied there,
+/// minus the bias that its plane needs for a filter of the given radius [on
+/// hardware](FilterRadius::on_hardware) and a map of the given storage. Returns `None` if the map does not
+/// cover the point.
 ///
-/// With the normal offset h, the depth bias d of [`Bias::on_plane`] and the depth range R the
-/// margin is `h + (d - precision) · R · cos θ - E · (tx·|n·x| + ty·|n·y|)`. At 0 or more a plane
-/// cannot shadow itself; below, part of its points do. Curved surfaces need more than their
-/// tangent plane.
+/// With the normal offset h, the depth bias d of [`Bias::on_plane`] and the depth range R, the margin is `h +
+/// (d - precision) · R · cos θ - E · (tx·|n·x| + ty·|n·y|)`. At 0 or more, a plane cannot shadow itself.
+/// Below 0, some of its points do. Curved surfaces need more than their tangent plane.
 ///
 /// # Errors
 ///
-/// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the point or the reach, and
+/// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the point or the filter radius, and
 /// [`FitError::BadDirection`] for the normal.
 pub fn acne_margin(
     fit: &LightProjection,
@@ -331,7 +331,7 @@ pub fn acne_margin(
     if !coverage(fit, reach, point)?.is_inside() {
         return Ok(None);
     }
-    // The sine that a shader takes from an f32 cosine may be less than the one of `on_plane`.
+    // A shader computes the sine from an f32 cosine. It may be smaller than the sine of `on_plane`.
     let squared_sine = 1.0 - plane.cosine * plane.cosine;
     let sine = libm::sqrt((squared_sine - SQUARED_SINE_ROUNDING).max(0.0));
     let offset = f64::from(given.offset).min(f64::from(bias.normal_offset) * sine);

@@ -1,5 +1,5 @@
-//! The fitter without memory of its own: it remembers the last frame as plain data, and the caller hands in the storage
-//! that it works in, so that it needs no allocator. The pipeline from the input to the maps of a frame stands here.
+//! The fitter that needs no allocator. Its state is plain data, and the caller passes in the working memory.
+//! [`FitState::fit_into`] is the pipeline from the input to the maps of a frame.
 
 use glam::{DVec2, DVec3};
 
@@ -19,27 +19,27 @@ use crate::technique::{Maps, Technique, Windows};
 use crate::view::{Range, ViewFrustum};
 use crate::windows::{self, HeldWindows};
 
-/// Fits several maps frame by frame.
+/// Fitter that computes a technique's maps frame by frame, in memory that the caller owns.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitState {
     last: Option<LastFrame>,
 }
 
-/// What is known of the last frame.
+/// State of the last frame.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct LastFrame {
-    /// Another technique begins anew.
+    /// Technique of the last frame. Another technique starts without state.
     technique: Technique,
-    /// The light's unit direction of travel that the maps were made for: input that differs from it by
-    /// rounding alone changes nothing.
+    /// Unit direction of travel of the light that the maps were made for. Input that differs from it only by
+    /// rounding changes nothing.
     direction: DVec3,
     view: ViewFrustum,
     held: Held,
 }
 
-/// What a placement begins with in the next frame.
+/// State that a placement starts from in the next frame.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Held {
@@ -48,30 +48,36 @@ enum Held {
 }
 
 impl FitState {
-    /// A fitter that remembers nothing.
+    /// Creates a fitter without history.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Forgets all earlier frames: after a camera cut, or when a new level begins.
+    /// Forgets all earlier frames. Call it after a camera cut or when a new level begins.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// Fits the maps of a frame. There are none where all views begin beyond the [shadow
-    /// distance](crate::settings::MapSettings::max_distance), or [are empty](ViewFrustum::is_empty): the frame has no
-    /// shadows. The state of earlier frames serves the next frame with shadows.
+    /// Fits the maps of a frame. Returns no maps if every view begins beyond the [shadow
+    /// distance](crate::settings::MapSettings::max_distance) or [is empty](ViewFrustum::is_empty). The frame
+    /// then has no shadows, and the next frame with shadows continues from the state of earlier frames.
     ///
     /// # Errors
     ///
-    /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
-    /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of cascades outside 2..=8, an overlap or λ
-    /// outside 0..=1, a blend outside 0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and
-    /// hold settings, softness, fade, depth steps or rays that are out of range; [`FitError::ClampedCasters`] for a
-    /// filter that depth clamp leaves without the distances that it needs; [`FitError::NotFinite`] for biases that are
-    /// not finite, or not at the size of a map's texels; [`FitError::NearNotBelowFar`] for manual splits that do not
-    /// ascend. Manual splits before or beyond what is shadowed are not an error: a map without a range
-    /// [is empty](LightProjection::is_empty). An error leaves the fitter as it was.
+    /// As [`fit_scene`](crate::fit_scene) for the settings of each map. Also:
+    ///
+    /// - [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of cascades outside 2..=8, for an
+    ///   overlap or λ outside 0..=1, for a blend outside
+    ///   0..=[`MapSelection::MAX_BLEND`](crate::settings::MapSelection::MAX_BLEND), and for settings of
+    ///   stabilisation, softness, fade, depth steps or rays that are out of range
+    /// - [`FitError::ClampedCasters`] for a filter that needs the distances of casters, if depth clamp loses
+    ///   them
+    /// - [`FitError::NotFinite`] for biases that are not finite, before or after they are scaled to a map's
+    ///   texels
+    /// - [`FitError::NearNotBelowFar`] for manual splits that do not ascend
+    ///
+    /// Manual splits outside the shadowed range are valid: a map without a range [is
+    /// empty](LightProjection::is_empty). An error leaves the fitter unchanged.
     pub fn fit(
         &mut self,
         input: &FitInput,
@@ -83,11 +89,12 @@ impl FitState {
         Ok(maps)
     }
 
-    /// [`Self::fit`] into existing maps, such as the last frame's, which saves copies.
+    /// Does the same as [`Self::fit`], but writes into existing maps, such as the last frame's, to save
+    /// copies.
     ///
     /// # Errors
     ///
-    /// As [`Self::fit`]. After an error the maps must not be used.
+    /// As [`Self::fit`]. Do not use the maps after an error.
     pub fn fit_into(
         &mut self,
         input: &FitInput,
@@ -95,7 +102,7 @@ impl FitState {
         scratch: &mut Scratch,
         maps: &mut FittedMaps,
     ) -> Result<(), FitError> {
-        // 1. The light, and the rule that the technique's maps are fitted by.
+        // 1. The light, and the fit rule of the technique's maps.
         let (rule, light) = check(input, technique)?;
         if !fits::is_shadowed(input.views, technique.fit.max_distance) {
             self.pass_over(input, maps);
@@ -103,25 +110,25 @@ impl FitState {
         }
         let last = self.last.as_ref().filter(|last| last.technique == *technique);
         let light = light.held(last.filter(|_| technique.maps.are_kept()).map(|last| last.direction));
-        // 2. The boxes, and what the views see of them.
+        // 2. The boxes, and their parts in view.
         let (content, points) = Content::new(input.scene(), scratch.storage)?;
         let range = whole_range(input, technique.fit.max_distance);
         let last_view = last.map(|last| &last.view);
         let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view };
-        // 3. Where each map is put: its volume, from the near plane to the far plane.
+        // 3. Placement of each map: its volume, from the near plane to the far plane.
         let (placed, held) = place(&frame, last.map(|last| &last.held), points)?;
         // 4. Matrices, biases and anchors.
         for (map, placed) in maps.take(technique.maps.count() as usize).iter_mut().zip(placed.iter().flatten()) {
             write(map, placed, &frame)?;
         }
         maps.placement = placement(&held, input, technique);
-        // 5. What the next frame begins with.
+        // 5. State for the next frame.
         let (direction, view) = (light.direction(), input.views[0]);
         self.last = Some(LastFrame { technique: *technique, direction, view, held });
         Ok(())
     }
 
-    /// Leaves a frame without maps and keeps the state of earlier frames for later ones.
+    /// Empties the maps of a frame without shadows, and keeps the state of earlier frames for later ones.
     fn pass_over(&mut self, input: &FitInput, maps: &mut FittedMaps) {
         *maps = FittedMaps::default();
         if let Some(last) = &mut self.last {
@@ -147,7 +154,7 @@ fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(
     }
 }
 
-/// What the maps of a frame were placed by.
+/// Returns the source that the maps of a frame were placed by.
 fn placement(held: &Held, input: &FitInput, technique: &Technique) -> PlacementSource {
     let is_told = match held {
         Held::Windows(windows) => !windows.is_guess(),
@@ -169,15 +176,16 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
     Ok(())
 }
 
-/// The fewest cascades that are enough: the least count, up to that of the technique, for
-/// which the 95% quantile of pixels per texel with the best splits is at most `max_oversize` times that with
-/// the technique's count. Of other kinds of maps
-/// the [cascades](Maps::as_cascades) that are nearest to them count.
+/// Returns the smallest number of cascades that is enough: the smallest count, up to the technique's own,
+/// whose 95% quantile of pixels per texel is at most `max_oversize` times the quantile with the technique's
+/// own count. Splits are the best ones for each count. Other kinds of maps are treated as the nearest
+/// [cascades](Maps::as_cascades).
 ///
-/// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
-/// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)
-/// here. Costs about as much as choosing the splits of one frame: ask when a level begins, or now and then,
-/// and set [`Technique::with_count`] by it.
+/// Visible depths come from the histogram if the technique's splits use one, and are otherwise estimated from
+/// the boxes. All other split schemes count as
+/// [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes) here. A call costs about as much as
+/// choosing the splits of one frame. Call it when a level begins, or now and then, and pass the result to
+/// [`Technique::with_count`].
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -198,7 +206,7 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
 /// # let mut scratch = Scratch::new(&mut storage);
 /// let technique = Technique::preset("calm-4").unwrap().with_count(8);
 /// let count = fewest_maps(&input, &technique, 1.5, &mut scratch)?;
-/// assert!(count < 8); // the last ones would make texels less than 1.5 times as fine
+/// assert!(count < 8); // more maps would make texels less than 1.5 times as fine
 /// let maps = FitState::new().fit(&input, &technique.with_count(count), &mut scratch)?;
 /// assert_eq!(maps.len(), count as usize);
 /// # Ok::<(), FitError>(())
@@ -206,14 +214,14 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
 ///
 /// # Errors
 ///
-/// As [`FitState::fit`], and [`FitError::OutOfRange`] for an oversize outside 1..=100.
+/// As [`FitState::fit`], and [`FitError::OutOfRange`] for a `max_oversize` outside 1..=100.
 pub fn fewest_maps(
     input: &FitInput,
     technique: &Technique,
     max_oversize: f32,
     scratch: &mut Scratch,
 ) -> Result<u32, FitError> {
-    let max_oversize = checks::within("the oversize of fewer maps", f64::from(max_oversize), 1.0, 100.0)?;
+    let max_oversize = checks::within("max_oversize of fewest_maps", f64::from(max_oversize), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;
     if technique.maps.count() == 1 || !fits::is_shadowed(input.views, technique.fit.max_distance) {
         return Ok(1);
@@ -224,7 +232,7 @@ pub fn fewest_maps(
     Ok(cascades::fewest(&frame, &technique.maps.as_cascades(), max_oversize))
 }
 
-/// Everything that is shadowed.
+/// Returns the range of view depths that has shadows.
 fn whole_range(input: &FitInput, distance: f32) -> Range {
     let views = || input.views.iter().filter(|view| view.begins_before(distance));
     let near = views().map(|view| view.near).fold(f32::MAX, f32::min);
@@ -232,7 +240,7 @@ fn whole_range(input: &FitInput, distance: f32) -> Range {
     Range { near, far: far.min(distance) }
 }
 
-/// Checks an input and a technique; gives the rule of its maps, and the light.
+/// Checks an input and a technique. Returns the fit rule of the maps, and the light.
 fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), FitError> {
     check_numbers(technique)?;
     if let Some(DepthBounds { near, far }) = input.depth_bounds {
@@ -249,12 +257,12 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), Fi
     fits::prepare(input, &settings, map)
 }
 
-/// Checks the numbers of a technique that are not those of its fit, and what does not go together.
+/// Checks the numbers of a technique outside its fit settings, and combinations that do not work together.
 fn check_numbers(technique: &Technique) -> Result<(), FitError> {
     technique.maps.check()?;
     technique.softness.checked()?;
     technique.edges.checked()?;
-    // The least texel of the maps is the greater of two, which would hide a bad one.
+    // The least texel of the maps is the greater of two values, which would hide a bad one.
     check_least_texel(&technique.fit)?;
     checks::within("the shadows' fade", f64::from(technique.fade), 0.0, 1.0)?;
     let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = technique.bias;

@@ -1,4 +1,4 @@
-//! Input of a fit: the views, the light and the boxes of a frame, and memory to work in.
+//! Input of a fit: the views, the light and the boxes of a frame, and working memory.
 
 use glam::{DVec2, Vec3};
 
@@ -9,7 +9,7 @@ use crate::demand::grid::DemandGrid;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
 use crate::view::ViewFrustum;
 
-/// Everything that changes from frame to frame.
+/// Input of a fit: everything that changes from frame to frame.
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
@@ -35,48 +35,49 @@ use crate::view::ViewFrustum;
 /// let settings = FitSettings::default().with_max_distance(40.0);
 /// let mut storage = [Default::default(); Scratch::required(2, 1)];
 /// let map = shadowfit::fit_scene(&input, &settings, &mut Scratch::new(&mut storage))?;
-/// assert!(map.texel_size.x < 0.03); // the frustum alone gives ten times that
+/// assert!(map.texel_size.x < 0.03); // ten times as wide from the frustum alone
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitInput<'a> {
-    /// The views to be shadowed: one, or several that share the maps (both eyes of a headset, split
-    /// screen). The first one's eye becomes the origin of the fit.
+    /// Views to shadow: one, or several that share the maps (both eyes of a headset, split screen). The eye
+    /// of the first view becomes the origin of the fit.
     pub views: &'a [ViewFrustum],
     /// **Direction of travel** of the light in world axes, of any length: the negative of the
     /// direction toward the light.
     pub direction: Vec3,
-    /// Boxes around everything that receives shadows, for [`FitKind::Focused`](crate::settings::FitKind)
-    /// and for splits that depend on the content. `None` when they are not known: everything in view
-    /// counts as a receiver then. An empty slice means that nothing receives.
+    /// Boxes around everything that receives shadows, for [`FitKind::Focused`](crate::settings::FitKind) and
+    /// for splits that depend on the content. If it is `None`, everything in view counts as a receiver. An
+    /// empty slice means that nothing receives shadows.
     pub receivers: Option<Boxes<'a>>,
-    /// Cones around the normals of each receiver's surfaces, or an empty slice when they are not
-    /// known: surfaces that the camera sees and that face away from the light are dark without a
-    /// map, so [`FitKind::Focused`](crate::settings::FitKind) ignores them.
+    /// Cones around the surface normals of the receivers, in the order of the receivers, or an empty slice if
+    /// they are unknown. [`FitKind::Focused`](crate::settings::FitKind) ignores surfaces in view that face
+    /// away from the light, since they are dark without a map.
     pub receiver_cones: &'a [NormalCone],
-    /// Boxes around everything that casts shadows. They place the near plane: no caster in them is lost.
-    /// `None` when they are not known: the near plane is then moved toward the light by
-    /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension). An empty slice means
-    /// that nothing casts.
+    /// Boxes around everything that casts shadows. The near plane is placed so that no caster is lost. If it
+    /// is `None`, the near plane moves toward the light by
+    /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension). An empty slice
+    /// means that nothing casts shadows.
     pub casters: Option<Boxes<'a>>,
-    /// A hierarchy of boxes that receive and cast shadows beside the two lists. The cost of a frame depends on the boxes
-    /// nearby, not on the total. Use it for thousands of static boxes. With it a list that is `None` adds nothing.
+    /// Hierarchy of boxes that receive and cast shadows in addition to the two lists. The cost of a frame
+    /// depends on the boxes nearby, not on the total number. Use it for thousands of static boxes. If it is
+    /// set, a list that is `None` adds no boxes.
     #[cfg(feature = "alloc")]
     pub static_boxes: Option<&'a StaticBoxes>,
-    /// The depths that the last frame showed, for
+    /// Visible depths of the last frame, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
-    /// What the last frame showed and how fine a texel it asked for, one grid for each picture that was
-    /// drawn with the maps, for [windows](crate::Windows). Grids of
-    /// another light, or of another size, are ignored.
+    /// Visible demand of the last frame, for [windows](crate::Windows): one grid for each picture that was
+    /// drawn with the maps. Grids of another light, or with a wrong number of cells, are ignored.
     pub demand: &'a [DemandGrid<'a>],
-    /// Nearest and farthest depth that the last frame showed, if known: uniform, logarithmic and
-    /// practical splits are spread between them instead of over all that is in view.
+    /// Nearest and farthest visible depth of the last frame, if known. Uniform, logarithmic and practical
+    /// splits are spread between them instead of over the whole view.
     pub depth_bounds: Option<DepthBounds>,
 }
 
 impl<'a> FitInput<'a> {
-    /// Views and light alone, `direction` being the light's direction of travel in world axes.
+    /// Creates an input with views and a light only. `direction` is the light's direction of travel in world
+    /// axes.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3) -> Self {
         Self {
             views,
@@ -92,14 +93,14 @@ impl<'a> FitInput<'a> {
         }
     }
 
-    /// What content is made of.
+    /// Returns the part of the input that the content is computed from.
     #[inline]
     pub(crate) fn scene(&self) -> Scene<'a> {
         let Self { views, direction, receivers, receiver_cones, casters, .. } = *self;
         Scene { views, direction, receivers, receiver_cones, casters, static_boxes: self.tree() }
     }
 
-    /// Whether it is known what casts shadows.
+    /// Returns whether the casters are known.
     pub(crate) fn knows_casters(&self) -> bool {
         self.casters.is_some() || self.tree().is_some()
     }
@@ -110,15 +111,15 @@ impl<'a> FitInput<'a> {
     }
 
     #[cfg(not(feature = "alloc"))]
-    #[expect(clippy::unused_self, reason = "as with an allocator")]
+    #[expect(clippy::unused_self, reason = "same signature as with an allocator")]
     fn tree(&self) -> Option<&'a StaticBoxes> {
         None
     }
 
-    /// Number of elements of [`Scratch`] that is enough for any fit of this input: that of
-    /// [`Scratch::required`] for its lists, and room for the outline of static boxes. Maps that are
-    /// [held](crate::settings::Stabilise::Hysteresis) look at the views of two frames ahead, for which two more views
-    /// count.
+    /// Returns a number of [`Scratch`] elements that is enough for any fit of this input. It is
+    /// [`Scratch::required`] for the input's lists, plus room for the outline of static boxes and for two
+    /// more views, because maps that are [held](crate::settings::Stabilise::Hysteresis) are also fitted to
+    /// the predicted views of two later frames.
     pub fn scratch(&self) -> usize {
         let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
         let outline = if self.tree().is_some() { STANDING_OUTLINE } else { 0 };
@@ -127,25 +128,27 @@ impl<'a> FitInput<'a> {
     }
 }
 
-/// Boxes that make up the outline of static ones: far more than it has corners in any scene that was tried.
+/// Scratch memory for the outline of static boxes, counted in boxes. In every scene tried, the outline had
+/// far fewer corners.
 const STANDING_OUTLINE: usize = 128;
 
-/// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
+/// Views that a fit uses in addition to the views of the frame. Held maps are also fitted to two predicted
+/// views.
 const VIEWS_AHEAD: usize = 2;
 
-/// Storage that fits work in, owned by the caller, so that nothing allocates.
+/// Working memory of a fit, owned by the caller, so that fits need no allocator.
 #[derive(Debug)]
 pub struct Scratch<'a> {
     pub(crate) storage: &'a mut [DVec2],
 }
 
-/// Greatest number of corners of a box clipped to a view: a convex body with six and six faces has
-/// no more than 2 · 12 - 4.
+/// Greatest number of corners of a box clipped to a view: 2 · 12 - 4, for a convex body with 6 + 6 faces.
 const CORNERS_PER_BOX: usize = 20;
 
 impl<'a> Scratch<'a> {
-    /// Number of elements that is enough for any fit of a number of boxes (receivers or casters, whichever are
-    /// more) in a number of views. Usually far less is used, since few boxes contribute to the outline.
+    /// Returns a number of elements that is enough for any fit with these numbers of boxes and views. `boxes`
+    /// is the number of receivers or of casters, the greater of the two. Fits usually use far less, since few
+    /// boxes contribute to the outline.
     pub const fn required(boxes: usize, views: usize) -> usize {
         let pairs = boxes.saturating_mul(views);
         pairs
@@ -155,7 +158,7 @@ impl<'a> Scratch<'a> {
             .saturating_add(64)
     }
 
-    /// A scratch over storage, whose content is ignored.
+    /// Creates a scratch from storage. The storage's content is ignored.
     pub fn new(storage: &'a mut [DVec2]) -> Self {
         Self { storage }
     }

@@ -1,7 +1,9 @@
-//! Fits a directional light's shadow maps to what a camera sees, and gives spot lights theirs.
+//! Fits the shadow maps of a directional light to the camera's view, and builds perspective maps for spot
+//! lights.
 //!
-//! Camera, sun and boxes of the scene in, maps and the casters of each out, frame by frame; this is the
-//! example `fit_once`:
+//! Pass in the camera, the sun and your objects' bounds. You get four shadow maps, placed where they improve
+//! the most visible pixels, and the casters to draw into each. This is the example `fit_once` of the
+//! repository:
 //!
 //! ```
 //! use shadowfit::glam::{DVec3, Vec3};
@@ -33,23 +35,24 @@
 //! }
 //! ```
 //!
-//! A map is drawn with `clip_from_world` and looked up with `uv_from_world`. A point reads the finest
-//! map that holds it ([`FittedMaps::read`]), compares its depth moved by the
-//! [`bias`](FittedMap::bias), and takes positions relative to [`LightProjection::origin`], which is the
-//! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
-//! whole view.
+//! Draw a map with `clip_from_world` and look it up with `uv_from_world`. Both matrices take positions
+//! relative to [`LightProjection::origin`], which is the eye. [`FittedMaps::read`] selects the map for a
+//! point: the finest map that covers it. Move the point's depth toward the light by the
+//! [`bias`](FittedMap::bias) before you compare it with the map. One box per object is enough, and boxes need
+//! not be tight. Without boxes, the maps cover the whole view.
 //!
-//! [`Technique::default`] is the one to begin with: [`Windows`], which are sharp and hardly
-//! ever make an edge crawl. Tell the fitter what the last frame showed ([`ShadowFitter::set_visible_demand`]);
-//! `shadowfit-wgpu` counts it in the depth buffer by a compute pass. Without it the fit looks through the
-//! boxes in each frame: texels are a third wider, and with a thousand boxes a fit takes three times as long
-//! or more. [`PRESETS`] has other techniques by name, each with a line that says when to take it. The
-//! repository's `docs/MATHS.md` derives every fit, with pictures.
+//! Start with [`Technique::default`]. It uses [`Windows`]: shadows are sharp, and their edges hardly ever
+//! crawl while the camera moves. Windows follow the *visible demand* of the last frame: its visible surface
+//! points, with the texel size that each needs. Pass it to [`ShadowFitter::set_visible_demand`]; a compute
+//! pass of `shadowfit-wgpu` counts it in the depth buffer. Without it, every fit estimates it by rays through
+//! the boxes. Texels are then a third wider, and with a thousand boxes a fit takes at least three times as
+//! long. [`PRESETS`] lists other techniques by name and says when to use each. In the repository,
+//! `docs/MATHS.md` derives every fit, with pictures, and `docs/GLOSSARY.md` explains the terms.
 //!
 //! # Without an allocator
 //!
-//! [`ShadowFitter`] owns the memory that fits work in, and needs the feature `alloc`. [`FitState`] makes the same maps
-//! in memory that the caller owns:
+//! [`ShadowFitter`] owns its scratch memory and needs the feature `alloc`. [`FitState`] computes the same
+//! maps in memory that the caller owns:
 //!
 //! ```
 //! use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -68,13 +71,14 @@
 //! # Ok::<(), shadowfit::FitError>(())
 //! ```
 //!
-//! [`Scratch::required`] says how much storage the fits of a frame need, from the number of boxes and of views. Maps
-//! that are [held](settings::Stabilise::Hysteresis) are fitted to the views of two frames ahead as well: count two views
-//! more for them. What the last frame showed goes into [`FitInput::demand`] and [`FitInput::histogram`].
+//! [`Scratch::required`] returns the storage that the fits of a frame need, from the number of boxes and
+//! views. Maps that are [held](settings::Stabilise::Hysteresis) are also fitted to the predicted views of two
+//! later frames, so count two more views for them. Pass the visible demand of the last frame in
+//! [`FitInput::demand`] and [`FitInput::histogram`].
 //!
 //! # A single map
 //!
-//! Where only the camera is known, [`fit`] is a function without state:
+//! If only the camera is known, call [`fit`], a function without state:
 //!
 //! ```
 //! use shadowfit::glam::{DVec3, Vec3};
@@ -97,63 +101,66 @@
 //! # Ok::<(), shadowfit::FitError>(())
 //! ```
 //!
-//! # What is where
+//! # Where to find things
 //!
-//! | what you need | where it is |
+//! | you need | see |
 //! |---|---|
 //! | other filters, biases, splits, resolutions, the shadow distance | [`Technique`] and [`settings`] |
 //! | techniques by name | [`PRESETS`], [`Technique::preset`] |
 //! | a view from a matrix, with its depth convention; both eyes of a headset | [`ViewFrustum`], [`FitInput::views`] |
 //! | one map, from the camera alone or with boxes | [`fit`], [`fit_scene`] |
-//! | which map a point reads, by coverage or by view depth | [`selection`], [`FittedMaps::read`] |
-//! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
-//! | splits chosen by what the last frame showed | [`demand`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
-//! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::set_visible_demand`], [`FitInput::demand`] |
-//! | how many maps are enough | [`fewest_maps`] |
-//! | boxes that hug large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
-//! | thousands of static boxes, given once | [`StaticBoxes`], [`FitInput::static_boxes`], feature `alloc` |
-//! | static casters drawn only where the map is new: the passes of each frame as data, for any graphics API | [`cache`], feature `alloc` |
-//! | the texels of a map that can be kept, for a cache of your own | [`scroll`] |
+//! | the map that a point reads, by coverage or by view depth | [`selection`], [`FittedMaps::read`] |
+//! | the casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
+//! | splits chosen from the visible depths of the last frame | [`demand`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
+//! | windows placed by the visible demand of the last frame | [`Windows`], [`demand`], [`ShadowFitter::set_visible_demand`], [`FitInput::demand`] |
+//! | the smallest useful number of maps | [`fewest_maps`] |
+//! | tight boxes around large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
+//! | thousands of static boxes, passed once | [`StaticBoxes`], [`FitInput::static_boxes`], feature `alloc` |
+//! | cached maps, with static casters drawn only into new parts: the passes of each frame as data, for any graphics API | [`cache`], feature `alloc` |
+//! | the texels of a map that stay valid, for your own cache | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
 //! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`](spot::SpotLight), [`spot`] |
 //! | a proof that no map has a hole | [`proof`] |
-//! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
+//! | biases in metres and depth for your own filter | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
-//! | f32 matrices for world positions, a fit from a matrix of other code | [`LightProjection::world_matrices`], [`LightProjection::from_clip_from_world`] |
+//! | f32 matrices for world positions, a projection from another engine's matrix | [`LightProjection::world_matrices`], [`LightProjection::from_clip_from_world`] |
 //! | all parameters with unit, range and help, for panels and files; a technique as Rust code | the crate `shadowfit-params` |
 //!
 //! # Conventions
 //!
-//! - Right-handed world, y up, metres, radians, column vectors; clip space x right, y up, with the
-//!   depth range that a [`DepthConvention`] names; texture space u right, v down.
-//! - Matrices are named `dst_from_src`. Their world inputs are **relative to an origin** in f64,
-//!   the eye unless moved: [`LightProjection::relative_to`] and [`LightProjection::world_matrices`] convert.
-//! - A light is its **direction of travel**, of a [`SpotLight`](spot::SpotLight) along its axis. Where a source speaks
-//!   of the direction toward the light, `to_light = -direction`.
-//! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except what needs the
-//!   feature `alloc`; a [`ShadowFitter`] and a [`MapCache`](cache::MapCache) allocate while their scene grows, and not in
-//!   steady frames.
-//! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
-//!   same input gives the same bits on every target.
+//! - The world is right-handed with y up, in metres and radians. Vectors are columns. Clip space has x right
+//!   and y up, and a [`DepthConvention`] names its depth range. Texture space has u right and v down.
+//! - *Along the light* means along the direction of its rays, *across the light* perpendicular to it. *View
+//!   depth* is the distance from the eye along the camera's forward direction.
+//! - Matrices are named `dst_from_src`. Their world inputs are **relative to an origin** in f64, by default
+//!   the eye. [`LightProjection::relative_to`] moves the origin. [`LightProjection::world_matrices`] takes
+//!   plain world positions.
+//! - A light is given by its **direction of travel**. For a [`SpotLight`](spot::SpotLight) this is the
+//!   direction along its axis. If you have the direction toward the light, pass `-to_light`.
+//! - No function panics. Invalid input returns a [`FitError`] with the offending value. No function
+//!   allocates, except those behind the feature `alloc`. [`ShadowFitter`] and [`MapCache`](cache::MapCache)
+//!   allocate while their scene grows, but not in steady frames.
+//! - Transcendental functions come from `libm`, and all other arithmetic is `+ - × ÷ √` on scalars. The same
+//!   input gives the same bits on every target.
 //!
 //! # Features
 //!
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | [`ShadowFitter`], [`VisibleDemand`], [`StaticBoxes`], `Clusters` and [`cache`], for which an allocator is enough |
-//! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
+//! | `alloc` | [`ShadowFitter`], [`VisibleDemand`], [`StaticBoxes`], `Clusters` and [`cache`]; needs an allocator but not the standard library |
+//! | `serde` | `Serialize` and `Deserialize` for all settings, for inputs and outputs that own their data, and for the state between frames; to store `Clusters`, store their [`Aabb`]s and [`NormalCone`]s |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`](spot::SpotBias) and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
 //!
-//! This crate's vectors are those of the [`glam`] that it re-exports, 0.33 (from 0.33.2) or 0.34.
+//! The vector and matrix types are from the re-exported [`glam`], version 0.33 (from 0.33.2) or 0.34.
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-/// What everything else stands on: errors, checks of numbers, boxes, depth conventions, hulls and spheres.
+/// Basics of all modules: errors, checks of numbers, boxes, depth conventions, hulls and spheres.
 mod base {
     pub(crate) mod checks;
     pub(crate) mod enclosing;
@@ -167,7 +174,7 @@ mod base {
 
 mod technique;
 
-/// What a camera sees: frusta from cameras and matrices, cut by view depth and clipped against boxes.
+/// View frusta, made from cameras and matrices, cut by view depth and clipped against boxes.
 mod view {
     mod camera;
     mod frustum;
@@ -184,7 +191,7 @@ mod view {
     };
 }
 
-/// The light: its axes, boxes along them, the texel lines across it, and parts of boxes over an outline toward it.
+/// The light: its axes, boxes along them, the texel grid across it, and parts of boxes over an outline.
 mod light {
     mod axes;
     mod column;
@@ -201,7 +208,7 @@ mod light {
 
 mod content;
 
-/// What was visible, and how fine a texel it asks for.
+/// Visible demand: the surfaces that were visible, and the texel size that they need.
 pub mod demand {
     pub(crate) mod from_boxes;
     pub(crate) mod grid;
@@ -235,13 +242,13 @@ pub mod selection;
 
 mod map;
 
-/// How [`StaticBoxes`] changed between frames.
+/// Changes of [`StaticBoxes`] between frames.
 #[cfg(feature = "alloc")]
 pub mod static_boxes {
     pub use crate::content::tree::{BoxChange, BoxRevision};
 }
 
-/// What can be kept of the maps of the last frame: the texels of a map that moved, and the direction of the light.
+/// Reuse of the last frame's maps: the texels that stay valid when a map moves, and a held light direction.
 mod keep {
     pub mod light_steps;
     pub mod scroll;

@@ -11,7 +11,7 @@ use crate::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth
 use crate::technique::Technique;
 use crate::technique::settings::{MAX_MAPS, MapSelection};
 
-/// One of several maps.
+/// A fitted map: its matrices, its biases and its place among the maps of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FittedMap {
@@ -19,48 +19,51 @@ pub struct FittedMap {
     pub projection: LightProjection,
     /// The technique's biases for this map's texels and depth range.
     pub bias: Bias,
-    /// The view depths that the map was made for; of a [window](crate::Windows) those of the whole view. Points read it
-    /// there if maps are [read by view depth](crate::settings::MapSelection::ViewDepth). The last cascade has no end.
-    /// Where splits coincide a map has no depths of its own: in front of all others it has `None`, and no point reads
-    /// it by view depth. Behind all others it begins where shadows end, and points read it that the maps in front do
-    /// not hold.
+    /// View depths that the map is for. If maps are selected [by view
+    /// depth](crate::settings::MapSelection::ViewDepth), points at these depths read it. A
+    /// [window](crate::Windows) has the depths of the whole view. The last cascade has no end.
+    ///
+    /// Splits that coincide give maps with an empty range. Such a map has `None` if it lies in front of all
+    /// maps with a range, and no point reads it by view depth. If it lies behind all of them, its range
+    /// begins where shadows end, and it is read only by points that the maps in front do not cover.
     pub depths: Option<DepthRange>,
-    /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::scroll::Scroll) and
-    /// [tiles](crate::scroll::tiles) are made from.
+    /// Position of the map on the world's grid, if it lies on it. [`Scroll`](crate::scroll::Scroll) and
+    /// [tiles](crate::scroll::tiles) are computed from it.
     pub grid_position: Option<GridPosition>,
-    /// Where the map's first texel is stored in its texture, in texels: texel t at `(t + texel_offset) % size`, so that
-    /// a map that moves keeps what it still covers where it is
-    /// ([`Scroll::texel_offset`](crate::scroll::Scroll::texel_offset)). Fits leave it zero.
+    /// Offset from the map's texels to the texture's, in texels. Texel t of the map is stored at
+    /// `(t + texel_offset) % size`, so a map that moves keeps its valid texels where they are
+    /// ([`Scroll::texel_offset`](crate::scroll::Scroll::texel_offset)). Fits set it to zero.
     pub texel_offset: UVec2,
 }
 
 impl FittedMap {
-    /// A single map for all view depths.
+    /// Creates a single map for all view depths.
     pub fn new(fit: LightProjection, bias: Bias) -> Self {
         Self { projection: fit, bias, depths: Some(DepthRange::ALL), ..Self::default() }
     }
 
-    /// This map as one of several that are read by view depth.
+    /// Returns this map with a range of view depths, as one of several maps that are read by view depth.
     #[must_use]
     pub const fn with_depths(mut self, depths: DepthRange) -> Self {
         self.depths = Some(depths);
         self
     }
 
-    /// Returns the view depth at which the map ends, in metres, for shaders that compare in f32: `f32::MAX` for no end, and
-    /// `f32::MIN` for a map that no point reads by view depth.
+    /// Returns the view depth at which the map ends, in metres, for shaders that compare in f32. It is
+    /// `f32::MAX` for no end, and `f32::MIN` for a map that no point reads by view depth.
     pub fn shader_end(&self) -> f32 {
         self.depths.map_or(f32::MIN, |range| range.far.map_or(f32::MAX, |far| far as f32))
     }
 
-    /// Returns the view depth from which points are blended from the map in front into this one, in metres, for shaders
-    /// that compare in f32: `f32::MAX` for no blend.
+    /// Returns the view depth from which points are blended from the map in front into this one, in metres,
+    /// for shaders that compare in f32. It is `f32::MAX` for no blend.
     pub fn shader_blend_start(&self) -> f32 {
         self.depths.and_then(|range| range.covered_from).map_or(f32::MAX, |start| start as f32)
     }
 
-    /// Returns this map for shaders that take positions relative to another world position, in metres. f32 rounds
-    /// positions more that are farther away, and biases grow by that much unless they are 0.
+    /// Returns this map for shaders that take positions relative to another world position, in metres.
+    /// Positions farther from that origin are rounded more in f32, so biases other than 0 grow by the
+    /// additional rounding.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
         let projection = self.projection.relative_to(origin);
@@ -69,32 +72,32 @@ impl FittedMap {
     }
 }
 
-/// The maps of one frame, nearest first, windows finest first. There are none in a frame without shadows, whose views
-/// begin beyond the shadow distance.
+/// The maps of one frame: cascades from near to far, windows from fine to coarse. It is empty if the frame
+/// has no shadows, for example if the views begin beyond the shadow distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FittedMaps {
     maps: [FittedMap; MAX_MAPS],
     count: usize,
-    /// What the maps were placed by.
+    /// Source of the visible surfaces that these maps were placed by.
     pub placement: PlacementSource,
 }
 
-/// What told a fit where surfaces are seen.
+/// Source of the visible surfaces that maps are placed by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PlacementSource {
-    /// The boxes of the receivers, or the views alone where there are none: nothing else was told, nothing else is
-    /// used by the technique, or what was told belongs to another light or has another size.
+    /// The receivers' boxes, or the views if there are no boxes. They are used if the technique does not use
+    /// visible demand, or if the input has none that belongs to this light and has the right size.
     #[default]
     Boxes,
-    /// What an earlier frame showed: a [demand grid](crate::FitInput::demand), or a
+    /// The visible demand of an earlier frame: a [demand grid](crate::FitInput::demand), or a
     /// [histogram](crate::FitInput::histogram).
     LastFrame,
 }
 
 impl FittedMaps {
-    /// The maps of a number of ranges, to be written.
+    /// Sets the number of maps, and returns the maps for writing.
     pub(crate) fn take(&mut self, count: usize) -> &mut [FittedMap] {
         self.count = count;
         &mut self.maps[..count]
@@ -102,10 +105,11 @@ impl FittedMaps {
 }
 
 impl FittedMaps {
-    /// Which maps a point reads, as the shaders of `shadowfit-wgpu` do; `None` where it is lit because
-    /// no map holds it. `point` is a world position, `view_depth` its distance from the eye along the
-    /// view's forward direction, both in metres: beyond the shadow distance nothing is read, nearer it counts only by view depth. A point that is
-    /// not finite is held by no map.
+    /// Returns the maps that a point reads, by the same rule as the shaders of `shadowfit-wgpu`. Returns
+    /// `None` if no map covers the point, which is then lit. `point` is a world position, and `view_depth` is
+    /// its distance from the eye along the view's forward direction, both in metres. Points beyond the shadow
+    /// distance read no map. At shorter distances, `view_depth` is used only if maps are selected by view
+    /// depth. No map covers a point that is not finite.
     ///
     /// ```
     /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -129,7 +133,7 @@ impl FittedMaps {
     /// # Ok::<(), FitError>(())
     /// ```
     pub fn read(&self, technique: &Technique, point: DVec3, view_depth: f64) -> Option<MapRead> {
-        // Shadows end there, however far maps reach.
+        // Shadows end there, even if maps reach farther.
         if view_depth > f64::from(technique.fit.max_distance) {
             return None;
         }
@@ -150,7 +154,7 @@ impl Deref for FittedMaps {
     type Target = [FittedMap];
 
     fn deref(&self) -> &[FittedMap] {
-        // A count that was read from a file may have any value.
+        // A count from a file may have any value.
         &self.maps[..self.count.min(MAX_MAPS)]
     }
 }

@@ -1,15 +1,15 @@
-//! Conversions from and to the types of the [mint](https://docs.rs/mint) crate, which most maths crates convert
-//! to and from (feature `mint`).
+//! Conversions from and to the types of the [mint](https://docs.rs/mint) crate, which most maths crates
+//! support (feature `mint`).
 //!
-//! They are written against mint itself, so that they do not depend on how a release of glam calls
-//! its own. Nothing is checked here: the fits refuse bad values.
+//! They use mint directly, so they do not depend on glam's own conversions, whose names differ between
+//! releases. They check no values; the fits reject bad ones.
 //!
 //! ```
 //! use shadowfit::mint::{dvec3, matrix, vec3};
 //! use shadowfit::settings::FitSettings;
 //! use shadowfit::{PerspectiveCamera, fit};
 //!
-//! // What another maths crate's `.into()` gives.
+//! // The mint types that another maths crate's `.into()` returns.
 //! let (eye, forward) = (mint::Point3 { x: 0.0, y: 1.7, z: 5.0 }, mint::Vector3 { x: 0.0, y: 0.0, z: -1.0 });
 //! let (up, direction) = (mint::Vector3 { x: 0.0, y: 1.0, z: 0.0 }, mint::Vector3 { x: 0.3, y: -0.8, z: 0.2 });
 //!
@@ -36,58 +36,58 @@ use crate::culling::{OrientedBox, Sphere};
 use crate::projection::WorldMatrices;
 use crate::view::ViewFrustum;
 
-/// A direction or position as this crate takes it, in its own unit.
+/// Converts a direction or position to this crate's type, in the same unit.
 pub fn vec3(v: impl Into<Vector3<f32>>) -> Vec3 {
     let v = v.into();
     Vec3::new(v.x, v.y, v.z)
 }
 
-/// A world position as this crate takes it, in metres.
+/// Converts a world position to this crate's type, in metres.
 pub fn dvec3(p: impl Into<Point3<f64>>) -> DVec3 {
     let p = p.into();
     DVec3::new(p.x, p.y, p.z)
 }
 
-/// A matrix of columns as this crate takes it. Matrices of rows convert into those of columns.
+/// Converts a column matrix to this crate's type. mint converts row matrices to column matrices.
 pub fn mat4(m: impl Into<ColumnMatrix4<f32>>) -> Mat4 {
     let m = m.into();
     let column = |c: Vector4<f32>| Vec4::new(c.x, c.y, c.z, c.w);
     Mat4::from_cols(column(m.x), column(m.y), column(m.z), column(m.w))
 }
 
-/// [`mat4`] in f64.
+/// Converts an f64 column matrix to this crate's type.
 pub fn dmat4(m: impl Into<ColumnMatrix4<f64>>) -> DMat4 {
     let m = m.into();
     let [x, y, z, w] = [m.x, m.y, m.z, m.w].map(|c| glam::DVec4::new(c.x, c.y, c.z, c.w));
     DMat4::from_cols(x, y, z, w)
 }
 
-/// A direction or offset of this crate.
+/// Converts a direction or offset to mint.
 pub fn vector(v: Vec3) -> Vector3<f32> {
     Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-/// A position of this crate relative to an origin, in metres.
+/// Converts a position relative to an origin, in metres, to mint.
 pub fn point(p: Vec3) -> Point3<f32> {
     Point3 { x: p.x, y: p.y, z: p.z }
 }
 
-/// A world position of this crate, in metres.
+/// Converts a world position, in metres, to mint.
 pub fn world_point(p: DVec3) -> Point3<f64> {
     Point3 { x: p.x, y: p.y, z: p.z }
 }
 
-/// A matrix of this crate: those of a [`LightProjection`](crate::LightProjection), [`WorldMatrices`] and cameras.
+/// Converts a matrix of a [`LightProjection`](crate::LightProjection), [`WorldMatrices`] or camera to mint.
 pub fn matrix(m: &Mat4) -> ColumnMatrix4<f32> {
     let column = |c: Vec4| Vector4 { x: c.x, y: c.y, z: c.z, w: c.w };
     ColumnMatrix4 { x: column(m.x_axis), y: column(m.y_axis), z: column(m.z_axis), w: column(m.w_axis) }
 }
 
-/// [`ViewFrustum::from_eye_from_clip`] for a matrix and an eye of other crates.
+/// Calls [`ViewFrustum::from_eye_from_clip`] with a matrix and an eye of another maths crate.
 ///
 /// # Errors
 ///
-/// As there.
+/// As [`ViewFrustum::from_eye_from_clip`].
 pub fn frustum_from_eye_from_clip(
     eye_from_clip: impl Into<ColumnMatrix4<f32>>,
     eye: impl Into<Point3<f64>>,
@@ -97,35 +97,35 @@ pub fn frustum_from_eye_from_clip(
     ViewFrustum::from_eye_from_clip(&mat4(eye_from_clip), dvec3(eye), depth, max_distance)
 }
 
-/// Least and greatest corner.
+/// Converts from the least and the greatest corner.
 impl From<[Point3<f32>; 2]> for Aabb {
     fn from([min, max]: [Point3<f32>; 2]) -> Self {
         Self { min: vec3(min), max: vec3(max) }
     }
 }
 
-/// Least and greatest corner.
+/// Converts to the least and the greatest corner.
 impl From<Aabb> for [Point3<f32>; 2] {
     fn from(aabb: Aabb) -> Self {
         [point(aabb.min), point(aabb.max)]
     }
 }
 
-/// Centre and radius.
+/// Converts from the centre and the radius.
 impl From<(Point3<f32>, f32)> for Sphere {
     fn from((centre, radius): (Point3<f32>, f32)) -> Self {
         Self { centre: vec3(centre), radius }
     }
 }
 
-/// Centre and half axes.
+/// Converts from the centre and the half axes.
 impl From<(Point3<f32>, [Vector3<f32>; 3])> for OrientedBox {
     fn from((centre, half_axes): (Point3<f32>, [Vector3<f32>; 3])) -> Self {
         Self { centre: vec3(centre), half_axes: half_axes.map(vec3) }
     }
 }
 
-/// Light from world, clip from light and clip from world.
+/// Converts to light from world, clip from light and clip from world.
 impl From<WorldMatrices> for [ColumnMatrix4<f32>; 3] {
     fn from(matrices: WorldMatrices) -> Self {
         let WorldMatrices { light_from_world, clip_from_light, clip_from_world } = matrices;

@@ -3,7 +3,7 @@
 //! All maps take positions relative to an origin in f64, so that they stay exact far from the world's origin.
 //! [`LightProjection::relative_to`] moves that origin.
 //!
-//! [`LightProjection::from_clip_from_world`] makes a projection from the matrix of other code, so that it can be drawn,
+//! [`LightProjection::from_clip_from_world`] converts another engine's matrix, so that it can be drawn,
 //! culled and evaluated like the projections of this crate.
 
 use glam::{DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
@@ -14,27 +14,27 @@ use crate::light::{BoundSource, LightAxes, Volume};
 
 /// An orthographic view-projection of a directional light.
 ///
-/// *Light space* is right-handed with x right and y up in the map, in metres; the light stands at
-/// its origin and looks along -z. Clip space has x right, y up and the depth range
-/// [`Self::depth`]. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan
-/// and Metal have it; OpenGL users flip v), both 0..1 over the map.
+/// *Light space* is right-handed, in metres, with x right and y up in the map. The light is at its origin and
+/// looks along -z. Clip space has x right, y up and the depth range [`Self::depth`]. Texture space has u
+/// right and v **down**, both 0..1 over the map. Row 0 is on top, as in wgpu, Direct3D, Vulkan and Metal;
+/// OpenGL users flip v.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightProjection {
-    /// World position that all inputs of the matrices are relative to, in metres: the eye of the
-    /// frustum, until [`Self::relative_to`] moves it.
+    /// World position that all inputs of the matrices are relative to, in metres. It is the eye of the
+    /// frustum until [`Self::relative_to`] moves it.
     pub origin: DVec3,
     /// Unit direction of travel of the light in world axes.
     pub direction: Vec3,
-    /// Light space from world positions relative to [`Self::origin`], in metres.
+    /// Transform to light space from world positions relative to [`Self::origin`], in metres.
     pub light_from_world: Mat4,
-    /// Clip space from light space.
+    /// Transform to clip space from light space.
     pub clip_from_light: Mat4,
-    /// Clip space from world positions relative to [`Self::origin`], in metres.
+    /// Transform to clip space from world positions relative to [`Self::origin`], in metres.
     pub clip_from_world: Mat4,
-    /// Texture space (u, v) and stored depth from world positions relative to [`Self::origin`].
-    /// The stored depth is the clip depth, and for -1..1 half of it plus one half, as a depth
-    /// attachment holds it.
+    /// Transform to texture space (u, v) and stored depth from world positions relative to [`Self::origin`].
+    /// The stored depth is the clip depth as a depth attachment holds it. For -1..1 it is half the clip depth
+    /// plus one half.
     pub uv_from_world: Mat4,
     /// Least corner of the fitted box in light space, in metres.
     pub box_min: Vec3,
@@ -46,45 +46,44 @@ pub struct LightProjection {
     pub texel_size: Vec2,
     /// Distance between the near and the far plane, in metres.
     pub depth_range: f32,
-    /// Bound of the distance from [`Self::origin`] to the corners of the receivers' boxes that the map is for, in metres.
-    /// Cascades of a view share one bound, which also holds the corners of their maps. 0 if it is not known. A shader
-    /// rounds a vertex by a share of its distance, and a large triangle that reaches into the map is off by the
-    /// rounding of its vertices. [Biases](crate::bias) cover that.
+    /// Upper bound of the distance from [`Self::origin`] to the corners of the receivers' boxes of this map,
+    /// in metres; 0 if it is not known. Cascades of a view share one bound, which includes the corners of
+    /// their maps. A shader rounds a vertex by a share of its distance from the origin, and a large triangle
+    /// that reaches into the map inherits the rounding of its vertices. [Biases](crate::bias) cover that.
     #[cfg_attr(feature = "serde", serde(default))]
     pub vertex_distance: f32,
     /// Width and height of the map, in texels.
     pub resolution: UVec2,
     /// Depth range of the clip space.
     pub depth: DepthConvention,
-    /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
+    /// Sources of the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
     pub bounds_from: [BoundSource; 6],
-    /// Whether no receiver is in view: the map is then fitted to the view itself, and its shadow
-    /// pass may be skipped. Where no receivers are known, only maps whose range has no part of the
-    /// view are empty.
+    /// Whether no receiver is in view. The map is then fitted to the view itself, and its shadow pass may be
+    /// skipped. If the receivers are unknown, a map is empty only if its range has no part of the view.
     pub is_empty: bool,
 }
 
-/// Matrices that take plain f32 world positions, for engines without a camera-relative path.
+/// Matrices for plain f32 world positions, for engines without a camera-relative path.
 ///
 /// World coordinates rounded to f32 cost about 6e-8 of their distance from the world's origin:
 /// a centimetre at 100 km.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WorldMatrices {
-    /// Light space from world space, in metres.
+    /// Transform to light space from world space, in metres.
     pub light_from_world: Mat4,
-    /// Clip space from light space.
+    /// Transform to clip space from light space.
     pub clip_from_light: Mat4,
-    /// Clip space from world space.
+    /// Transform to clip space from world space.
     pub clip_from_world: Mat4,
 }
 
-/// Share of a map's extent by which a point may lie outside and still be covered, by the sun's map or a spot light's:
-/// the rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
+/// Tolerance of coverage at a map's sides, for suns and spot lights, as a share of the map's extent. It
+/// covers the rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
 pub(crate) const COVER_TOLERANCE: f64 = 1e-6;
 
 impl LightProjection {
-    /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
+    /// Converts a fitted box into matrices. Fails if f32 matrices cannot hold the box.
     #[inline(always)]
     pub(crate) fn from_volume(
         origin: DVec3,
@@ -121,9 +120,8 @@ impl LightProjection {
         })
     }
 
-    /// The same map with its inputs relative to another world position, in metres. The translation
-    /// is computed in f64 and rounded once. An origin that is not finite gives matrices that are
-    /// not finite.
+    /// Returns this map with inputs relative to another world position, in metres. The translation is
+    /// computed in f64 and rounded once. An origin that is not finite gives matrices that are not finite.
     #[must_use]
     pub fn relative_to(&self, new_origin: DVec3) -> Self {
         let moved = self.project(new_origin).as_vec3();
@@ -137,21 +135,21 @@ impl LightProjection {
         fit
     }
 
-    /// World position of the light space's origin, in metres. A directional light has no position;
-    /// this is where the light's view matrix stands: the middle of the near plane, or in the XNA
+    /// Returns the world position of the light space's origin, in metres. A directional light has no
+    /// position; this is the position of its view matrix. It is the middle of the near plane, or in the XNA
     /// fit the middle of the box's face away from the light.
     pub fn light_position(&self) -> DVec3 {
         self.origin + self.unproject(DVec3::ZERO)
     }
 
-    /// The matrices for plain f32 world positions.
+    /// Returns the matrices for plain f32 world positions.
     pub fn world_matrices(&self) -> WorldMatrices {
         let Self { light_from_world, clip_from_light, clip_from_world, .. } = self.relative_to(DVec3::ZERO);
         WorldMatrices { light_from_world, clip_from_light, clip_from_world }
     }
 
-    /// Whether a world position, in metres, lies inside what the map stores, to 1e-6 of the map's
-    /// extent. In the XNA fit that includes the empty farther half of the map.
+    /// Returns whether the map covers a world position, in metres, to 1e-6 of the map's extent. In the XNA
+    /// fit the map includes its empty farther half.
     pub fn covers(&self, point: DVec3) -> bool {
         let p = self.project(point);
         let (min, max) = self.clip_box();
@@ -159,8 +157,9 @@ impl LightProjection {
         p.cmpge(min - tolerance).all() && p.cmple(max + tolerance).all()
     }
 
-    /// Texels between a world position, in metres, and the nearest of the map's sides; `None` where the
-    /// map does not [cover](Self::covers) it. It may be slightly negative, by rounding.
+    /// Returns the number of texels between a world position, in metres, and the nearest of the map's sides,
+    /// or `None` if the map does not [cover](Self::covers) the position. Rounding may make it slightly
+    /// negative.
     pub fn texels_to_edge(&self, point: DVec3) -> Option<f64> {
         let p = self.project(point);
         let (min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
@@ -168,9 +167,9 @@ impl LightProjection {
         self.covers(point).then_some(free.x.min(free.y))
     }
 
-    /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in
-    /// metres: near face, then far face, each left-top, right-top, right-bottom, left-bottom of
-    /// the map.
+    /// Returns the corners of the box that the map stores, in world axes relative to [`Self::origin`], in
+    /// metres. The near face comes first, then the far face. Each is ordered left-top, right-top,
+    /// right-bottom, left-bottom in the map.
     pub fn corners(&self) -> [Vec3; 8] {
         let (min, max) = self.clip_box();
         [
@@ -186,27 +185,28 @@ impl LightProjection {
         .map(|(x, y, z)| self.unproject(DVec3::new(x, y, z)).as_vec3())
     }
 
-    /// Box between the near and the far plane, in light space.
+    /// Returns the box between the near and the far plane, in light space.
     pub(crate) fn clip_box(&self) -> (DVec3, DVec3) {
         let (mut min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
         min.z = max.z - f64::from(self.depth_range);
         (min, max)
     }
 
-    /// Distance from [`Self::origin`] of the farthest corner of the box between the near and the far plane, in metres.
+    /// Returns the distance from [`Self::origin`] to the farthest corner of the box between the near and the
+    /// far plane, in metres.
     pub(crate) fn farthest_corner(&self) -> f64 {
         let ((min, max), origin) = (self.clip_box(), self.light_from_world.w_axis.truncate().as_dvec3());
         checks::length((min - origin).abs().max((max - origin).abs()))
     }
 
-    /// Centre and half extents in light space of a box relative to [`Self::origin`], from its own, in f64.
+    /// Converts the centre and half extents of a box relative to [`Self::origin`] to light space, in f64.
     pub(crate) fn project_box(&self, centre: DVec3, half: DVec3) -> (DVec3, DVec3) {
         let m = &self.light_from_world;
         let columns = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().as_dvec3().abs());
         (self.project(self.origin + centre), columns[0] * half.x + columns[1] * half.y + columns[2] * half.z)
     }
 
-    /// Light space from an absolute world position, in f64.
+    /// Converts an absolute world position to light space, in f64.
     fn project(&self, point: DVec3) -> DVec3 {
         let m = &self.light_from_world;
         let p = point - self.origin;
@@ -216,8 +216,8 @@ impl LightProjection {
             + m.w_axis.truncate().as_dvec3()
     }
 
-    /// World axes relative to the origin from light space, in f64; the rotation's transpose is
-    /// its inverse to f32 rounding.
+    /// Converts light space to world axes relative to the origin, in f64. The rotation's transpose is its
+    /// inverse, up to f32 rounding.
     fn unproject(&self, point: DVec3) -> DVec3 {
         let m = &self.light_from_world;
         let p = point - m.w_axis.truncate().as_dvec3();
@@ -229,7 +229,7 @@ impl LightProjection {
     }
 }
 
-/// Light space from the world, for a light at a place along its axes.
+/// Returns the matrix from the world to light space, for a light at a position along its axes.
 #[inline(always)]
 fn light_from_world(&LightAxes { x, y, z }: &LightAxes, light: DVec3) -> Mat4 {
     let t = (-light).as_vec3();
@@ -241,7 +241,7 @@ fn light_from_world(&LightAxes { x, y, z }: &LightAxes, light: DVec3) -> Mat4 {
     )
 }
 
-/// Clip space from light space.
+/// Returns the matrix from light space to clip space.
 #[inline(always)]
 fn clip_from_light(size: DVec3, volume: &Volume, depth: DepthConvention) -> Mat4 {
     let near = (volume.max.z - volume.light_z) / volume.depth_range;
@@ -260,7 +260,7 @@ fn clip_from_light(size: DVec3, volume: &Volume, depth: DepthConvention) -> Mat4
     )
 }
 
-/// `clip_from_world` and `uv_from_world`, computed in f64.
+/// Computes `clip_from_world` and `uv_from_world` in f64.
 #[inline(always)]
 fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvention) -> (Mat4, Mat4) {
     let clip = clip_from_light;
@@ -274,7 +274,7 @@ fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvent
     (scaled(light_from_world, scale, offset), uv_from_world)
 }
 
-/// `scale · (matrix p) + offset` as one affine matrix, computed in f64.
+/// Returns `scale · (matrix p) + offset` as one affine matrix, computed in f64.
 #[inline(always)]
 fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
     let column = |c: Vec4| c.truncate().as_dvec3() * scale;
@@ -286,23 +286,24 @@ fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
     )
 }
 
-/// How far axes may be from being perpendicular, and from the light's direction, as a cosine: matrices that were
-/// written with seven digits and multiplied in f32.
+/// Tolerance for axes that are not perpendicular or not along the light, as a cosine. It accepts matrices
+/// that were written with seven digits and multiplied in f32.
 const SKEW: f64 = 1e-4;
 
 impl LightProjection {
-    /// The fit that equals a light's orthographic view-projection: clip space (x right, y up, with this depth
-    /// convention) from world space in metres. `direction` is the light's direction of travel in world axes, of any
-    /// length; `origin` is the world position, in metres, that the fit's own matrices are relative to; choose one near
-    /// what is seen.
+    /// Creates the projection that equals a light's orthographic view-projection. `clip_from_world` takes
+    /// world positions in metres to clip space (x right, y up, with the depth convention `depth`).
+    /// `direction` is the light's direction of travel in world axes, of any length. `origin` is the world
+    /// position, in metres, that the projection's own matrices are relative to. Choose one near the visible
+    /// surfaces.
     ///
     /// A mirrored matrix gives a mirrored light space.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotOrthographic`] for a perspective, a sheared box, or one along another direction, such as a matrix
-    /// of reversed depth that is not said to be, and what a fit
-    /// returns for inputs that are not finite or out of range.
+    /// [`FitError::NotOrthographic`] for a perspective, a sheared box, or a box along another direction. A
+    /// matrix with reversed depth also fails this way if `depth` is not [`DepthConvention::Reversed`]. Inputs
+    /// that are not finite or out of range fail as in [`fit`](crate::fit).
     pub fn from_clip_from_world(
         clip_from_world: &DMat4,
         depth: DepthConvention,
@@ -325,19 +326,19 @@ impl LightProjection {
         if (along > 0.0) == (depth == DepthConvention::Reversed) {
             return Err(FitError::NotOrthographic { why: "its depth runs against the light in this convention" });
         }
-        // Light space looks along -z, whichever way the depth runs.
+        // Light space looks along -z in every depth convention.
         Self::from_volume(origin, &rows.volume(axes, along.signum()), resolution, depth)
     }
 }
 
-/// Rows of the matrix, and their offsets at the origin.
+/// Rows of a matrix, with their offsets at the origin.
 struct Rows {
     axes: [DVec3; 3],
     offsets: DVec3,
 }
 
 impl Rows {
-    /// The rows of a matrix, with depth 0..1.
+    /// Extracts the rows of a matrix, with depth in 0..1.
     fn of(matrix: &DMat4, depth: DepthConvention, origin: DVec3) -> Result<Self, FitError> {
         let row = |index: usize| {
             let column = |column: usize| matrix.to_cols_array()[column * 4 + index];
@@ -357,12 +358,12 @@ impl Rows {
         Ok(rows)
     }
 
-    /// The box that the matrix maps to the clip cube. `travel` is 1 where depth grows along the light's direction,
-    /// else -1.
+    /// Returns the box that the matrix maps to the clip cube. `travel` is 1 if depth grows along the light's
+    /// direction, else -1.
     fn volume(&self, axes: [DVec3; 3], travel: f64) -> Volume {
         let scale = self.axes.map(checks::length);
         let half = DVec3::new(1.0 / scale[0], 1.0 / scale[1], 0.5 / scale[2]);
-        // Along z toward the light: depth 1/2 lies in the middle.
+        // The z axis points toward the light, and depth 1/2 lies in the middle.
         let middle = DVec3::new(
             -self.offsets.x / scale[0],
             -self.offsets.y / scale[1],

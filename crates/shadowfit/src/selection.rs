@@ -1,9 +1,9 @@
-//! Which of several maps a point reads.
+//! Selection of the map that a point reads.
 //!
-//! By **coverage** a point reads the finest map that holds it with all that the filter reads around
-//! it, whatever its view depth, and is blended into the next coarser one toward that map's border.
-//! By **view depth** it reads the map of its range of view depths, as most engines have it. The same
-//! rule stands in the WGSL of `shadowfit-wgpu` and is what pictures are judged by.
+//! By **coverage** a point reads the finest map that covers it and the filter's footprint around it, at any
+//! view depth. Toward that map's border it is blended into the next coarser one. By **view depth** it reads
+//! the map of its range of view depths, as in most engines. The WGSL of `shadowfit-wgpu` uses the same rule,
+//! and reports judge pictures by it.
 //!
 //! ```text
 //!   ┌──────────────────────────┐ coarser map
@@ -21,19 +21,19 @@ use crate::projection::LightProjection;
 use crate::technique::Technique;
 use crate::technique::settings::{FilterKind, MAX_MAPS, MapSelection, Softness};
 
-/// How points read several maps: which of them, and how far around a point the filter looks.
+/// Settings for reading several maps: the selection of a map, and the filter of the look-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapReading {
-    /// Which of the maps a point reads.
+    /// Rule that selects the map that a point reads.
     pub selection: MapSelection,
     /// Filter of the look-up.
     pub filter: FilterKind,
-    /// Width of the filters that are soft.
+    /// Width of soft filters.
     pub softness: Softness,
 }
 
 impl Technique {
-    /// How points read the maps.
+    /// Returns the selection and the filter of this technique.
     pub const fn reading(&self) -> MapReading {
         let Self { filter, softness, .. } = *self;
         MapReading { selection: self.maps.selection(), filter, softness }
@@ -44,9 +44,9 @@ impl Technique {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapRead {
-    /// The map that is found first.
+    /// Index of the first map that the selection finds.
     pub map: usize,
-    /// The map that it is blended into, if it is.
+    /// Map that it is blended into, if any.
     pub blend: Option<MapBlend>,
 }
 
@@ -54,14 +54,14 @@ pub struct MapRead {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapBlend {
-    /// Its index.
+    /// Index of the map.
     pub map: usize,
-    /// Its share of the shadow factor, 0..=1; the first map has the rest.
+    /// Share of this map in the shadow factor, 0..=1. The first map has the rest.
     pub weight: f64,
 }
 
 impl MapRead {
-    /// The map that weighs more; the first one where both weigh the same.
+    /// Returns the map with the greater weight, or the first map if both weigh the same.
     pub fn main(&self) -> usize {
         match self.blend {
             Some(blend) if blend.weight > 0.5 => blend.map,
@@ -70,7 +70,7 @@ impl MapRead {
     }
 }
 
-/// The indices of maps in the order in which a point tries them.
+/// Indices of maps in the order in which a point tries them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MapOrder {
     indices: [u8; MAX_MAPS],
@@ -78,10 +78,10 @@ pub struct MapOrder {
 }
 
 impl MapOrder {
-    /// The order of maps: by coverage that of their texels' areas, the finest first, and of their
-    /// indices where areas are equal; by view depth that of their indices. Maps past [`MAX_MAPS`]
-    /// are left out, and by coverage also those that [are empty](LightProjection::is_empty), whose passes
-    /// may be skipped.
+    /// Creates the order of maps. By coverage, the maps with the smallest texel areas come first, and maps of
+    /// equal area are ordered by index. By view depth, all maps are ordered by index. Maps past [`MAX_MAPS`]
+    /// are left out. By coverage, maps that [are empty](LightProjection::is_empty) are left out too, since
+    /// their passes may be skipped.
     ///
     /// ```
     /// use shadowfit::selection::MapOrder;
@@ -103,7 +103,8 @@ impl MapOrder {
         }
     }
 
-    /// The order of maps by the areas of their texels, in any unit; those without one are left out.
+    /// Creates the order of maps by the areas of their texels, in any unit. Maps without an area are left
+    /// out.
     pub fn by_area(areas: impl IntoIterator<Item = Option<f64>>) -> Self {
         let mut order = Self::default();
         let mut sorted = [0.0; MAX_MAPS];
@@ -120,22 +121,22 @@ impl MapOrder {
         order
     }
 
-    /// The indices, the first one to be tried first.
+    /// Returns the indices, in the order in which a point tries the maps.
     pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         self.indices[..usize::from(self.count)].iter().map(|index| usize::from(*index))
     }
 }
 
-/// The maps that a point reads by coverage; `None` where no map holds it.
+/// Returns the maps that a point reads by coverage, or `None` if no map covers it.
 ///
-/// `order` has the maps' indices, the finest first, each once; `reach` and `blend` are texels. `free`
-/// says how many texels of a map lie between the point and the nearest side, or `None` where the map
-/// does not hold the point ([`LightProjection::texels_to_edge`]).
+/// `order` has the maps' indices, finest first, each once. `reach` is the filter radius and `blend` the width
+/// of the blend, both in texels. `free` returns the number of texels between the point and the nearest side
+/// of a map, or `None` if the map does not cover the point ([`LightProjection::texels_to_edge`]).
 ///
-/// The first map that has `reach` texels free is read, and blended with the next one that has, by
-/// weights that are linear in the first one's free texels: from 0 at `reach` to 1 at
-/// `reach + blend`. Where none has as many, the first one that holds the point is read alone, with
-/// the filter clamped to the map.
+/// The point reads the first map that has `reach` texels free. This map is blended into the next one that has
+/// `reach` texels free. The weight of the first map is linear in its free texels: 0 at `reach` and 1 at
+/// `reach + blend`. If no map has `reach` texels free, the point reads only the first map that covers it,
+/// with the filter clamped to the map.
 pub fn by_coverage(
     order: impl IntoIterator<Item = usize>,
     reach: f64,
@@ -163,44 +164,46 @@ pub fn by_coverage(
     first.map(|(map, _)| map).or(clamped).map(|map| MapRead { map, blend: None })
 }
 
-/// View depths of a map: distances from the eye along the view's forward direction, in metres.
+/// Range of view depths of a map. A view depth is a distance from the eye along the view's forward direction,
+/// in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthRange {
-    /// Where it begins.
+    /// View depth at which the range begins.
     pub near: f64,
-    /// Where it ends: points read the first map that ends beyond them. `None` for a map without an end, such as the last
-    /// cascade, which is read as far as shadows reach.
+    /// View depth at which the range ends. Points read the first map that ends beyond their view depth.
+    /// `None` for a map without an end, such as the last cascade, which is read up to the shadow distance.
     pub far: Option<f64>,
-    /// From where on the map holds everything that is visible, up to its end. It lies before `near` where maps overlap,
-    /// and points are blended from the map in front into this one from there on. `None` for a map that need not hold
-    /// all of any depth, such as a [window](crate::Windows) that is not the last one; no point is blended into it by
-    /// view depth.
+    /// View depth from which the map holds everything visible, up to its end. If maps overlap it lies before
+    /// `near`, and from there on points are blended from the map in front into this one. `None` for a map
+    /// that holds only a part of the view at every depth, such as a [window](crate::Windows) other than the
+    /// last one. No point is blended into it by view depth.
     pub covered_from: Option<f64>,
 }
 
 impl DepthRange {
-    /// All view depths, also those behind the eye, which orthographic views have.
+    /// All view depths, including those behind the eye, which orthographic views have.
     pub const ALL: Self = Self { near: f32::MIN as f64, far: None, covered_from: Some(f32::MIN as f64) };
 
-    /// The range of a map that other code fitted: it need not hold all of it.
+    /// Creates the range of a map that other code fitted. The map need not hold everything in the range.
     pub const fn new(near: f64, far: Option<f64>) -> Self {
         Self { near, far, covered_from: None }
     }
 
-    /// Whether the map ends beyond a view depth.
+    /// Returns whether the map ends beyond a view depth.
     pub fn ends_beyond(&self, view_depth: f64) -> bool {
         view_depth < self.far.unwrap_or(f64::MAX)
     }
 }
 
-/// The maps that a point reads by view depth; `None` where no map from there on holds it.
+/// Returns the maps that a point reads by view depth, or `None` if neither the map of that depth nor a later
+/// map covers the point.
 ///
-/// `ranges` are those of the maps, in order of their ends; none reads a map without one. `holds` says whether a map
-/// holds the point ([`LightProjection::covers`]). The first map that ends beyond the point's view depth is read, or the
-/// next later one that holds the point; it is blended into the map behind it, if that holds the
-/// point, by weights that are linear in the view depth, from where that one's range begins to overlap
-/// to its own end.
+/// `ranges` are the ranges of the maps, in order of their ends. A map without a range is never read. `holds`
+/// returns whether a map covers the point ([`LightProjection::covers`]). The point reads the first map that
+/// ends beyond its view depth and covers the point. This map is blended into the next one if that covers the
+/// point too. The weight of the next map is linear in the view depth, from 0 at [`DepthRange::covered_from`]
+/// of the next map to 1 at the end of the first map.
 pub fn by_view_depth(
     ranges: impl IntoIterator<Item = Option<DepthRange>>,
     view_depth: f64,

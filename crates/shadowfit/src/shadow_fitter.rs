@@ -1,5 +1,5 @@
-//! The fitter that engines take, one for each sun: it knows its technique, remembers what earlier frames were and
-//! showed, and owns the memory that [`FitState`] needs.
+//! The fitter for engines, one per sun. It owns the technique, the history of earlier frames, and the working
+//! memory of [`FitState`].
 
 use alloc::vec::Vec;
 
@@ -7,13 +7,13 @@ use glam::DVec2;
 
 use crate::{FitError, FitInput, FitState, FittedMaps, Maps, Scratch, Technique, VisibleDemand};
 
-/// Elements of scratch memory for the outline of what a map must hold: that of most scenes has far fewer corners.
+/// Scratch elements for the outline of a map's content. Most outlines have far fewer corners.
 const OUTLINE: usize = 4096;
 
-/// Fits a technique's maps frame by frame. One for each sun.
+/// Fitter that computes a technique's maps frame by frame. Create one per sun.
 ///
-/// It remembers the frames before, owns its scratch memory, which grows once, and takes [what an earlier frame
-/// showed](VisibleDemand), whenever that is known.
+/// It remembers earlier frames and owns its scratch memory, which grows once. It accepts the [visible
+/// demand](VisibleDemand) of an earlier frame whenever that is known.
 #[derive(Clone, Debug, Default)]
 pub struct ShadowFitter {
     technique: Technique,
@@ -24,44 +24,44 @@ pub struct ShadowFitter {
 }
 
 impl ShadowFitter {
-    /// A fitter that remembers no frame.
+    /// Creates a fitter without history.
     pub fn new(technique: &Technique) -> Self {
         Self { technique: *technique, ..Self::default() }
     }
 
-    /// The technique.
+    /// Returns the technique.
     pub fn technique(&self) -> &Technique {
         &self.technique
     }
 
-    /// Goes on with another technique. The next fit keeps no map of the old one.
+    /// Sets another technique. The next fit keeps no map of the old technique.
     pub fn set_technique(&mut self, technique: &Technique) {
         self.technique = *technique;
     }
 
-    /// Forgets all earlier frames: after a camera cut, or when a new level begins.
+    /// Forgets all earlier frames. Call it after a camera cut or when a new level begins.
     pub fn reset(&mut self) {
         self.history.reset();
         self.visible = None;
     }
 
-    /// Sets what a picture of an earlier frame showed. It is used until it is replaced: late or wrong counts
+    /// Sets the visible demand of an earlier frame. It is used until it is replaced. Late or wrong counts
     /// cost sharpness, never coverage.
     pub fn set_visible_demand(&mut self, visible: VisibleDemand) {
         self.visible = Some(visible);
     }
 
-    /// The visible demand that was set last.
+    /// Returns the visible demand that was set last.
     pub fn visible_demand(&self) -> Option<&VisibleDemand> {
         self.visible.as_ref()
     }
 
-    /// Fits the maps of a frame. Where the input says neither [`FitInput::demand`] nor [`FitInput::histogram`], it is
-    /// completed by what was [set](Self::set_visible_demand) of earlier frames.
+    /// Fits the maps of a frame. If the input has neither [`FitInput::demand`] nor [`FitInput::histogram`],
+    /// the fit uses the visible demand that was [set](Self::set_visible_demand) last.
     ///
     /// # Errors
     ///
-    /// As [`FitState::fit`]. What is remembered stays as it was; there are no maps of this frame then.
+    /// As [`FitState::fit`]. An error leaves the history unchanged, and the frame has no maps.
     pub fn fit(&mut self, input: &FitInput) -> Result<&FittedMaps, FitError> {
         let told = self.visible.take();
         let visible = told.as_ref().filter(|_| input.demand.is_empty() && input.histogram.is_none());
@@ -78,8 +78,8 @@ impl ShadowFitter {
         Ok(&self.fitted)
     }
 
-    /// Fits with the memory that there is, and with more where that is too little: what could be needed at most is
-    /// several times as much as ever is.
+    /// Fits with the existing scratch memory, and grows it if it is too small. The theoretical upper bound is
+    /// several times larger than fits ever need.
     fn fit_growing(&mut self, input: &FitInput) -> Result<(), FitError> {
         let least = self.usual_scratch(input);
         if self.scratch.len() < least {
@@ -97,20 +97,21 @@ impl ShadowFitter {
         }
     }
 
-    /// Elements of scratch memory that fits of an input need, static boxes in view and long outlines apart.
+    /// Returns the scratch elements that fits of an input usually need, without static boxes in view and long
+    /// outlines.
     fn usual_scratch(&self, input: &FitInput) -> usize {
         let [receivers, casters] =
             [input.receivers, input.casters].map(|boxes| boxes.map_or(0, |list| list.boxes.len()));
         // View depths of receivers, all boxes along the light's axes, and the bounds of runs.
         let mut elements = receivers * input.views.len() + (receivers + casters) * 4;
         if !matches!(self.technique.maps, Maps::Windows(_)) {
-            // The same for the views of frames ahead, to which maps that are held are fitted as well.
+            // Held maps are also fitted to the predicted views of two later frames.
             elements += receivers * (input.views.len() + 2) + receivers + casters;
         }
         elements + OUTLINE
     }
 
-    /// The maps of the last frame; none after an error.
+    /// Returns the maps of the last frame; none after an error.
     pub fn fitted(&self) -> &FittedMaps {
         &self.fitted
     }
@@ -160,11 +161,11 @@ mod tests {
         let holds = |maps: &FittedMaps| {
             (100..140_u8).any(|metre| maps[0].projection.covers(DVec3::new(0.0, 0.0, -f64::from(metre))))
         };
-        assert!(holds(&by_grid) && !holds(&by_boxes), "the finest map is where points were seen");
+        assert!(holds(&by_grid) && !holds(&by_boxes), "the finest map covers the counted points");
         fitter.reset();
         assert_eq!(*fitter.fit(&input).expect("maps"), by_boxes);
 
-        // What is told of another light is of no use, and said not to be used.
+        // Demand of another light is ignored, and `placement` reports it.
         fitter.set_visible_demand(visible);
         let other = FitInput { direction: Vec3::new(-0.8, -0.3, 0.2), ..input };
         assert_eq!(fitter.fit(&other).expect("maps").placement, PlacementSource::Boxes);

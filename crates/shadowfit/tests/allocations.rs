@@ -1,4 +1,4 @@
-//! Nothing that runs every frame allocates: a global allocator counts.
+//! Checks with a counting global allocator that code for every frame does not allocate.
 
 use allocation_counter::measure;
 use shadowfit::bias::FilterRadius;
@@ -47,13 +47,13 @@ fn views() -> [ViewFrustum; 2] {
     [frustum, ViewFrustum { origin: frustum.origin + DVec3::X * 0.065, ..frustum }]
 }
 
-/// Boxes on a square of ground.
+/// Returns boxes on a square of ground.
 fn objects() -> Vec<Aabb> {
     let corner = |i: u16| Vec3::new(f32::from(i % 40) * 5.0 - 100.0, 0.0, -f32::from(i / 40) * 5.0);
     (0..1600).map(corner).map(|low| Aabb::new(low, low + Vec3::new(2.0, 5.0, 3.0))).collect()
 }
 
-/// Runs something, fails if it allocated, and gives its result.
+/// Runs a function, asserts that it did not allocate, and returns its result.
 fn without_allocation<T>(what: &str, run: impl FnOnce() -> T) -> T {
     let mut result = None;
     let allocations = measure(|| result = Some(run()));
@@ -110,7 +110,8 @@ fn no_fit_of_several_maps_allocates() {
     }
 }
 
-/// With a demand grid and without, in the first frames, whose search takes most effort, and in later ones.
+/// With and without a demand grid, in the first frames, whose search takes the most effort, and in later
+/// ones.
 #[test]
 fn no_fit_of_windows_allocates() {
     let (views, objects) = (views(), objects());
@@ -137,7 +138,7 @@ fn no_fit_of_windows_allocates() {
     }
 }
 
-/// Boxes in a tree, some of which move, once what a view of them takes is known.
+/// Boxes in a tree, some of them moving, after the buffers have grown to the need of a view.
 #[test]
 fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
     let (views, objects) = (views(), objects());
@@ -165,7 +166,8 @@ fn no_fit_and_no_culling_of_a_tree_allocates_in_steady_frames() {
     }
 }
 
-/// A walk past static casters in a list and in a tree, and a few that move, once the first frames have grown the buffers.
+/// A walk past static casters in a list and in a tree, and a few moving ones, after the buffers have grown in
+/// the first frames.
 #[test]
 fn no_plan_of_cached_maps_allocates_in_steady_frames() {
     let (technique, listed) = (Technique::default(), objects());

@@ -1,4 +1,4 @@
-//! Any number of random fits, a chunk at a time, to be compared between builds: `random_fits` runs millions.
+//! Any number of random fits in chunks, for comparing builds. `random_fits` runs millions of them.
 
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{BiasSettings, MapFormat};
@@ -9,13 +9,13 @@ use crate::numbers::{self, ByKind, Numbers};
 use crate::random::Random;
 use crate::windows;
 
-/// Fits of a chunk.
+/// Number of fits of a chunk.
 pub const FITS: u32 = 1000;
 
-/// Of these, maps of lamps, in chunks that have no windows.
+/// Number of these fits that are maps of lamps, in chunks without windows.
 const LAMPS: u32 = 50;
 
-/// What a chunk's fits are of.
+/// The kind of a chunk's fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Single maps, cascades and lamps.
@@ -24,18 +24,18 @@ pub enum Kind {
     Windows,
 }
 
-/// The hash over the numbers of a chunk's fits, which follow from the seed and the chunk's index.
+/// Returns the hash over the numbers of a chunk's fits, which depend only on the seed and the chunk's index.
 ///
 /// # Errors
 ///
-/// When a number is not finite.
+/// If a number is not finite.
 pub fn run(kind: Kind, seed: u64, index: u64) -> Result<u64, String> {
     let mut numbers = ByKind::new();
     let mut random = Random::stream(seed, index);
     match kind {
         Kind::Cascades => {
             for _ in 0..LAMPS {
-                // What is refused gives no number.
+                // Refused input gives no number.
                 let _ = lamp(&mut random, &mut numbers.single_map);
             }
             numbers::add(random, FITS - LAMPS, &mut numbers);
@@ -53,7 +53,7 @@ pub fn run(kind: Kind, seed: u64, index: u64) -> Result<u64, String> {
     Ok(chunk.value())
 }
 
-/// One hash of those of all chunks, in their order.
+/// Combines the hashes of all chunks, in their order.
 pub fn of_all(hashes: impl IntoIterator<Item = u64>) -> u64 {
     let mut all = Numbers::new();
     for hash in hashes {
@@ -62,7 +62,7 @@ pub fn of_all(hashes: impl IntoIterator<Item = u64>) -> u64 {
     all.value()
 }
 
-/// A map of a lamp, and its biases.
+/// Adds a map of a lamp, and its biases.
 fn lamp(random: &mut Random, numbers: &mut Numbers) -> Result<(), FitError> {
     let near = random.scale(-7, 0);
     let light = SpotLight {

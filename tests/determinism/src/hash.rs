@@ -1,11 +1,12 @@
-//! One number for all that fits say.
+//! One hash over all output of fits.
 
 use std::fmt::{Debug, Write};
 
-/// FNV-1a over what values print as (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash algorithm").
+/// FNV-1a over the `Debug` texts of values (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash
+/// algorithm").
 ///
-/// Rust prints the shortest decimal that reads back as the same float, and the sign of zero, so two texts are equal
-/// only if all bits are; it prints every field, those to come and private ones included.
+/// Rust prints the shortest decimal that reads back as the same float, and the sign of zero, so two texts are
+/// equal only if all bits are. It prints every field, including private and future ones.
 pub(crate) struct Hash(u64);
 
 impl Hash {

@@ -17,7 +17,7 @@ use crate::random::Random;
 const DEPTHS: [DepthConvention; 3] =
     [DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne];
 
-/// What one fit is told.
+/// The inputs of one fit.
 pub(crate) struct Scene {
     pub(crate) camera: PerspectiveCamera,
     pub(crate) views: Vec<ViewFrustum>,
@@ -82,7 +82,7 @@ impl Scene {
         }
     }
 
-    /// The next frame of a camera that moves and turns.
+    /// Advances to the next frame of a camera that moves and turns.
     pub(crate) fn advance(&mut self, random: &mut Random) -> Result<(), FitError> {
         let step = f64::from(self.camera.far) * 0.01;
         self.camera.eye += random.place(step);
@@ -92,16 +92,16 @@ impl Scene {
     }
 }
 
-/// Depths of a histogram.
+/// Number of bins of a histogram.
 const BINS: u32 = 48;
 
-/// The camera's frustum by one of the ways in, or an orthographic one.
+/// Returns the camera's frustum through one of the constructors, or an orthographic one.
 fn view(random: &mut Random, camera: &PerspectiveCamera) -> Result<ViewFrustum, FitError> {
     let frustum = camera.frustum()?;
     let depth = random.pick(&DEPTHS);
     let (near, far) = (f64::from(camera.near), f64::from(camera.far));
     let forward = frustum.forward.as_dvec3();
-    // World axes relative to the eye from clip space: the middle of the picture, and its sides.
+    // Matrix from clip space to world axes relative to the eye: the middle of the picture, and its sides.
     let [a, b, c] = [4, 5, 7].map(|i: usize| frustum.corners[i].as_dvec3());
     let (right, down) = ((b - a) * 0.5, (c - a) * 0.5);
     let middle = forward * (near - far) / f64::from(depth.near() - depth.far());
@@ -132,8 +132,8 @@ fn view(random: &mut Random, camera: &PerspectiveCamera) -> Result<ViewFrustum, 
     }
 }
 
-/// World axes relative to the eye from clip space: (x, y, z, 1) goes to (x right + y up + forward) · depth, and its w
-/// to 1 / depth, which is linear in z.
+/// Returns the matrix from clip space to world axes relative to the eye. It maps (x, y, z, 1) to (x right + y
+/// up + forward) · depth, and w to 1 / depth, which is linear in z.
 fn perspective(right: DVec3, up: DVec3, forward: DVec3, planes: (f64, f64), depth: DepthConvention) -> DMat4 {
     let (at_near, at_far) = (f64::from(depth.near()), f64::from(depth.far()));
     let slope = (1.0 / planes.0 - 1.0 / planes.1) / (at_near - at_far);
@@ -150,7 +150,7 @@ fn aabb(random: &mut Random, centre: Vec3, size: f32) -> Aabb {
     if random.once_in(32) { Aabb::EMPTY } else { Aabb::new(middle - half, middle + half) }
 }
 
-/// Clusters of a crumpled sheet.
+/// Returns the clusters of a crumpled sheet.
 fn clusters(random: &mut Random, centre: Vec3, size: f32) -> Result<Clusters, FitError> {
     let mut heights = [[0.0; 9]; 9];
     for height in heights.iter_mut().flatten() {
@@ -168,7 +168,7 @@ fn clusters(random: &mut Random, centre: Vec3, size: f32) -> Result<Clusters, Fi
     Clusters::build(&[one, other], 12)
 }
 
-/// Settings of one map.
+/// Returns settings of one map.
 pub(crate) fn fit_settings(random: &mut Random, camera: &PerspectiveCamera) -> FitSettings {
     use CasterPolicy::{DepthClamp, Extend, None, PerObject, SceneBounds};
     let rectangles = [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare];
@@ -191,7 +191,7 @@ fn kind(random: &mut Random) -> FitKind {
     random.pick(&[FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused])
 }
 
-/// Settings of several maps.
+/// Returns settings of several maps.
 pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Technique {
     let mut manual = [0.0; 7];
     for (share, cut) in (1_u8..).zip(&mut manual) {
@@ -210,7 +210,8 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
     let (splits, overlap) = (random.pick(&schemes), random.pick(&[0.0, 0.1, 0.5]));
     let stability = random.pick(&[0, 1, 2]);
     let hold = Hysteresis { margin: 0.02, max_growth: 1.4, max_oversize: random.between(1.2, 3.0), look_ahead: 32 };
-    // One in four once had a rule of its own for the nearest map; the draw stays, so that all others do.
+    // One in four once had a special rule for the nearest map. The draw stays, so that the later draws do not
+    // change.
     if random.once_in(4) {
         kind(random);
     }
@@ -232,7 +233,7 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
     technique.with_count(count)
 }
 
-/// The technique with maps that are read by coverage.
+/// Returns the technique with selection by coverage.
 pub(crate) fn by_coverage(technique: Technique) -> Technique {
     match technique.maps {
         Maps::Cascades(cascades) => technique.with_maps(cascades.with_selection(MapSelection::default())),

@@ -1,8 +1,8 @@
-//! 10,000 fits of every kind, and one hash over every number that they and what follows from them say: biases, culling,
+//! 10,000 fits of every kind, and one hash over every number of them and of derived results: biases, culling,
 //! diagnostics.
 //!
-//! The hash is the same on every target: x86-64 with SIMD, glam's scalar maths, a browser. `cargo xtask ci` runs it on
-//! these three.
+//! The hash is the same on every target: x86-64 with SIMD, glam's scalar maths, a browser. `cargo xtask ci`
+//! runs it on these three.
 
 mod hash;
 mod inputs;
@@ -21,12 +21,12 @@ use random::Random;
 /// Number of fits.
 pub const FITS: u32 = 10_000;
 
-/// The hash of all fits. A change of what a fit computes changes it on purpose, and on all targets alike:
-/// `cargo test -p shadowfit-determinism` prints the new one.
+/// The hash of all fits. A deliberate change of the fits changes it, equally on all targets. `cargo test -p
+/// shadowfit-determinism` prints the new one.
 pub const HASH: u64 = 0x563c_e1c7_70e2_5d38;
 
-/// The hashes over the numbers alone that as many fits give, every setting written out: they do not know what anything is
-/// called or what is kept between frames, and only change if engines get other numbers.
+/// The hashes over only the numbers of 10,000 other fits, with all settings written out. They do not depend on
+/// names or on the state between frames, and change only if engines get other numbers.
 pub const NUMBERS: NumbersByKind = NumbersByKind {
     single_map: 0xcbed_08f2_b4b7_6d15,
     cascades: 0x0f44_0507_d30a_bb0d,
@@ -36,15 +36,15 @@ pub const NUMBERS: NumbersByKind = NumbersByKind {
 /// A hash over numbers for each kind of technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NumbersByKind {
-    /// Of single maps.
+    /// Hash of single maps.
     pub single_map: u64,
-    /// Of cascades, read by coverage and by view depth.
+    /// Hash of cascades, read by coverage and by view depth.
     pub cascades: u64,
-    /// Of windows.
+    /// Hash of windows.
     pub windows: u64,
 }
 
-/// What 10,000 fits came to.
+/// The result of 10,000 fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     /// Hash over all output.
@@ -60,7 +60,7 @@ pub fn outcome() -> Outcome {
     run::run(FITS)
 }
 
-/// The hashes over the numbers that fits give.
+/// Computes the hashes over the numbers of fits.
 pub fn numbers() -> NumbersByKind {
     let mut numbers = ByKind::new();
     numbers::add(Random::new(2), FITS, &mut numbers);
@@ -72,21 +72,22 @@ pub fn numbers() -> NumbersByKind {
     }
 }
 
-/// The hash of all fits, for a host without Rust: WebAssembly is given no name but a fixed one.
+/// Returns the hash of all fits, for a host without Rust. WebAssembly exports need a fixed name.
 #[expect(unsafe_code, reason = "a fixed name is all that it says; no other function of this program has it")]
 #[unsafe(no_mangle)]
 pub extern "C" fn shadowfit_hash() -> u64 {
     outcome().hash
 }
 
-/// The hash that [`shadowfit_hash`] should have.
+/// Returns the expected value of [`shadowfit_hash`].
 #[expect(unsafe_code, reason = "as above")]
 #[unsafe(no_mangle)]
 pub extern "C" fn shadowfit_expected_hash() -> u64 {
     HASH
 }
 
-/// The hash over the numbers of a kind, likewise: 0 for one map, 1 for cascades, else windows.
+/// Returns the hash over the numbers of a kind, for the same host: 0 for single maps, 1 for cascades, else
+/// windows.
 #[expect(unsafe_code, reason = "as above")]
 #[unsafe(no_mangle)]
 pub extern "C" fn shadowfit_numbers(kind: u32) -> u64 {
@@ -94,7 +95,7 @@ pub extern "C" fn shadowfit_numbers(kind: u32) -> u64 {
     HERE.get_or_init(numbers).of(kind)
 }
 
-/// The hash that [`shadowfit_numbers`] should have.
+/// Returns the expected value of [`shadowfit_numbers`].
 #[expect(unsafe_code, reason = "as above")]
 #[unsafe(no_mangle)]
 pub extern "C" fn shadowfit_expected_numbers(kind: u32) -> u64 {

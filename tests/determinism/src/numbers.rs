@@ -1,7 +1,8 @@
-//! The numbers alone that fits give: no names, no state between frames, no texts of errors.
+//! Hashes over only the numbers of fits: without names, state between frames, and error texts.
 //!
-//! The first hash covers whatever values print as, so that it also changes when a field is renamed or added. Those over
-//! numbers change only if an engine gets another number for the same settings, all of which are written out here.
+//! The first hash covers the `Debug` text of values, so it also changes when a field is renamed or added. The
+//! hashes over numbers change only if an engine gets another number for the same settings, which are all
+//! written out here.
 
 use shadowfit::bias::FilterRadius;
 use shadowfit::culling::{Sweep, cull};
@@ -15,16 +16,16 @@ use shadowfit::{Bias, CasterVolume, FitError, FitState, FittedMap, LightProjecti
 use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;
 
-/// Frames of a camera's flight.
+/// Number of frames of a camera's flight.
 const FRAMES: u32 = 6;
 
-/// Adds the numbers of so many fits: single maps, and cascades read by view depth.
+/// Adds the numbers of this many fits: single maps, and cascades read by view depth.
 pub(crate) fn add(random: Random, fits: u32, numbers: &mut ByKind) {
     let storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
     let mut run = Run { random, single_map: &mut numbers.single_map, cascades: &mut numbers.cascades, storage };
     let mut done = 0;
     while done < fits {
-        // What is refused gives no number.
+        // Refused input gives no number.
         done += run.scene().unwrap_or(0);
     }
 }
@@ -37,7 +38,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Fits to a random scene; gives how many fits that were.
+    /// Fits to a random scene. Returns the number of fits.
     fn scene(&mut self) -> Result<u32, FitError> {
         let mut scene = Scene::new(&mut self.random)?;
         if !self.random.once_in(8) {
@@ -48,7 +49,7 @@ impl Run<'_> {
             return Ok(1);
         }
         let settings = technique(&mut self.random, &scene.camera);
-        // The same way in as in the frames to come: what is held may tolerate another one's rounding.
+        // The frames to come use this constructor, and held state may depend on its rounding.
         scene.views = vec![scene.camera.frustum()?];
         let mut fitter = FitState::new();
         for _ in 0..FRAMES {
@@ -62,7 +63,7 @@ impl Run<'_> {
         Ok(FRAMES)
     }
 
-    /// Biases and culling by a fit.
+    /// Computes biases and culling for a fit.
     fn follow(&mut self, scene: &Scene, fit: &LightProjection, casters: CasterPolicy) -> Result<(), FitError> {
         let random = &mut self.random;
         let reach = random.pick(&[
@@ -137,12 +138,12 @@ impl Numbers {
         self.hash
     }
 
-    /// Whether all of them were.
+    /// Returns whether all numbers were finite.
     pub(crate) fn are_finite(self) -> bool {
         self.are_finite
     }
 
-    /// One of several maps.
+    /// Adds one of several maps.
     pub(crate) fn map(&mut self, map: &FittedMap) {
         self.fit(&map.projection);
         self.depths(map.depths);
@@ -154,7 +155,7 @@ impl Numbers {
         }
     }
 
-    /// View depths in f32, as shaders compare them: no end is `f32::MAX`, and no range `f32::MIN`.
+    /// Adds view depths in f32, as shaders compare them: `f32::MAX` for no end, and `f32::MIN` for no range.
     fn depths(&mut self, depths: Option<DepthRange>) {
         self.f32s(&depths.map_or([f32::MIN; 3], |DepthRange { near, far, covered_from }| {
             let far = far.map_or(f32::MAX, |far| far as f32);

@@ -1,4 +1,4 @@
-//! Runs fits, and all that engines ask of them.
+//! Runs fits, and all functions that engines call for them.
 
 use shadowfit::bias::{FilterRadius, normal_offset, receiver_plane_depth};
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
@@ -15,7 +15,7 @@ use crate::hash::Hash;
 use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;
 
-/// Frames of a camera's flight.
+/// Number of frames of a camera's flight.
 const FRAMES: u32 = 4;
 
 pub(crate) fn run(fits: u32) -> Outcome {
@@ -67,9 +67,9 @@ impl Run {
         Ok(())
     }
 
-    /// What is asked of cameras and lights before any fit.
+    /// Calls the functions for cameras and lights that engines call before a fit.
     fn lights(&mut self, scene: &Scene) -> Result<(), FitError> {
-        // In f64, which no target computes by SIMD.
+        // In f64, which no target computes with SIMD.
         let sun = scene.direction.as_dvec3().normalize().as_vec3();
         let settings = LightSteps::default().with_texels(100.0).with_fade(0.5);
         let step = self.light.update(scene.direction, &settings, self.random.between(0.0, 0.4))?;
@@ -81,7 +81,7 @@ impl Run {
         Ok(())
     }
 
-    /// What an engine does with a fit.
+    /// Calls the functions that an engine calls for a fit.
     fn follow(&mut self, scene: &Scene, fit: &LightProjection, casters: CasterPolicy) -> Result<(), FitError> {
         let random = &mut self.random;
         let moved = fit.relative_to(fit.origin + random.place(100.0));
@@ -121,7 +121,7 @@ impl Run {
         self.volumes(scene, fit, reach, bias.normal_offset, casters)
     }
 
-    /// Culling.
+    /// Calls the functions for culling.
     fn volumes(
         &mut self,
         scene: &Scene,

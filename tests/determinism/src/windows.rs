@@ -1,4 +1,4 @@
-//! The numbers of maps that are read by coverage: windows, with a demand grid and without, cascades, and
+//! The numbers of maps with selection by coverage: windows, with and without a demand grid, cascades, and
 //! single maps.
 
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
@@ -9,20 +9,20 @@ use crate::inputs::{Scene, by_coverage, technique};
 use crate::numbers::{ByKind, Numbers};
 use crate::random::Random;
 
-/// Frames of a camera's flight.
+/// Number of frames of a camera's flight.
 const FRAMES: u32 = 6;
 
-/// Adds the numbers of so many fits. `are_windows` says of each flight whether its maps are windows.
+/// Adds the numbers of this many fits. `are_windows` returns for each flight whether its maps are windows.
 pub(crate) fn add(mut random: Random, fits: u32, are_windows: fn(&mut Random) -> bool, numbers: &mut ByKind) {
     let mut storage = vec![DVec2::ZERO; Scratch::required(64, 8)];
     let mut done = 0;
     while done < fits {
-        // What is refused gives no number.
+        // Refused input gives no number.
         done += flight(&mut random, are_windows, numbers, &mut storage).unwrap_or(0);
     }
 }
 
-/// Fits the frames of one flight through a random scene; gives how many that were.
+/// Fits the frames of one flight through a random scene. Returns the number of fits.
 fn flight(
     random: &mut Random,
     are_windows: fn(&mut Random) -> bool,
@@ -63,7 +63,7 @@ fn flight(
     Ok(FRAMES)
 }
 
-/// A grid of points in view.
+/// Returns a grid of points in view.
 fn points(
     random: &mut Random,
     scene: &Scene,

@@ -1,8 +1,8 @@
-//! Numbers out of the bytes that a fuzzer makes up.
+//! Numbers from the bytes of a fuzzer.
 
 use shadowfit::glam::{DVec3, Vec3};
 
-/// Bytes that are read from the front; zeros when they end.
+/// Bytes that are read from the front, followed by zeros.
 pub(crate) struct Bytes<'a>(pub(crate) &'a [u8]);
 
 impl Bytes<'_> {
@@ -19,17 +19,17 @@ impl Bytes<'_> {
         byte
     }
 
-    /// 0..count.
+    /// Returns a number in 0..count.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         usize::from(self.byte()) % count
     }
 
-    /// One of several.
+    /// Returns one of several values.
     pub(crate) fn pick<T: Copy>(&mut self, all: &[T]) -> T {
         all[self.below(all.len())]
     }
 
-    /// A number between two that make sense; of one in 32 all bits are raw.
+    /// Returns a number between two bounds. One in 32 calls returns a float of raw bits.
     pub(crate) fn f32(&mut self, low: f32, high: f32) -> f32 {
         if self.byte() >= 248 {
             return f32::from_le_bytes(self.take());
@@ -38,7 +38,7 @@ impl Bytes<'_> {
         low + (high - low) * share
     }
 
-    /// The same.
+    /// Returns an f64 in the same way.
     pub(crate) fn f64(&mut self, low: f64, high: f64) -> f64 {
         if self.byte() >= 248 {
             return f64::from_le_bytes(self.take());

@@ -1,4 +1,4 @@
-//! Histories of casters for the cache of maps: the world of the core's model as made-up bytes move it.
+//! Fuzz target: histories of casters for the cache of maps. The bytes control the world of the core's model.
 
 #[path = "../../../crates/shadowfit/tests/suite/cache/fixtures.rs"]
 mod fixtures;
@@ -12,14 +12,14 @@ use super::bytes::Bytes;
 use fixtures::{SIDE, settings};
 use model::{Event, SAMPLES, World};
 
-/// More frames tell nothing new.
+/// Limit of frames. More frames show nothing new.
 const MOST_FRAMES: usize = 200;
 
-/// Draws the frames of a history, each by its plan, and compares the content of the maps with maps drawn anew.
+/// Draws the frames of a history by their plans, and compares the content of the maps with redrawn maps.
 ///
 /// # Panics
 ///
-/// When a map holds something else.
+/// If a map has other content.
 pub fn cache_plan(data: &[u8]) {
     let bytes = &mut Bytes(data);
     let caching = bytes.below(8) > 0;
@@ -34,7 +34,7 @@ pub fn cache_plan(data: &[u8]) {
     }
 }
 
-/// The next event; `None` when there are no bytes left.
+/// Returns the next event, or `None` at the end of the bytes.
 fn event(bytes: &mut Bytes<'_>) -> Option<Event> {
     if bytes.0.is_empty() {
         return None;

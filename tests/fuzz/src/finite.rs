@@ -1,4 +1,4 @@
-//! What a fit promises: an error, or numbers that are all finite.
+//! Checks the guarantee of fits: an error, or only finite numbers.
 
 use shadowfit::glam::{DVec3, Mat4, UVec2, Vec3};
 use shadowfit::spot::SpotLight;
@@ -7,7 +7,7 @@ use shadowfit::{
     ShadowFitter, Technique,
 };
 
-/// Fits a frame, and checks all that is said of it.
+/// Fits a frame, and checks its maps and caster volumes.
 pub(crate) fn fit(fitter: &mut ShadowFitter, input: &FitInput) -> Result<(), FitError> {
     let technique = *fitter.technique();
     let maps = *fitter.fit(input)?;
@@ -19,7 +19,7 @@ pub(crate) fn fit(fitter: &mut ShadowFitter, input: &FitInput) -> Result<(), Fit
     Ok(())
 }
 
-/// The same of a scene that anything can be fitted to.
+/// Fits a simple scene, which works with any valid technique.
 pub(crate) fn fit_simple_scene(technique: &Technique) {
     let objects = [
         Aabb::new(Vec3::new(-80.0, -0.1, -80.0), Vec3::new(80.0, 0.0, 80.0)),
@@ -34,12 +34,12 @@ pub(crate) fn fit_simple_scene(technique: &Technique) {
         let views = [camera.frustum().expect("a camera")];
         let sun = Vec3::new(0.3, -0.8, 0.2);
         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
-        // A technique may ask for what cannot be fitted.
+        // A technique may have settings that cannot be fitted.
         let _ = fit(&mut fitter, &input);
     }
 }
 
-/// All numbers of a frame's maps.
+/// Checks all numbers of a frame's maps.
 pub(crate) fn check_maps(maps: &FittedMaps) {
     for map in maps.iter() {
         check_fit(&map.projection);
@@ -72,7 +72,7 @@ fn check_fit(fit: &LightProjection) {
     assert!(are_finite && fit.texel_size.min_element() > 0.0 && fit.depth_range > 0.0, "{fit:?}");
 }
 
-/// All numbers of a lamp's map.
+/// Checks all numbers of a lamp's map.
 pub(crate) fn check_spot(light: &SpotLight, resolution: UVec2) {
     let Ok(fit) = light.fit(resolution, DepthConvention::Reversed) else { return };
     let matrices = [fit.light_from_world, fit.clip_from_light, fit.clip_from_world, fit.uv_from_world];

@@ -1,4 +1,4 @@
-//! Every float of a fit's input from raw bits: an error or finite maps, never a panic.
+//! Fuzz target: every float of a fit's input from raw bits gives an error or finite maps, never a panic.
 
 use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2};
@@ -24,7 +24,7 @@ pub fn fit_input(data: &[u8]) {
     let mut fitter = ShadowFitter::new(&technique);
     let mut camera = camera(bytes);
     for _ in 0..FRAMES {
-        // What is wrong with one frame is not wrong with the next one.
+        // The next frame may be valid even if this one is not.
         let _ = frame(bytes, &mut fitter, &camera);
         camera.eye += bytes.dvec3(1.0);
         camera.forward += bytes.vec3(0.1);
@@ -71,14 +71,14 @@ fn camera(bytes: &mut Bytes) -> PerspectiveCamera {
     }
 }
 
-/// By one of the ways in.
+/// Returns a view through one of the constructors.
 fn view(bytes: &mut Bytes, camera: &PerspectiveCamera) -> Result<ViewFrustum, FitError> {
     let depth = depth(bytes);
     let way = bytes.below(6);
     let far = bytes.f32(1.0, 1e3);
     let mut clip_from_eye = camera.clip_from_world(depth);
     if way < 2 {
-        // A single element is another one.
+        // Replaces a single element.
         let mut elements = clip_from_eye.to_cols_array();
         elements[bytes.below(16)] = bytes.f32(-2.0, 2.0);
         clip_from_eye = Mat4::from_cols_array(&elements);
@@ -118,7 +118,7 @@ fn resolution(bytes: &mut Bytes) -> UVec2 {
     UVec2::new(side(), side())
 }
 
-/// A preset, or one whose settings are all made up.
+/// Returns a preset, or one with random settings.
 fn technique(bytes: &mut Bytes) -> Technique {
     use CasterPolicy::{DepthClamp, Extend, None, PerObject, SceneBounds};
     let preset = bytes.pick(&PRESETS).technique();

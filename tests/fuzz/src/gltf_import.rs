@@ -1,16 +1,16 @@
-//! A file of a scene is refused, or becomes one whose triangles are all finite, in every pose.
+//! Fuzz target: a scene file is refused, or it gives a scene with only finite triangles in every pose.
 
 use std::collections::BTreeMap;
 
 use shadowfit_scene::{Scene, decode_image, load_gltf_from_memory};
 
-/// A file that is longer tells nothing new.
+/// Longer files are skipped, since they show nothing new.
 const MOST_BYTES: usize = 1 << 17;
 
-/// A small file may draw millions of triangles, for which there is no time.
+/// Triangle limit, for time: a small file may draw millions of triangles.
 const MOST_TRIANGLES: usize = 1 << 14;
 
-/// Imports a `.gltf` or `.glb` file without others beside it, and poses it.
+/// Imports a `.gltf` or `.glb` file without external files, and poses it.
 pub fn gltf_import(data: &[u8]) {
     if data.len() > MOST_BYTES {
         return;

@@ -1,7 +1,8 @@
-//! What fuzzing feeds: a function for each target, which panics when a promise is broken.
+//! The fuzz targets: a function for each, which panics when a guarantee is violated.
 //!
-//! Those of this folder use nothing but what is public, and the tests of the workspace run them over the files of
-//! `corpus`, too. What only the inside of a crate can reach stands in a module `fuzzed` of that crate, with its own test.
+//! The targets in this folder use only public items, and the tests of the workspace also run them over the
+//! files of `corpus`. A target that needs private items is in a module `fuzzed` of its crate, with its own
+//! test.
 
 #[path = "../../../crates/shadowfit-report/src/program/path"]
 mod path {
@@ -43,13 +44,13 @@ pub use shadowfit_report::fuzzed::fit_file;
 pub use shadowfit_viewer::fuzzed::script;
 pub use technique_toml::technique_toml;
 
-/// Settings, and all that the viewer saves.
+/// Fuzzes settings, and all files that the viewer saves.
 pub fn settings_toml(data: &[u8]) {
     settings_toml::settings_toml(data);
     shadowfit_viewer::fuzzed::saved_toml(data);
 }
 
-/// Paths of cameras.
+/// Fuzzes camera paths.
 pub fn camera_path(data: &[u8]) {
     path::file::camera_path(data);
 }

@@ -1,4 +1,4 @@
-//! What engines save of the core reads back as it was written, and never brings a fit down.
+//! Fuzz target: data that engines save from the core reads back equal, and never makes a fit panic.
 
 use std::fmt::Debug;
 
@@ -20,10 +20,10 @@ struct Saved {
     lamp: Option<SpotLight>,
 }
 
-/// Reads what was saved, goes on from it, writes it and reads it again.
+/// Reads saved data, continues from it, writes it and reads it again.
 pub fn saved_json(data: &[u8]) {
     let Ok(value) = serde_json::from_slice::<serde_json::Value>(data) else { return };
-    // JSON has no infinity, which a number too large for f32 would become.
+    // JSON has no infinity, but a number too large for f32 would become one.
     if !fits_f32(&value) {
         return;
     }
@@ -34,7 +34,7 @@ pub fn saved_json(data: &[u8]) {
     go_on(&saved);
 }
 
-/// Compares what values print as, which tells all bits apart.
+/// Compares the `Debug` texts, which distinguish all bits.
 fn assert_same(a: &impl Debug, b: &impl Debug) {
     assert_eq!(format!("{a:?}"), format!("{b:?}"));
 }

@@ -1,4 +1,4 @@
-//! Settings that a file gives are written so that they read back the same.
+//! Fuzz target: accepted settings must read back equal after writing.
 
 use shadowfit_params::tool::Settings;
 use shadowfit_study::{settings_from_toml, settings_to_toml};

@@ -1,4 +1,4 @@
-//! A technique that a file gives is written so that it reads back the same, and can be fitted.
+//! Fuzz target: an accepted technique must read back equal after writing, and fitting must not panic.
 
 use shadowfit_study::NamedTechnique;
 

@@ -1,4 +1,4 @@
-//! Bevy's renderer as a contestant of the report: each technique is one of the entrants.
+//! Bevy's renderer as a contestant of the report. Each technique is one of the entrants.
 
 use anyhow::Result;
 use shadowfit::glam::DVec3;
@@ -17,7 +17,7 @@ const MIN_TO_EYE: f64 = 1e-4;
 pub(crate) struct Renderer {
     pub(crate) stage: Stage,
     pub(crate) entrants: Vec<Entrant>,
-    /// Updates of the app for each frame.
+    /// Updates of the app per frame.
     pub(crate) settle: u32,
     pub(crate) filter: LookupFilter,
 }
@@ -61,8 +61,8 @@ impl Contestant for Renderer {
         maps.lookup(self.stage.map_size(), self.filter, to_light).light_maps()
     }
 
-    /// Bevy's shader lights a white, fully rough surface by B. Burley's diffuse reflection ("Physically based shading at
-    /// Disney", 2012).
+    /// Returns the brightness of a white, fully rough surface by B. Burley's diffuse reflection ("Physically
+    /// based shading at Disney", 2012), as in Bevy's shader.
     fn brightness(&self, LitSurface { normal, to_eye, to_light }: &LitSurface) -> f64 {
         let (light, eye) = (normal.dot(*to_light).clamp(0.0, 1.0), normal.dot(*to_eye).max(MIN_TO_EYE));
         let half = (to_light + to_eye).normalize_or_zero().dot(*to_light).clamp(0.0, 1.0);

@@ -1,40 +1,40 @@
-//! The entrants of the report: cascades of Bevy or a fit of the plugin, each with a bias.
+//! Entrants of the report: Bevy's cascades or a fit of the plugin, each with a bias.
 
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 use bevy_shadowfit::{Fit, FitBias, FitSplits, FittedShadows};
 
-/// View depth at which Bevy's first cascade ends, in metres: its default.
+/// View depth at which Bevy's first cascade ends, in metres: Bevy's default.
 const FIRST_BOUND: f32 = 10.0;
 
-/// Whose cascades.
+/// Source of the cascades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Cascades {
     /// Bevy's own cascades
     Bevy,
-    /// This crate's fit that stands still
+    /// This crate's stable fit
     Stable,
-    /// This crate's fit that seldom moves
+    /// This crate's calm fit
     Calm,
-    /// This crate's fit to what the camera sees, by its depth prepass
+    /// This crate's fit to the visible points of the depth prepass
     Histogram,
     /// This crate's windows, read by coverage
     Windows,
 }
 
-/// Whose bias.
+/// Source of the bias.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Bias {
     /// The defaults of Bevy's light
     Bevys,
-    /// This crate's
+    /// This crate's bias
     Ours,
 }
 
-/// Whose bounds cascades have.
+/// Source of the bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Splits {
-    /// This crate's, in its own fits
+    /// This crate's bounds, for its own fits
     Ours,
     /// The defaults of Bevy's config
     Bevys,
@@ -51,13 +51,13 @@ impl Entrant {
     /// Bevy's own cascades with its own bias. The tables compare all others with it.
     pub(crate) const BEVY: Self = Self { cascades: Cascades::Bevy, bias: Bias::Bevys };
 
-    /// Every pair that the plugin offers: it leaves Bevy's own cascades with Bevy's bias.
+    /// Returns all valid pairs: Bevy's own cascades are combined only with Bevy's bias.
     pub(crate) fn of(cascades: &[Cascades], biases: &[Bias]) -> Vec<Self> {
         let entrants = cascades.iter().flat_map(|&cascades| biases.iter().map(move |&bias| Self { cascades, bias }));
         entrants.filter(|entrant| entrant.fit().is_some() || entrant.bias == Bias::Bevys).collect()
     }
 
-    /// Name in tables and files.
+    /// Returns the name in tables and files.
     pub(crate) fn name(&self) -> String {
         let cascades = match self.cascades {
             Cascades::Bevy => return "bevy".to_owned(),
@@ -73,12 +73,12 @@ impl Entrant {
         format!("{cascades}, {bias}")
     }
 
-    /// Whether the fit knows the view by the camera's depth prepass.
+    /// Returns whether the fit uses the camera's depth prepass.
     pub(crate) fn reads_depth(&self) -> bool {
         matches!(self.cascades, Cascades::Calm | Cascades::Histogram | Cascades::Windows)
     }
 
-    /// Bounds of Bevy's cascades in a view that ends at `far`, in metres.
+    /// Returns the bounds of Bevy's cascades in a view that ends at `far`, in metres.
     pub(crate) fn config(far: f32) -> CascadeShadowConfigBuilder {
         CascadeShadowConfigBuilder {
             num_cascades: 4,
@@ -88,7 +88,7 @@ impl Entrant {
         }
     }
 
-    /// Hands a new light to the plugin, if the cascades are one of its fits.
+    /// Adds the plugin's component to a new light, if the cascades are one of its fits.
     pub(crate) fn take(&self, light: &mut EntityWorldMut, splits: Splits) {
         let Some(fit) = self.fit() else { return };
         let bias = match self.bias {

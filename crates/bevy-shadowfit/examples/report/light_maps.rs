@@ -1,7 +1,7 @@
 //! A system that replaces the cascades of a frame by the cascades of another frame.
 //!
-//! Crawl compares the same points of the world in the maps of two frames. Bevy itself draws the second picture: the view
-//! of this frame with the cascades, bounds and biases of the frame before.
+//! Crawl compares the same world points in the maps of two frames. Bevy draws the second image: the view of
+//! this frame with the cascades, bounds and biases of the previous frame.
 
 use bevy::light::{CascadeShadowConfig, Cascades, SimulationLightSystems};
 use bevy::prelude::*;
@@ -13,7 +13,7 @@ use crate::sun_maps::SunMaps;
 #[derive(Component)]
 pub(crate) struct Sun;
 
-/// Maps of another frame that replace the light's maps, if there are some.
+/// Maps of another frame that replace the light's maps, if set.
 #[derive(Resource, Default)]
 pub(crate) struct Frozen(pub(crate) Option<SunMaps>);
 

@@ -1,28 +1,29 @@
-//! Measures the sun shadows in Bevy's own pictures against rays: with Bevy's cascades, and with the fits of this crate.
+//! Compares the sun shadows in Bevy's own images with rays: with Bevy's cascades, and with the fits of this
+//! crate.
 //!
-//! Bevy draws each frame of five scenes under three lights, once without shadows and once with each fit. The report divides
-//! the pictures, and compares every pixel with a ray toward the light. Another picture of the same view, with the maps of
-//! the frame before, shows the shadow edges that crawl.
+//! Bevy draws each frame of five scenes under three lights, once without shadows and once with each fit. The
+//! report divides the images, and compares every pixel with a ray toward the light. Another image of the same
+//! view, with the maps of the previous frame, shows the shadow edges that crawl.
 //!
 //! ```text
 //! cargo run --example report -- --shared DIR
 //! cargo run --example report -- --shared DIR --scenes town,ship --lights 45 --every 5 --json report.json
 //! ```
 //!
-//! `DIR` holds `peers/scenarios.json`, with the scenes, cameras and lights, and below `assets` the glTF files of the
-//! scenes. No window is opened; a software GPU will do. Columns:
+//! `DIR` must contain `peers/scenarios.json`, with the scenes, cameras and lights, and `assets` with the glTF
+//! files of the scenes. The report opens no window, and a software GPU is enough. Columns:
 //!
 //! | column | share of the pixels that face the light |
 //! |---|---|
-//! | `wrong %` | lit where the truth is dark or the other way round, edges included |
-//! | `crawl %` | of those at shadow edges: lit differently at the same point with the maps of the frame before |
-//! | `change %` | mean difference of their light to that with the maps of the frame before, edges or not |
-//! | `hole %` | lit because no cascade holds what should shadow them |
+//! | `wrong %` | the verdict differs from the truth, edges included |
+//! | `crawl %` | of the pixels at shadow edges: the same point has another verdict with the maps of the previous frame |
+//! | `change %` | mean difference of their light to the image with the maps of the previous frame, at edges and elsewhere |
+//! | `hole %` | lit because no cascade contains the caster |
 //! | `uncov %`, `missed %` | in no cascade, and not in the one that Bevy's shader reads for their view depth |
-//! | `false shadow %`, `false light %` | wrong away from edges: acne, and shadows that are cut short |
+//! | `false shadow %`, `false light %` | wrong away from edges: acne, and truncated shadows |
 //!
-//! The zone around an edge is as wide as the filter reaches, in texels of the map that is read. So `crawl %` of a fit
-//! with finer texels is a share of fewer pixels: `change %` compares fits on the same ones.
+//! The zone around an edge has the filter's radius, in texels of the map that is read. With finer texels,
+//! `crawl %` is therefore a share of fewer pixels. `change %` compares all fits on the same pixels.
 
 mod contestant;
 mod entrant;
@@ -49,43 +50,44 @@ use contestant::Renderer;
 use entrant::{Bias, Cascades, Entrant, Splits};
 use stage::{Stage, StageSettings};
 
-/// Measures the sun shadows of Bevy's pictures against ray-traced truth.
+/// Measures the sun shadows of Bevy's images against ray-traced truth.
 #[derive(Clone, Debug, Parser)]
 struct Arguments {
-    /// Folder that holds `peers/scenarios.json` and `assets`
+    /// Folder that contains `peers/scenarios.json` and `assets`
     #[arg(long, value_name = "DIR")]
     shared: PathBuf,
-    /// Take the paths at an ordinary speed of `peers/scenarios-slow.json`, for crawl
+    /// Use the paths at ordinary speed of `peers/scenarios-slow.json`, for crawl
     #[arg(long)]
     slow: bool,
-    /// Names of the scenes, all by default
+    /// Names of the scenes [default: all]
     #[arg(long, value_delimiter = ',')]
     scenes: Vec<String>,
-    /// Elevations of the light, in degrees, all by default
+    /// Elevations of the light, in degrees [default: all]
     #[arg(long, value_delimiter = ',')]
     lights: Vec<f64>,
-    /// Judge every so many frames of each path; fits that remember see no others but the one before each
+    /// Judge every Nth frame of each path. Fits also see the frame before each, and skip the others
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
-    /// Whose cascades
+    /// Sources of the cascades
     #[arg(long, value_delimiter = ',', default_values = ["bevy", "stable", "calm", "histogram", "windows"])]
     contestants: Vec<Cascades>,
-    /// Whose bias; Bevy's own cascades have Bevy's
+    /// Sources of the bias; Bevy's own cascades always use Bevy's bias
     #[arg(long, value_delimiter = ',', default_values = ["bevys", "ours"])]
     biases: Vec<Bias>,
-    /// Whose bounds the cascades of this crate's fits have
+    /// Source of the bounds of this crate's fits
     #[arg(long, default_value = "ours")]
     splits: Splits,
-    /// Depth bias of lights with Bevy's bias, in metres: Bevy's default unless it is given
+    /// Depth bias of lights with Bevy's bias, in metres
     #[arg(long, value_name = "METRES", default_value_t = DirectionalLight::DEFAULT_SHADOW_DEPTH_BIAS)]
     depth_bias: f32,
-    /// Normal bias of lights with Bevy's bias, in diagonals of a texel: Bevy's default unless it is given
+    /// Normal bias of lights with Bevy's bias, in diagonals of a texel
     #[arg(long, value_name = "N", default_value_t = DirectionalLight::DEFAULT_SHADOW_NORMAL_BIAS)]
     normal_bias: f32,
-    /// Updates of the app for each frame, the last of which is judged: fits by depth need some until they know the view
+    /// Updates of the app per frame. The last one is judged. Fits with a depth prepass need some updates
+    /// before they know the view
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     settle: u32,
-    /// Width and height of the pictures, in pixels
+    /// Width and height of the images, in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = size)]
     size: [u32; 2],
     /// Width and height of each shadow map, in texels
@@ -94,13 +96,13 @@ struct Arguments {
     /// Bevy's filter of shadow maps
     #[arg(long, default_value = "gaussian")]
     filter: Filter,
-    /// Leave crawl out, which draws each frame once more
+    /// Leave out crawl, which needs another image per frame
     #[arg(long)]
     no_crawl: bool,
     /// Write all numbers to a file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write the first picture of each scene and fit to a folder, also with the wrong pixels marked red
+    /// Write the first image of each scene and fit to a folder, also with the wrong pixels marked red
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
 }
@@ -124,7 +126,7 @@ impl Filter {
     /// Returns the same filter in the report's form.
     fn lookup(self) -> LookupFilter {
         match self {
-            // Nine hardware look-ups, of which the outermost lie up to 2.25 texels from the middle texel.
+            // Nine hardware look-ups. The outermost lie up to 2.25 texels from the central texel.
             Self::Gaussian => LookupFilter::Castano13,
             Self::Hardware2x2 => LookupFilter::Hardware2x2,
         }
@@ -133,7 +135,7 @@ impl Filter {
 
 fn size(text: &str) -> Result<[u32; 2], String> {
     let parts: Option<Vec<u32>> = text.split('x').map(|part| part.parse().ok().filter(|side| *side > 0)).collect();
-    parts.and_then(|parts| parts.try_into().ok()).ok_or_else(|| "two numbers are wanted, such as 320x180".to_owned())
+    parts.and_then(|parts| parts.try_into().ok()).ok_or_else(|| "expected two numbers, such as 320x180".to_owned())
 }
 
 fn main() -> Result<()> {
@@ -164,7 +166,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Judges the wanted frames of all scenes.
+/// Judges the selected frames of all scenes.
 fn judge(arguments: &Arguments, scenarios: &Scenarios, renderer: &mut Renderer, judging: &mut Judging) -> Result<()> {
     let source = Source { assets: Some(arguments.shared.join("assets")), triangles: None };
     for (index, scene) in scenarios.scenes.iter().enumerate() {
@@ -219,7 +221,7 @@ impl Arguments {
         self.lights.is_empty() || self.lights.contains(&frame.elevation_deg)
     }
 
-    /// Returns how the numbers were measured.
+    /// Returns the settings and times of the measurement.
     fn run(&self, times: JudgeTimes) -> Value {
         let JudgeTimes { drawing, tracing, judging, frames, different } = times;
         json!({
@@ -239,7 +241,7 @@ impl Arguments {
     }
 }
 
-/// Writes a picture as `<name>.png`, and with its wrong pixels marked as `<name>, wrong.png`.
+/// Writes an image as `<name>.png`, and with its wrong pixels marked as `<name>, wrong.png`.
 fn write_pictures(folder: &Path, name: &str, picture: &JudgedPicture<'_>) -> Result<()> {
     let unshadowed = picture.unshadowed.context("Bevy's pictures are brightness")?;
     // The brightest surface without shadows is white.

@@ -1,7 +1,7 @@
-//! A Bevy app without a window that draws one picture an update, and gives it back before the next one.
+//! A Bevy app without a window that draws one image per update, and reads it back before the next one.
 //!
-//! Bevy's pipelined renderer is left out: an update draws what the main world holds at its end, and the copy of the
-//! picture is submitted and waited for after that, so that a picture always belongs to the camera and the light that
+//! Bevy's pipelined renderer is disabled. An update draws the main world's state at its end. Only then is the
+//! copy of the image submitted and waited for. So an image always belongs to the camera and the light that
 //! were set before its update.
 
 use anyhow::{Result, anyhow};
@@ -35,14 +35,14 @@ use crate::light_maps::{self, Frozen, Live, Sun};
 use crate::sun_maps::SunMaps;
 use crate::view_depth::{self, ViewDepthsOf};
 
-/// Bytes of a pixel of the picture: four f32.
+/// Bytes per pixel of the image: four f32.
 const PIXEL_BYTES: u32 = 16;
 /// Updates after a scene has been set, until all its meshes are on the GPU.
 const SCENE_UPDATES: u32 = 4;
 /// Updates after a light has windows for the first time, until Bevy's shader reads them.
 const SHADER_UPDATES: u32 = 20;
 
-/// The app, and what it shows.
+/// The app and its scene.
 pub(crate) struct Stage {
     app: App,
     camera: Entity,
@@ -51,16 +51,16 @@ pub(crate) struct Stage {
     settings: StageSettings,
     objects: Vec<Entity>,
     sun: Option<Entity>,
-    /// Whether Bevy's shader was extended for windows.
+    /// Whether Bevy's shader has been extended for windows.
     reads_windows: bool,
-    /// Updates so far, each of which drew the view.
+    /// Number of updates so far. Each one drew the view.
     pub(crate) updates: u64,
 }
 
-/// What is the same in all pictures.
+/// Settings that are the same for all images.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StageSettings {
-    /// Width and height of pictures, in pixels.
+    /// Width and height of images, in pixels.
     pub(crate) size: [u32; 2],
     /// Width and height of each shadow map, in texels.
     pub(crate) map_size: u32,
@@ -73,7 +73,7 @@ pub(crate) struct StageSettings {
 }
 
 impl Stage {
-    /// Starts Bevy. The scene is empty.
+    /// Starts Bevy with an empty scene.
     pub(crate) fn new(settings: &StageSettings) -> Self {
         let mut app = new_app();
         app.insert_resource(GlobalAmbientLight::NONE)
@@ -120,7 +120,7 @@ impl Stage {
         }
     }
 
-    /// Updates until Bevy's shader can read windows, which the first light that has them asks for.
+    /// Updates until Bevy's shader can read windows. A temporary light with windows triggers the extension.
     fn wait_for_windows(&mut self) {
         let fitted = FittedShadows { fit: Fit::Windows, ..default() };
         let light = self.app.world_mut().spawn((DirectionalLight::default(), fitted)).id();
@@ -129,7 +129,7 @@ impl Stage {
         self.reads_windows = true;
     }
 
-    /// Replaces the light, and with it all that fits remember.
+    /// Replaces the light, and thereby resets the memory of fits.
     pub(crate) fn set_light(&mut self, frame: &Frame, entrant: Entrant) {
         if entrant.cascades == Cascades::Windows && !self.reads_windows {
             self.wait_for_windows();
@@ -156,7 +156,7 @@ impl Stage {
         }
     }
 
-    /// Moves the camera to a frame's.
+    /// Moves the camera to the pose of a frame.
     pub(crate) fn set_camera(&mut self, frame: &Frame) {
         let world_from_view = frame.view_from_world().inverse().to_cols_array().map(|number| number as f32);
         let projection = PerspectiveProjection {
@@ -171,20 +171,20 @@ impl Stage {
         camera.insert((pose, Projection::Perspective(projection)));
     }
 
-    /// Lets the app update so many times, as a game would while the camera stands.
+    /// Updates the app this many times, as a game would with a still camera.
     pub(crate) fn settle(&mut self, updates: u32) {
         for _ in 0..updates {
             self.update();
         }
     }
 
-    /// The picture of the next update. Red channels, rows from the top.
+    /// Updates once and returns the image: red channels, in rows from the top.
     pub(crate) fn draw(&mut self) -> Result<Vec<f32>> {
         self.update();
         self.read_back()
     }
 
-    /// The picture without shadows.
+    /// Draws the image without shadows.
     pub(crate) fn draw_unshadowed(&mut self) -> Result<Vec<f32>> {
         self.set_shadows(false);
         let picture = self.draw();
@@ -192,14 +192,15 @@ impl Stage {
         picture
     }
 
-    /// From now on, the points of pictures choose among cascades by their view depth in another frame, if there is one.
+    /// Makes points select cascades by their view depth in another frame, if there is one, in all images from
+    /// now on.
     pub(crate) fn set_view_depths(&mut self, other: Option<&Frame>) {
         let world_from_view = |frame: &Frame| DMat4::from_cols_array(&frame.view).inverse();
         let renderer = self.app.sub_app_mut(RenderApp).world_mut();
         renderer.resource_mut::<ViewDepthsOf>().0 = other.map(world_from_view);
     }
 
-    /// The picture with the maps of another frame in place of the light's own.
+    /// Draws the image with the maps of another frame instead of the light's own.
     pub(crate) fn draw_with(&mut self, maps: &SunMaps) -> Result<Vec<f32>> {
         self.app.world_mut().resource_mut::<Frozen>().0 = Some(maps.clone());
         let picture = self.draw();
@@ -212,13 +213,13 @@ impl Stage {
         picture
     }
 
-    /// The light's own maps in the last update.
+    /// Returns the light's own maps in the last update.
     pub(crate) fn maps(&self) -> Result<SunMaps> {
         let live = &self.app.world().resource::<Live>().0;
-        live.clone().ok_or_else(|| anyhow!("Bevy made no cascades for the camera"))
+        live.clone().ok_or_else(|| anyhow!("Bevy computed no cascades for the camera"))
     }
 
-    /// Texels across and down each shadow map.
+    /// Returns the width of each shadow map in texels.
     pub(crate) fn map_size(&self) -> u32 {
         self.settings.map_size
     }
@@ -236,12 +237,12 @@ impl Stage {
         self.updates += 1;
     }
 
-    /// The red channels of the picture of the last update.
+    /// Returns the red channels of the last update's image.
     fn read_back(&self) -> Result<Vec<f32>> {
         let world = self.app.sub_app(RenderApp).world();
         let (device, queue) = (world.resource::<RenderDevice>(), world.resource::<RenderQueue>());
         let pictures = world.resource::<RenderAssets<GpuImage>>();
-        let picture = pictures.get(&self.picture).ok_or_else(|| anyhow!("Bevy drew no picture"))?;
+        let picture = pictures.get(&self.picture).ok_or_else(|| anyhow!("Bevy drew no image"))?;
         let [width, height] = self.settings.size;
         let row_bytes = RenderDevice::align_copy_bytes_per_row((width * PIXEL_BYTES) as usize);
         let buffer = device.create_buffer(&BufferDescriptor {
@@ -267,7 +268,7 @@ impl Stage {
     }
 }
 
-/// Bevy without a window, an event loop or a render thread.
+/// Creates Bevy without a window, an event loop or a render thread.
 fn new_app() -> App {
     let window = WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
     let log = LogPlugin { level: Level::WARN, ..default() };
@@ -280,14 +281,14 @@ fn new_app() -> App {
     app
 }
 
-/// The image that the camera draws into.
+/// Creates the image that the camera draws into.
 fn add_picture(world: &mut World, [width, height]: [u32; 2]) -> Handle<Image> {
     let mut image = Image::new_target_texture(width, height, TextureFormat::Rgba32Float, None);
     image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
     world.resource_mut::<Assets<Image>>().add(image)
 }
 
-/// Makes the mesh of an object. Its normals are perpendicular to its triangles, as rays find them.
+/// Creates the mesh of an object. Its normals are perpendicular to its triangles, as for rays.
 fn mesh(object: &[Corners]) -> Mesh {
     let positions: Vec<[f32; 3]> = object.iter().flatten().map(|corner| corner.to_array()).collect();
     let normal = |[a, b, c]: &Corners| {
@@ -300,7 +301,7 @@ fn mesh(object: &[Corners]) -> Mesh {
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
 }
 
-/// Makes the material of all triangles: it reflects light from both sides and casts shadows with both.
+/// Creates the material of all triangles: it reflects light from both sides and casts shadows with both.
 fn white() -> StandardMaterial {
     StandardMaterial {
         base_color: Color::WHITE,

@@ -1,15 +1,17 @@
-//! View depths of another frame: the same picture, but its points choose among cascades as they did there.
+//! View depths of another frame: the same image, but its points select cascades by the depths of the other
+//! frame.
 //!
-//! Which cascades a point reads, and how they are blended, follows from its depth in the view. What a point looked like
-//! in the frame before can only be drawn in the view of this frame if it has the depth that it had in that one. So the
-//! renderer gets the view of the frame before, and a projection from there to where this frame's camera sees the point:
+//! The view depth of a point decides which cascades it reads, and how they are blended. To draw a point in
+//! this frame's view as it looked in the previous frame, it must have the view depth of the previous frame.
+//! The renderer therefore gets the view of the previous frame, and a projection from there to the clip space
+//! of this frame:
 //!
 //! ```text
 //! clip of this frame <- view of this frame <- world <- view of the frame before
 //! ```
 //!
-//! The main world keeps its camera, so that neither culling nor fits see anything of it. The eye that Bevy's shader
-//! lights for is that of the frame before, too.
+//! The main world keeps its camera, so that neither culling nor fits are affected. Bevy's shader also uses
+//! the eye of the previous frame for lighting.
 
 use bevy::math::DMat4;
 use bevy::prelude::*;
@@ -17,7 +19,7 @@ use bevy::render::camera::ExtractedCamera;
 use bevy::render::view::ExtractedView;
 use bevy::render::{Render, RenderApp, RenderSystems};
 
-/// World from view of the frame whose view depths the renderer takes, if they are not its own.
+/// World from view of the frame whose view depths the renderer uses, if it is not the current frame.
 #[derive(Resource, Default)]
 pub(crate) struct ViewDepthsOf(pub(crate) Option<DMat4>);
 

@@ -1,4 +1,4 @@
-//! The maps of a sun in a view, in the report's form of a look-up.
+//! Maps of a sun in a view, converted to the report's look-up.
 
 use bevy::light::cascade::Cascade;
 use bevy::light::{CascadeShadowConfig, DirectionalLight};
@@ -28,8 +28,9 @@ impl SunMaps {
         }
     }
 
-    /// Returns the look-up of Bevy's shader (`shadows.wesl` and `shadow_sampling.wesl` of `bevy_pbr` 0.20). For windows it
-    /// is the look-up that the plugin adds (`windows.wesl`). Maps have `size` texels across and down.
+    /// Returns the look-up of Bevy's shader (`shadows.wesl` and `shadow_sampling.wesl` of `bevy_pbr` 0.20).
+    /// For windows it is the look-up that the plugin adds (`windows.wesl`). Maps have a width of `size`
+    /// texels.
     pub(crate) fn lookup(&self, size: u32, filter: LookupFilter, to_light: DVec3) -> ShadowLookup {
         let CascadeShadowConfig { bounds, overlap_proportion, .. } = &self.config;
         let map = |(cascade, bound): (&Cascade, &f32)| LookupMap {
@@ -37,7 +38,7 @@ impl SunMaps {
             texel: cascade.texel_size.into(),
             bound: (*bound).into(),
         };
-        // Windows all end where shadows do, and come finest first.
+        // All windows end at the shadow distance, and the finest comes first.
         let has_windows = bounds.len() > 1 && bounds.iter().all(|bound| *bound == bounds[0]);
         ShadowLookup {
             maps: self.cascades.iter().zip(bounds).map(map).collect(),

@@ -1,5 +1,5 @@
-//! Judges the maps of both halves against rays in the background: about once a second while they change, and once after
-//! the last change.
+//! Measures the maps of both halves against rays in the background: about once per second while they change,
+//! and once after the last change.
 
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -19,10 +19,10 @@ use crate::sun_maps::SunMaps;
 
 /// Least time from the start of a measurement to the start of the next one.
 const INTERVAL: Duration = Duration::from_secs(1);
-/// Pixels of a measured picture.
+/// Pixels of a measured image.
 const PIXELS: f32 = 160.0 * 90.0;
 
-/// The measurements of a half.
+/// Measurements of a half.
 #[derive(Component, Default)]
 pub(crate) struct Measured {
     /// Subject and start of the last measurement.
@@ -30,15 +30,15 @@ pub(crate) struct Measured {
     task: Option<Task<Figures>>,
     /// Latest figures.
     pub(crate) figures: Option<Figures>,
-    /// Whether the figures belong to the present picture.
+    /// Whether the figures belong to the current image.
     pub(crate) is_current: bool,
 }
 
-/// The camera and the maps of a half: with the scene they decide its picture.
+/// Camera and maps of a half. Together with the scene they decide its image.
 #[derive(Clone, Debug, PartialEq)]
 struct Subject {
     camera: PerspectiveCamera,
-    /// Pixels down the half.
+    /// Height of the half in pixels.
     height: u32,
     lookup: ShadowLookup,
 }
@@ -46,9 +46,9 @@ struct Subject {
 /// Figures of a half. They are NaN if no surface faces the light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Figures {
-    /// Pixels of the window that a texel covers along its worse axis: the quantile of 95% of the pixels.
+    /// Window pixels per texel along the texel's worse axis: the quantile of 95% of the pixels.
     pixels_per_texel: f64,
-    /// Wrongly lit pixels, in per cent of the pixels that face the light.
+    /// Share of the pixels facing the light that are wrong, in per cent.
     wrong: f64,
 }
 
@@ -122,7 +122,7 @@ impl Subject {
         let factors = self.lookup.factors(tracer, &truth, content.extent().into());
         let maps = self.lookup.light_maps();
         let figures = judge(tracer, &truth, &maps.picture_maps(), &factors, |_| true).tally.figures();
-        // A pixel of the measured picture is wider than a pixel of the window by this factor.
+        // A pixel of the measured image is wider than a pixel of the window by this factor.
         let scale = f64::from(self.height) / f64::from(size[1]);
         let [_, texel, _] = figures.and_then(|figures| figures.pixels_per_texel).unwrap_or([f64::NAN; 3]);
         Figures { pixels_per_texel: texel * scale, wrong: figures.map_or(f64::NAN, |figures| figures.wrong) }

@@ -1,4 +1,4 @@
-//! The camera and the sun, the keys that move them, and a path that the camera takes by itself.
+//! Camera and sun, the keys that move them, and an automatic camera path.
 
 use bevy::input::mouse::AccumulatedMouseMotion;
 use bevy::prelude::*;
@@ -11,25 +11,25 @@ const SPEED: f32 = 0.03;
 const SPEEDS: [f32; 2] = [1.0, 20.0];
 /// Factor of the speed while Shift is pressed.
 const FASTER: f32 = 4.0;
-/// Turn of the camera by arrow keys, in radians per second.
+/// Rotation speed of the camera by arrow keys, in radians per second.
 const TURN: f32 = 1.0;
-/// Turn of the sun, in radians per second.
+/// Rotation speed of the sun, in radians per second.
 const SUN_TURN: f32 = 0.4;
-/// Turn of the camera by a mouse drag, in radians per pixel.
+/// Rotation of the camera by a mouse drag, in radians per pixel.
 const DRAG: f32 = 0.003;
-/// Greatest angle above and below the horizon, in radians: no direction is vertical.
+/// Greatest angle above and below the horizon, in radians, so that no direction is vertical.
 const MAX_HEIGHT: f32 = 1.5;
 /// Least height of the sun, in radians.
 const MIN_SUN: f32 = 0.05;
-/// Longest step of time, in seconds, so that slow frames do not jump.
+/// Longest time step, in seconds, so that slow frames do not jump.
 const MAX_STEP: f32 = 0.1;
-/// Turns of the path, in radians per second. Its radius is one second of flight.
+/// Angular speed on the path, in radians per second. Its radius is one second of flight.
 const PATH_TURN: f32 = 0.25;
 
 /// A direction in angles, in radians.
 #[derive(Clone, Copy, Debug)]
 struct Angles {
-    /// Turn about the vertical, from +z toward +x.
+    /// Rotation about the vertical, from +z toward +x.
     turn: f32,
     /// Height above the horizon.
     height: f32,
@@ -53,9 +53,9 @@ pub(crate) struct Flight {
     eye: Vec3,
     look: Angles,
     to_sun: Angles,
-    /// Metres per second.
+    /// Speed in metres per second.
     speed: f32,
-    /// Time on the path, in seconds, while the camera takes it.
+    /// Time on the path, in seconds, while the camera follows it.
     path: Option<f32>,
 }
 
@@ -72,7 +72,7 @@ impl Flight {
         }
     }
 
-    /// World from camera.
+    /// Returns the matrix from camera to world.
     fn camera(&self) -> Transform {
         // The path is a circle that begins at the eye, sideways and forward. The camera keeps its direction.
         let (sin, cos) = (self.path.unwrap_or(0.0) * PATH_TURN).sin_cos();
@@ -107,7 +107,7 @@ pub(crate) fn fly(
     flight.to_sun.height = height.clamp(MIN_SUN, MAX_HEIGHT);
     flight.path = flight.path.map(|seconds| seconds + step);
     if keys.just_pressed(Key::KeyT) {
-        // After the path, the flight goes on from its end.
+        // After the path, flight continues from its end.
         flight.eye = flight.camera().translation;
         flight.path = if flight.path.is_none() { Some(0.0) } else { None };
     }

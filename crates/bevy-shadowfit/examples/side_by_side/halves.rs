@@ -1,6 +1,6 @@
-//! The two halves of the window: a camera, a sun and a line of text each, and the keys for their shadows.
+//! The two halves of the window: a camera, a sun and a line of text for each, and the keys for their shadows.
 //!
-//! A light lights only views whose layers it shares. The meshes are on the layers of both halves.
+//! A light lights only views that share one of its layers. The meshes are on the layers of both halves.
 
 use bevy::camera::Viewport;
 use bevy::camera::visibility::RenderLayers;
@@ -12,13 +12,13 @@ use bevy_shadowfit::{Fit, FitBias, FitSplits, FittedShadows};
 use crate::figures::Measured;
 use crate::scene::Shown;
 
-/// Sizes of the maps, in texels a side.
+/// Widths of the maps, in texels.
 const MAP_SIZES: [usize; 4] = [512, 1024, 2048, 4096];
 /// Fits of the right half.
 const FITS: [Fit; 4] = [Fit::Stable, Fit::Calm, Fit::Histogram, Fit::Windows];
-/// View depth at which shadows end, in metres: Bevy's default. Shadows of smaller scenes end earlier.
+/// View depth at which shadows end, in metres: Bevy's default. In smaller scenes shadows end earlier.
 const MAX_DISTANCE: f32 = 150.0;
-/// View depth at which Bevy's first cascade ends, in metres: its default.
+/// View depth at which Bevy's first cascade ends, in metres: Bevy's default.
 const FIRST_BOUND: f32 = 10.0;
 /// Height of the text, in per cent of the width of a half: the longest line fits.
 const TEXT_SIZE: f32 = 1.75;
@@ -81,7 +81,7 @@ pub(crate) fn divide(window: Single<&Window>, mut cameras: Query<(&Side, &mut Ca
     }
 }
 
-/// Chooses the shadows by keys.
+/// Changes the shadow settings by keys.
 pub(crate) fn choose(
     keys: Res<ButtonInput<KeyCode>>,
     mut maps: ResMut<DirectionalLightShadowMap>,
@@ -101,7 +101,7 @@ pub(crate) fn choose(
     }
 }
 
-/// Returns the value after `current`, and the first one after the last.
+/// Returns the value after `current`, or the first one after the last.
 fn next<T: Copy + PartialEq>(all: &[T], current: &T) -> T {
     let at = all.iter().position(|one| one == current);
     all[at.map_or(0, |at| (at + 1) % all.len())]

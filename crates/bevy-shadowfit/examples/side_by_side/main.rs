@@ -1,7 +1,8 @@
 //! Bevy's own cascades and shadowfit's side by side: one scene, one camera pose, two lights, one window.
 //!
-//! The left half shows Bevy's cascades, the right half those of the plugin. Over each half stand two figures against
-//! ray-traced truth: how many pixels the texels of the maps cover on screen, and how many pixels are lit wrongly.
+//! The left half shows Bevy's cascades, the right half the plugin's. Each half displays two figures measured
+//! against ray-traced truth: how many pixels the texels of the maps cover on screen, and how many pixels are
+//! lit wrongly.
 //!
 //! ```text
 //! cargo run --release --example side_by_side
@@ -13,13 +14,13 @@
 //! |---|---|
 //! | W A S D, Q E | fly, down and up; faster with Shift |
 //! | arrows, mouse drag | look |
-//! | L K, I O | turn the sun, raise and lower it |
-//! | F, B, P | next fit of the right half, whose bias, whose splits |
+//! | L K, I O | rotate the sun, raise and lower it |
+//! | F, B, P | next fit, bias and splits of the right half |
 //! | M | next size of the maps of both halves |
-//! | T | starts and stops a camera path |
+//! | T | start and stop a camera path |
 //!
-//! The figures are measured in the background: the report's look-up simulates Bevy's shader on the CPU. The example `report`
-//! measures the pictures that Bevy draws.
+//! The figures are measured in the background, with a CPU simulation of Bevy's shader. The example `report`
+//! measures the images that Bevy draws.
 
 mod figures;
 mod flight;
@@ -48,12 +49,12 @@ const WINDOW_SIZE: [u32; 2] = [1280, 720];
 /// Shows Bevy's cascades and shadowfit's side by side.
 #[derive(Clone, Debug, Parser)]
 struct Arguments {
-    /// glTF file; the built-in courtyard without it
+    /// glTF file [default: the built-in courtyard]
     scene: Option<PathBuf>,
-    /// Save a picture of the window to a PNG file, then end
+    /// Save an image of the window to a PNG file, then exit
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
-    /// Frames before the picture, which also waits for its figures
+    /// Frames before the image, which also waits for its figures
     #[arg(long, value_name = "N", default_value_t = 20, requires = "picture")]
     after: u32,
 }
@@ -80,12 +81,12 @@ fn main() -> Result<AppExit> {
     Ok(app.run())
 }
 
-/// Saves a picture after a number of frames, once the halves have their figures, and ends the app.
+/// Saves an image after a number of frames, once the halves have their figures, and exits the app.
 fn take_picture(app: &mut App, file: PathBuf, after: u32) {
     let (mut frames, mut is_taken) = (0, false);
     let take = move |measured: Query<&Measured>, mut commands: Commands| {
         frames += 1;
-        // The text of the frame before has shown the figures already.
+        // The text of the previous frame already contained the figures.
         if is_taken || frames <= after || !measured.iter().all(|measured| measured.is_current) {
             return;
         }

@@ -1,4 +1,4 @@
-//! The scene that is shown, at rest: a mesh for each instance, in world space, visible from both sides, as rays see it.
+//! The displayed scene at rest: one mesh per instance, in world space, visible from both sides, as for rays.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -19,7 +19,7 @@ use shadowfit_study::SceneRays;
 const FOV_Y: f32 = 0.785;
 /// Direction toward the sun if the scene has none.
 const TO_SUN: Vec3 = Vec3::new(0.41, 0.68, 0.6);
-/// Least extent of a scene, in metres: a scene without triangles has a camera as well.
+/// Least extent of a scene, in metres. A scene without triangles also has a camera.
 const MIN_EXTENT: f32 = 1.0;
 
 /// A scene and its pose. World space is right-handed, y up, in metres.
@@ -30,16 +30,16 @@ pub(crate) struct Content {
     rays: OnceLock<SceneRays>,
 }
 
-/// The scene that is shown.
+/// The displayed scene.
 #[derive(Resource, Clone)]
 pub(crate) struct Shown(pub(crate) Arc<Content>);
 
 impl Content {
-    /// Loads a glTF file, or makes the built-in courtyard.
+    /// Loads a glTF file, or creates the built-in courtyard.
     ///
     /// # Errors
     ///
-    /// If the file is not a scene.
+    /// If the file is not a valid scene.
     pub(crate) fn load(file: Option<&Path>) -> Result<Self, SceneError> {
         let scene = file.map_or_else(|| Ok(default_scene()), scenes::load_gltf)?;
         file.iter().flat_map(|file| scene.warnings(file)).for_each(|warning| eprintln!("{warning}"));
@@ -59,7 +59,8 @@ impl Content {
         self.rays.get_or_init(|| SceneRays::from_origin(&self.scene, &self.pose, fit_glam::DVec3::ZERO))
     }
 
-    /// Returns the first camera of the scene. A scene without one is seen from above a corner, toward its middle.
+    /// Returns the first camera of the scene. A scene without one is viewed from above a corner, toward its
+    /// centre.
     pub(crate) fn start(&self) -> Transform {
         let vec3 = |v: fit_glam::Vec3| Vec3::from_array(v.to_array());
         if let Some(placed) = self.scene.cameras.first().and_then(|camera| camera.placement(&self.pose)) {
@@ -161,7 +162,8 @@ fn material(of: &scenes::Material, base_color_texture: Option<Handle<Image>>) ->
             scenes::AlphaMode::Mask { cutoff } => AlphaMode::Mask(of.alpha.least_opaque().unwrap_or(cutoff)),
             scenes::AlphaMode::Blend => AlphaMode::Blend,
         },
-        // Rays meet both sides of a triangle. A triangle with a single side would let light through in the maps alone.
+        // Rays hit both sides of a triangle. A single-sided triangle would transmit light in the maps, but
+        // not for rays.
         cull_mode: None,
         double_sided: true,
         ..default()

@@ -1,4 +1,4 @@
-//! What the plugin does to lights, in an app without a window or a GPU.
+//! Effects of the plugin on lights, in an app without a window or a GPU.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::primitives::Aabb;
@@ -10,7 +10,7 @@ use bevy_shadowfit::prelude::*;
 
 use crate::support::*;
 
-/// A new number each time, the same in each run.
+/// Returns the next pseudo-random number, in the same sequence in each run.
 fn random(state: &mut u64) -> f32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 40) as f32 / (1_u64 << 24) as f32
@@ -48,10 +48,10 @@ fn bounds_are_those_of_the_maps_until_the_next_frame_begins_and_end_where_the_us
     assert_eq!(bounds.last(), users.bounds.last());
     assert_eq!(config(&app, light).overlap_proportion, users.overlap_proportion);
     assert_eq!(cascades(&app, light, camera).len(), 4);
-    // In the user's systems the config is the user's.
+    // In the user's systems the config contains the user's values.
     let seen = seen_in_update(&mut app, light);
     assert_eq!(seen, users.bounds);
-    assert!(!was_changed(&mut app, light), "the plugin's own changes are not told");
+    assert!(!was_changed(&mut app, light), "change detection ignores the plugin's changes");
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn lights_without_the_component_are_bevys() {
     assert_same(&cascades(&app, light, camera), &bevys_cascades(&app, light, camera));
 }
 
-/// The largest texel on screen that a light's cascades have beyond 2 m, as a share of its view depth.
+/// Returns the largest texel on screen of a light's cascades beyond 2 m, as a share of its view depth.
 fn coarsest(app: &App, light: Entity, camera: Entity) -> f32 {
     let (config, cascades) = (config(app, light), cascades(app, light, camera));
     let nearest =
@@ -334,7 +334,7 @@ fn stable_maps_hold_far_meshes_that_come_with_another_number_of_cascades() {
     }
 }
 
-/// A flat ground with a high mast at its corner, as one mesh: nearly all of its box is air.
+/// Returns a flat ground with a high mast at its corner, as one mesh. Nearly all of its box is empty.
 fn ground_and_mast() -> Mesh {
     let mut positions = Vec::new();
     let mut quad = |a: [f32; 3], b: [f32; 3], c: [f32; 3], d: [f32; 3]| positions.extend([a, b, c, a, c, d]);
@@ -349,7 +349,7 @@ fn ground_and_mast() -> Mesh {
 
 #[test]
 fn large_meshes_count_with_boxes_around_their_triangles() {
-    // Boxes are computed beside the frames: ends with the frame in which texels are finer than `enough`.
+    // Boxes are computed in the background. Ends with the first frame whose texels are finer than `enough`.
     let texel = |is_whole: bool, frames: usize, enough: f32| {
         let mut app = app();
         let light = spawn_sun(&mut app, FittedShadows { fit: Fit::Histogram, ..default() });

@@ -1,4 +1,4 @@
-//! Tests of the plugin in one program: each program links all of Bevy.
+//! Tests of the plugin in a single program, because each program links all of Bevy.
 
 mod cascades;
 mod pictures;

@@ -1,4 +1,4 @@
-//! What the plugin does where Bevy draws: what a picture shows comes back from the GPU, and windows are read.
+//! Effects of the plugin with a GPU: visible demand is read back, and the shader reads windows.
 
 use std::sync::{Arc, Mutex};
 
@@ -16,14 +16,14 @@ use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use bevy_shadowfit::prelude::*;
 
-/// An app without a window, its light, and the picture of its last frame.
+/// An app without a window, its light, and its last image.
 struct Stage {
     app: App,
     light: Entity,
     picture: Arc<Mutex<Vec<u8>>>,
 }
 
-/// Bevy without a window.
+/// Creates Bevy without a window.
 fn app() -> App {
     let window = WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
     let mut plugins = DefaultPlugins.set(window).disable::<WinitPlugin>();
@@ -41,13 +41,14 @@ fn app() -> App {
     app
 }
 
-/// A ground with a post and a ring. The light is Bevy's where no fit is given. A wall stands slantwise behind the post, or
-/// does not: it hides everything beyond, and its box, which holds the eye, says nothing of that.
+/// Creates a ground with a post and a ring. Without a fit, the light keeps Bevy's cascades. An optional
+/// slanted wall behind the post hides everything beyond it. Its bounding box contains the eye, so that boxes
+/// alone do not show this.
 fn stage(fit: Option<Fit>, has_prepass: bool, has_wall: bool, samples: Msaa) -> Stage {
     let mut app = app();
     let world = app.world_mut();
     world.insert_resource(GlobalAmbientLight::NONE);
-    // Rows of 256 bytes come back without padding.
+    // Rows of 256 bytes are read back without padding.
     let mut target = Image::new_target_texture(192, 108, TextureFormat::Rgba8UnormSrgb, None);
     target.texture_descriptor.usage |= TextureUsages::COPY_SRC;
     let target = world.resource_mut::<Assets<Image>>().add(target);
@@ -87,7 +88,8 @@ fn stage(fit: Option<Fit>, has_prepass: bool, has_wall: bool, samples: Msaa) -> 
 }
 
 impl Stage {
-    /// Goes on until bounds differ from those given, which depends on when the GPU is done, and then a little longer.
+    /// Updates until bounds differ from the given ones, which depends on when the GPU finishes, and then a
+    /// little longer.
     fn bounds_other_than(mut self, given: &[f32]) -> Vec<f32> {
         for _ in 0..1000 {
             if self.bounds() != given {
@@ -106,13 +108,13 @@ impl Stage {
         self.app.world().get::<CascadeShadowConfig>(self.light).expect("a light").bounds.clone()
     }
 
-    /// Size of the finest texel, in metres.
+    /// Returns the size of the finest texel, in metres.
     fn texel(&self) -> f32 {
         let cascades = self.app.world().get::<Cascades>(self.light).expect("a light");
         cascades.cascades.values().flatten().map(|cascade| cascade.texel_size).fold(f32::MAX, f32::min)
     }
 
-    /// Brightness of each pixel.
+    /// Returns the brightness of each pixel.
     fn brightness(&self) -> Vec<u8> {
         self.picture.lock().unwrap().as_chunks::<4>().0.iter().map(|pixel| pixel[1]).collect()
     }
@@ -143,7 +145,7 @@ fn gpu_every_fit_draws_the_shadows_that_bevys_own_cascades_draw() {
         let ours = stage(Some(fit), true, false, Msaa::Off);
         let is_other = |(one, other): &(&u8, &u8)| one.abs_diff(**other) > 60;
         let different = ours.brightness().iter().zip(&wanted).filter(is_other).count();
-        // Edges are elsewhere by a part of Bevy's texels.
+        // Edges differ by a part of Bevy's texels.
         assert!(different < 150, "{fit:?}: {different} of {} pixels", wanted.len());
         let same_bounds = ours.bounds().iter().all(|bound| *bound == ours.bounds()[3]);
         assert_eq!(same_bounds, fit == Fit::Windows, "{:?}", ours.bounds());

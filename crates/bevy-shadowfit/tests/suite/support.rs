@@ -1,4 +1,4 @@
-//! An app without a window or a GPU, a scene in it, and what its tests look at.
+//! An app without a window or a GPU, its scene, and access for tests.
 
 use bevy::asset::AssetPlugin;
 use bevy::camera::CameraPlugin;
@@ -15,7 +15,7 @@ use shadowfit::proof::{CoverageQuery, prove as prove_map};
 use shadowfit::settings::CasterPolicy;
 use shadowfit::{Boxes, DepthConvention, FitInput, LightProjection, Scratch, ViewFrustum};
 
-/// An app with everything that lights need, and the plugin.
+/// Creates an app with everything that lights need, and the plugin.
 pub fn app() -> App {
     let mut app = App::new();
     app.add_plugins((
@@ -35,7 +35,7 @@ pub fn app() -> App {
     app
 }
 
-/// What systems of the user see.
+/// State that the user's systems see.
 #[derive(Resource, Default)]
 struct Seen {
     bounds: Vec<(Entity, Vec<f32>)>,
@@ -63,7 +63,7 @@ pub fn was_changed(app: &mut App, light: Entity) -> bool {
     app.world().resource::<Seen>().changed.contains(&light)
 }
 
-/// A ground, houses on it, a sun and a camera.
+/// Spawns a ground, houses on it, a sun and a camera.
 pub fn scene(app: &mut App, fitted: FittedShadows) -> (Entity, Entity) {
     spawn_box(app, Vec3::new(0.0, -0.5, 0.0), Vec3::new(60.0, 0.5, 60.0));
     for i in 0..40 {
@@ -84,7 +84,7 @@ pub fn spawn_sun(app: &mut App, fitted: FittedShadows) -> Entity {
     app.world_mut().spawn((sun, fitted, at)).id()
 }
 
-/// A mesh that is a box; only its bounds exist.
+/// Spawns a mesh that has only a bounding box.
 pub fn spawn_box(app: &mut App, centre: Vec3, half: Vec3) -> Entity {
     let aabb = Aabb { center: Vec3::ZERO.into(), half_extents: half.into() };
     app.world_mut().spawn((Mesh3d::default(), aabb, Transform::from_translation(centre))).id()
@@ -106,7 +106,7 @@ pub fn cascades(app: &App, light: Entity, camera: Entity) -> Vec<Cascade> {
     app.world().get::<Cascades>(light).unwrap().cascades[&camera].clone()
 }
 
-/// What Bevy alone makes of the light's config.
+/// Returns the cascades that Bevy alone computes from the light's config.
 pub fn bevys_cascades(app: &App, light: Entity, camera: Entity) -> Vec<Cascade> {
     let mut world = World::new();
     world.insert_resource(app.world().resource::<DirectionalLightShadowMap>().clone());
@@ -135,14 +135,14 @@ pub fn assert_same(one: &[Cascade], other: &[Cascade]) {
     assert_eq!(format!("{one:?}"), format!("{other:?}"));
 }
 
-/// The meshes that Bevy draws into each cascade.
+/// Returns the meshes that Bevy draws into each cascade.
 pub fn drawn_into_cascades(app: &App, light: Entity, camera: Entity) -> Vec<Vec<Entity>> {
     let visible = &app.world().get::<CascadesVisibleEntities>(light).unwrap().entities[&camera];
     visible.iter().map(|cascade| cascade.entities.clone()).collect()
 }
 
-/// Proves that every mesh's box in view lies in the cascade that Bevy's shader reads at its depth, with what the filter
-/// and the normal offset reach.
+/// Proves that every mesh's box in view lies inside the cascade that Bevy's shader reads at its depth,
+/// including the filter's footprint and the normal offset.
 pub fn prove(app: &mut App, light: Entity, camera: Entity) {
     let world = app.world_mut();
     let boxes: Vec<shadowfit::Aabb> =
@@ -188,7 +188,7 @@ fn frustum(world: &World, camera: Entity, max_distance: f32) -> ViewFrustum {
     ViewFrustum::from_world_from_clip_f64(&world_from_clip, eye, DepthConvention::Reversed, max_distance).unwrap()
 }
 
-/// The box around the corners of a mesh's own one.
+/// Returns the box around the transformed corners of a mesh's own box.
 fn world_box(aabb: &Aabb, at: &GlobalTransform) -> shadowfit::Aabb {
     let corners = (0..8).map(|i| {
         let side = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };

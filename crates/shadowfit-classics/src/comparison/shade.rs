@@ -1,17 +1,17 @@
-//! The comparison sampler's shading in Rust, as `shade.wgsl` has it; a test compares the two.
+//! The comparison sampler's shading in Rust. A test compares it with `shade.wgsl`.
 //!
-//! Colours are display values; `n_l` and `r_v` are cosines between unit vectors, `share` is that of the light, 0 in
-//! shadow to 1.
+//! Colours are display values. `n_l` and `r_v` are cosines between unit vectors. `share` is the share of
+//! light, from 0 in shadow to 1.
 
 use glam::Vec3;
 
-/// Cube of the mirrored light's cosine, the technique's gloss.
+/// Exponent of the cosine of the mirrored light: the gloss of the technique.
 const GLOSS: i32 = 3;
 /// Diffuse and specular light of [`colour`].
 const DIFFUSE: Vec3 = Vec3::new(0.5, 0.5, 0.4);
 const SPECULAR: Vec3 = Vec3::new(0.2, 0.2, 0.3);
 
-/// Ambient light alone, or with diffuse and specular light, by the share.
+/// Returns ambient light plus `share` of the diffuse and specular light.
 pub fn colour(base: Vec3, n_l: f32, r_v: f32, share: f32, ambient: f32) -> Vec3 {
     let mirrored = r_v.clamp(0.0, 1.0).powi(GLOSS);
     let full = base * (Vec3::splat(ambient) + DIFFUSE * n_l.clamp(0.0, 1.0) + SPECULAR * mirrored);
@@ -33,7 +33,7 @@ mod tests {
         let base = Vec3::splat(0.8);
         assert!(near(colour(base, 0.5, 0.5, 1.0, 0.25), [0.42, 0.42, 0.39]));
         assert!(near(colour(base, 0.5, 0.5, 0.0, 0.25), [0.2; 3]));
-        // A fraction of a half lies between: 0.31, 0.31, 0.295.
+        // At a share of 0.5, halfway: 0.31, 0.31, 0.295.
         assert!(near(colour(base, 0.5, 0.5, 0.5, 0.25), [0.31, 0.31, 0.295]));
     }
 }

@@ -1,4 +1,4 @@
-// The lighting of depth testing with a comparison sampler. shading.x: ambient.
+// Lighting of depth testing with a comparison sampler. shading.x: ambient.
 
 const DIFFUSE: vec3<f32> = vec3<f32>(0.5, 0.5, 0.4);
 const SPECULAR: vec3<f32> = vec3<f32>(0.2, 0.2, 0.3);

@@ -1,9 +1,10 @@
-//! The test of the comparison sampler's sample in Rust, as `test.wgsl` has it; a test compares the two. Its bias is the
-//! core's [`acos_bias`](shadowfit::bias::acos_bias).
+//! The comparison sampler's shadow test in Rust. A test compares it with `test.wgsl`. Its bias is
+//! [`acos_bias`](shadowfit::bias::acos_bias) of the core.
 
 use glam::Vec2;
 
-/// Whether a point is in the light's image; outside everything is lit. `depth` is that after the division by w.
+/// Returns whether a point is inside the light's image. All points outside are lit. `depth` is after the
+/// division by w.
 pub fn is_inside(uv: Vec2, depth: f32) -> bool {
     uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all() && depth > 0.0
 }

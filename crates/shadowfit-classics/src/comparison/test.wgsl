@@ -1,6 +1,6 @@
-// The test of depth testing with a comparison sampler. test.x: epsilon, test.y: its sign.
+// Shadow test with a comparison sampler. test.x: epsilon, test.y: its sign.
 
-// An arc cosine below this counts as this: head-on the term is at its limit anyway.
+// Least arc cosine. In perpendicular light the term is at its limit anyway.
 const LEAST_ANGLE: f32 = 1e-6;
 const MOST_EPSILON: f32 = 0.1;
 
@@ -8,7 +8,7 @@ fn comparison_epsilon(epsilon: f32, n_l: f32) -> f32 {
     return clamp(epsilon / max(acos(saturate(n_l)), LEAST_ANGLE), 0.0, MOST_EPSILON);
 }
 
-// Outside of the light's image, and before it, everything is lit.
+// All points outside the light's image, or in front of its near plane, are lit.
 fn comparison_is_inside(uv: vec2<f32>, depth: f32) -> bool {
     return all(uv >= vec2<f32>(0.0)) && all(uv <= vec2<f32>(1.0)) && depth > 0.0;
 }

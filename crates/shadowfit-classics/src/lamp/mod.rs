@@ -1,4 +1,4 @@
-//! What the samples with a lamp share: its map's matrices, our test of it, and what the options say.
+//! Parts that the samples with a lamp share: the map's matrices, our shadow test, and the shadows option.
 
 pub mod test;
 
@@ -11,12 +11,12 @@ use shadowfit::{DepthConvention, FitError, PerspectiveCamera};
 use crate::mapped::{LightImage, LightPlace, MapRead, SampleFormat, SampleLight, SampleMapSettings, ShadowTest};
 use crate::options::{OptionKind, SampleOption, SampleValues};
 
-/// What shadows of a lamp can be.
+/// Option for the shadows of a lamp.
 pub(crate) const SHADOWS: SampleOption = SampleOption {
     id: "shadows",
     label: "Shadows",
-    help: "As the source, none, or ours: the same light with a map of the same size, of 32-bit depths, with our bias and a \
-           filter of 3 × 3 look-ups.",
+    help: "As the source, none, or ours: the same light with a map of the same size, with 32-bit depths, our bias and \
+        a filter of 3 × 3 look-ups.",
     kind: OptionKind::Choice(&[("source", "as the source"), ("off", "none"), ("ours", "our map")]),
 };
 
@@ -26,19 +26,19 @@ pub(crate) struct Lamp {
 }
 
 impl Lamp {
-    /// The lamp with a map of a size in texels.
+    /// Creates the lamp with a map of a size in texels.
     pub(crate) fn new(light: &SpotLight, map: [u32; 2], camera: &PerspectiveCamera) -> Result<Self, FitError> {
         let fit = light.fit(UVec2::from(map), DepthConvention::ZeroToOne)?.relative_to(camera.eye);
         Ok(Self { fit })
     }
 
-    /// The light that a frame has.
+    /// Returns the light of a frame.
     pub(crate) fn light(&self, image: LightImage) -> SampleLight {
         let place = LightPlace::At(self.fit.position);
         SampleLight { clip_from_world: self.fit.clip_from_world, place, image }
     }
 
-    /// Map and test of a frame as the option [`SHADOWS`] chooses them, by those of the source.
+    /// Returns map and test of a frame by the option [`SHADOWS`]. `map` and `test` are the source's.
     pub(crate) fn shadows(
         &self,
         values: &SampleValues,
@@ -53,14 +53,14 @@ impl Lamp {
         })
     }
 
-    /// The map that our test reads, as large as the source's.
+    /// Returns the map that our test reads, as large as the source's.
     fn our_map(&self) -> SampleMapSettings {
         let size = self.fit.resolution.to_array();
         SampleMapSettings { compares_linearly: true, ..SampleMapSettings::new(size, SampleFormat::Depth32) }
     }
 
-    /// Our test, with the least bias that clears planes: each look-up is compared with the plane's own depth, so that the
-    /// bias covers the reach of one.
+    /// Returns our test, with the least bias that avoids acne on planes. Each look-up is compared with the
+    /// plane's depth there, so the bias only covers the reach of one look-up.
     fn our_test(&self, lit_outside: bool) -> Result<ShadowTest, FitError> {
         let bias = SpotBias::automatic_receiver_plane(FilterRadius::HARDWARE_2X2, DepthStorage::Float32, &self.fit)?;
         let rise = self.fit.texel_size * self.fit.depth_scale() as f32;

@@ -1,22 +1,24 @@
-//! Our test of a lamp's map in Rust, as `test.wgsl` has it; a test compares the two, and both with the core's own.
+//! Our test of a lamp's map in Rust. Tests compare it with `test.wgsl`, and both with the core.
 
 use glam::{Mat4, Vec2, Vec3};
 use shadowfit::bias::MIN_COSINE;
 use shadowfit::spot::SpotBias;
 
-/// Change of the stored depth over a texel along u and along v on a plane with a unit normal toward the light.
+/// Returns the change of the stored depth over a texel along u and along v, on a plane with a unit normal
+/// toward the light.
 ///
-/// `light_from_world` is the clip space of the lamp's image, `rise` the change per texel of a plane at the unit distance,
-/// `to_light` leads from the point to the lamp.
+/// `light_from_world` is the matrix to the clip space of the lamp's image. `rise` is the change per texel of
+/// a plane at unit distance. `to_light` is the vector from the point to the lamp.
 pub fn gradient(light_from_world: Mat4, rise: Vec2, to_light: Vec3, normal: Vec3) -> Vec2 {
-    // Rows of x and y are the light's axes, as long as the lens makes them.
+    // Rows of x and y are the light's axes, scaled by the lens.
     let [right, up] = [0, 1].map(|row| light_from_world.row(row).truncate().normalize());
     let height = normal.dot(to_light).max(MIN_COSINE * to_light.length());
     rise * Vec2::new(normal.dot(right), -normal.dot(up)) / height
 }
 
-/// The depth that the middle look-up compares, by the depth and the distance along the axis of the point, once it is
-/// lifted by [`SpotBias::constant_offset`], and the [`gradient`] of its plane.
+/// Returns the depth that the middle look-up compares. `depth` and `distance` (along the light's axis) belong
+/// to the point after its offset by [`SpotBias::constant_offset`]. `gradient` is the [`gradient`] of its
+/// plane.
 pub fn compared_depth(depth: f32, distance: f32, bias: &SpotBias, gradient: Vec2) -> f32 {
     let rise = bias.receiver_plane * (gradient.x.abs() + gradient.y.abs());
     depth - bias.constant_depth - bias.distance_depth / distance - rise

@@ -1,4 +1,4 @@
-// A sample's shadow pass. What is stored is the depth after the division by w, in every channel that there is.
+// Shadow pass of a sample. It stores the depth after the division by w in every channel of the target.
 
 struct CasterIn {
     @location(0) position: vec3<f32>,
@@ -21,12 +21,13 @@ fn vs_caster(in: CasterIn) -> CasterOut {
     return CasterOut(clip, 1.0 - clip.z / clip.w);
 }
 
-// What is stored: 1 - z/w as the vertices have it, which the terrain sample does, and not the fragment's own depth; and
-// whether its bits are packed in four bytes.
+// REVERSED stores 1 - z/w, interpolated from the vertices as in the terrain sample, instead of the fragment's
+// depth. PACKED packs the bits of the depth in four bytes.
 override REVERSED: bool = false;
 override PACKED: bool = false;
 
-// The bits of the depth in four bytes, the lowest first. A byte k is written as k/255, which the target stores as k.
+// The bits of the depth in four bytes, lowest first. Byte k is written as k/255, which the target stores as
+// k.
 fn packed(depth: f32) -> vec4<f32> {
     let bits = bitcast<u32>(saturate(depth));
     return vec4<f32>((vec4<u32>(bits) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u)) / 255.0;

@@ -1,4 +1,4 @@
-//! How a sample's map stores depth, and what it falls back to where an adapter cannot.
+//! Depth formats of a sample's map, and fallbacks for adapters without them.
 
 /// Format of a sample's map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -10,17 +10,17 @@ pub enum SampleFormat {
     R16Float,
     /// Four channels of 8 bits that hold the bits of a 32-bit float.
     Rgba8Packed,
-    /// A colour map of 8 bits a channel, whose channels are all the same grey: 256 levels.
+    /// A colour map of 8 bits per channel. All channels hold the same grey, with 256 levels.
     Grey8,
     /// A depth texture of 32-bit floats, for comparison samplers.
     Depth32,
 }
 
 impl SampleFormat {
-    /// What is tried in turn where one cannot be drawn to, the best first.
+    /// Fallback formats, best first.
     const FALLBACKS: [Self; 3] = [Self::R32Float, Self::R16Float, Self::Rgba8Packed];
 
-    /// The format of a name in the samples' options; 32-bit floats for any other name.
+    /// Returns the format with a name in the samples' options, or 32-bit floats for any other name.
     pub(crate) fn of(id: &str) -> Self {
         match id {
             "r16f" => Self::R16Float,
@@ -30,7 +30,7 @@ impl SampleFormat {
         }
     }
 
-    /// Its name for people.
+    /// Returns the name for people.
     pub const fn label(self) -> &'static str {
         match self {
             Self::R32Float => "32-bit float",
@@ -41,7 +41,7 @@ impl SampleFormat {
         }
     }
 
-    /// The texture that it is stored in.
+    /// Returns the texture format that stores it.
     pub const fn texture(self) -> wgpu::TextureFormat {
         match self {
             Self::R32Float => wgpu::TextureFormat::R32Float,
@@ -51,19 +51,19 @@ impl SampleFormat {
         }
     }
 
-    /// Whether it is a depth texture, which casters are drawn into without colours.
+    /// Returns whether it is a depth texture. Casters are drawn into depth textures without colours.
     pub const fn is_depth(self) -> bool {
         matches!(self, Self::Depth32)
     }
 
-    /// Whether an adapter can draw to it.
+    /// Returns whether an adapter can draw to it.
     pub fn is_renderable(self, adapter: &wgpu::Adapter) -> bool {
         let usages = adapter.get_texture_format_features(self.texture()).allowed_usages;
         usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)
     }
 
-    /// This format, or the first worse one that can be drawn to, and then a line that says so.
-    /// `is_renderable` is asked for each. Only float formats have something to fall back to.
+    /// Returns this format, or else the next worse format for which `is_renderable` returns true, with a
+    /// message about it. Only float formats have fallbacks.
     pub fn or_fallback(self, is_renderable: impl Fn(Self) -> bool) -> (Self, Option<String>) {
         let later = Self::FALLBACKS.iter().skip_while(|format| **format != self).copied();
         let found = later.clone().find(|format| is_renderable(*format)).unwrap_or(Self::Rgba8Packed);
@@ -71,7 +71,7 @@ impl SampleFormat {
             return (self, None);
         }
         let message =
-            format!("This adapter cannot draw to a map of {}: {} takes its place", self.label(), found.label());
+            format!("This adapter cannot draw to a map of {}: {} is used instead", self.label(), found.label());
         (found, Some(message))
     }
 }

@@ -1,4 +1,4 @@
-//! The pictures that lamps throw, generated: what cures the square of a light's image.
+//! Generated images that lamps project, which hide the square shape of the light's image.
 
 use shadowfit_render::{Gpu, bindings};
 
@@ -6,14 +6,16 @@ use super::LightImage;
 
 /// Width and height of a picture, in texels.
 const SIZE: u32 = 256;
-/// Radius of the round beam where its light is gone, and where it begins to go, as shares of the image's half width.
+/// Radii at which the round beam's light ends and at which it starts to fall, as shares of the image's half
+/// width.
 const ROUND: [f32; 2] = [0.96, 0.72];
-/// Centres of the two beams to the left and to the right, their half width and half height, in the same shares.
+/// Distance of the two beams' centres from the middle to the left and right, and their half width and half
+/// height, in the same unit.
 const BEAM_AT: f32 = 0.30;
 const BEAM: [f32; 2] = [0.60, 0.74];
 
 impl LightImage {
-    /// Light that it lets through at a place, -1..=1 from left to right and from bottom to top.
+    /// Returns the transmitted light at a position, -1..=1 from left to right and from bottom to top.
     fn light(self, x: f32, y: f32) -> f32 {
         let beam = |at: f32| {
             let distance = ((x - at) / BEAM[0]).hypot(y / BEAM[1]);
@@ -22,18 +24,19 @@ impl LightImage {
         match self {
             Self::Square => 1.0,
             Self::Round => falling(x.hypot(y), ROUND[0], ROUND[1]),
-            // Light adds up where the beams cross, to no more than white.
+            // Light adds up where the beams overlap, up to white.
             Self::Headlights => (beam(-BEAM_AT) + beam(BEAM_AT)).min(1.0),
         }
     }
 
-    /// Its texels, rows from the top. The outermost are black where it is not white all over, so that it ends softly.
+    /// Returns the texels, rows from the top. The outermost are black unless the image is white everywhere,
+    /// so that the image ends softly.
     fn texels(self) -> Vec<u8> {
         let at = |index: u32| (index as f32 + 0.5) / SIZE as f32 * 2.0 - 1.0;
         (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (self.light(at(x), -at(y)) * 255.0).round() as u8)).collect()
     }
 
-    /// Its texture.
+    /// Creates and uploads the texture.
     pub(super) fn upload(self, gpu: &Gpu) -> wgpu::Texture {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let format = wgpu::TextureFormat::R8Unorm;

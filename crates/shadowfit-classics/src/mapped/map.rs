@@ -1,4 +1,4 @@
-//! The texture of a sample's map, and how its shaders are given it.
+//! The texture of a sample's map, and its bind group.
 
 use shadowfit_render::attachment::cleared;
 use shadowfit_render::passes::DEPTH_FORMAT;
@@ -6,7 +6,7 @@ use shadowfit_render::{Gpu, bindings};
 
 use super::{LightImage, SampleFormat, SampleMapSettings};
 
-/// A map and what reads it.
+/// A map and its bind group.
 #[derive(Debug)]
 pub(super) struct SampleMap {
     pub(super) settings: SampleMapSettings,
@@ -17,7 +17,7 @@ pub(super) struct SampleMap {
     pub(super) group: wgpu::BindGroup,
 }
 
-/// Layout of the map's bind group, by whether it is a depth texture.
+/// Creates the layout of the map's bind group. `is_depth` tells whether it is a depth texture.
 pub(super) fn layout(device: &wgpu::Device, is_depth: bool) -> wgpu::BindGroupLayout {
     let sample_type =
         if is_depth { wgpu::TextureSampleType::Depth } else { wgpu::TextureSampleType::Float { filterable: false } };
@@ -62,16 +62,17 @@ impl SampleMap {
         Self { settings, image, texture: map, color, depth, group }
     }
 
-    /// Whether it is a map of such settings.
+    /// Returns whether the map has these settings.
     pub(super) fn is_of(&self, settings: &SampleMapSettings, image: LightImage) -> bool {
         (&self.settings, self.image) == (settings, image)
     }
 
-    /// Begins the pass that casters are drawn in.
+    /// Begins the pass that draws the casters.
     pub(super) fn begin<'a>(&self, encoder: &'a mut wgpu::CommandEncoder) -> wgpu::RenderPass<'a> {
         let clear = f64::from(self.settings.clear);
         let color_attachments = [self.color.as_ref().map(|view| cleared(view, None, self.cleared(clear)))];
-        // The buffer that sorts casters is cleared to the farthest depth; only a depth map's own value can differ.
+        // The depth buffer that sorts casters is cleared to the farthest depth. Only a depth map may use
+        // another value.
         let far = if self.settings.format.is_depth() { clear as f32 } else { 1.0 };
         let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(far), store: wgpu::StoreOp::Store };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -86,7 +87,7 @@ impl SampleMap {
         })
     }
 
-    /// The colour that stands for a stored depth of 0 or 1.
+    /// Returns the colour that encodes a stored depth of 0 or 1.
     fn cleared(&self, depth: f64) -> wgpu::Color {
         match self.settings.format {
             SampleFormat::Rgba8Packed => {

@@ -1,12 +1,13 @@
-// A depth map, compared by the sampler.
+// A depth map that the sampler compares.
 
 @group(1) @binding(0) var map: texture_depth_2d;
 @group(1) @binding(1) var map_sampler: sampler_comparison;
 
-// The depth at a texel, bit by bit: the greatest that is not behind it. OpenGL's shaders cannot load it.
+// Reads the depth at a texel with comparisons, bit by bit: the greatest depth that passes. OpenGL's shaders
+// cannot load it.
 fn stored_in(texel: vec2<i32>) -> f32 {
     let uv = (vec2<f32>(texel) + 0.5) / vec2<f32>(textureDimensions(map));
-    // Floats of 0 to 1 are in the order of their bits.
+    // The bits of floats from 0 to 1 are in the order of their values.
     var bits = 0u;
     for (var bit = 29; bit >= 0; bit -= 1) {
         let tried = min(bits | (1u << u32(bit)), 0x3f800000u);
@@ -16,7 +17,7 @@ fn stored_in(texel: vec2<i32>) -> f32 {
     return bitcast<f32>(bits);
 }
 
-// Share of the light by less-or-equal: of one texel, or of 2 x 2 with a linear sampler.
+// Share of light by less-or-equal: of one texel, or of 2 x 2 with a linear sampler.
 fn compared(uv: vec2<f32>, depth: f32) -> f32 {
     return textureSampleCompareLevel(map, map_sampler, uv, saturate(depth));
 }

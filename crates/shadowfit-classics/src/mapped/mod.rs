@@ -1,8 +1,8 @@
-//! Scenes lit by one map, with the numbers of a classic technique: what draws the map and shades the scene.
+//! Scenes lit by one map, with the numbers of a classic technique: draws the map and shades the scene.
 //!
-//! A [`SampleFrame`] says what is drawn, a [`SampleRenderer`] draws it; its [`ShadowTest`] and its [`Shading`] come with
-//! their own WGSL. They compute in display values, as their sources did, unless [`Shading::modern`] is asked for.
-//! Right-handed, y up, the sources' own units; depth 0 to 1.
+//! A [`SampleFrame`] describes the picture, a [`SampleRenderer`] draws it. Its [`ShadowTest`] and [`Shading`]
+//! have their own WGSL. They compute in display values, as their sources did, except [`Shading::modern`].
+//! Right-handed, y up, the sources' own units. Depth is 0 to 1.
 
 pub mod point;
 pub mod shaders;

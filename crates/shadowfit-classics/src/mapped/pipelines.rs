@@ -1,4 +1,4 @@
-//! Pipelines of mapped frames, made when a frame first needs them.
+//! Pipelines of mapped frames, created on first use.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use shadowfit_render::{Gpu, bindings};
 
 use super::{SampleFormat, SampleFrame, StoredDepth, map, shaders};
 
-/// What a pipeline is for, with all that its states depend on.
+/// Purpose of a pipeline, with the values that its states depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Use {
     Caster(Option<wgpu::Face>, Streams),
@@ -19,7 +19,7 @@ pub(super) enum Use {
     Inset,
 }
 
-/// All that a pipeline depends on: its use, the map, and the names of the test and the shading.
+/// Key of a pipeline: its use, the map's format, and the names of the test and the shading.
 type Key = (Use, SampleFormat, StoredDepth, [&'static str; 2]);
 
 /// Layouts and pipelines.
@@ -49,12 +49,12 @@ impl SamplePipelines {
         }
     }
 
-    /// Layout of the bind group of a map.
+    /// Returns the layout of the bind group of a map.
     pub(super) fn map(&self, format: SampleFormat) -> &wgpu::BindGroupLayout {
         &self.maps[usize::from(format.is_depth())]
     }
 
-    /// Makes a frame's pipeline that is not there yet.
+    /// Creates a frame's pipeline unless it exists.
     pub(super) fn add(&mut self, gpu: &Gpu, purpose: Use, frame: &SampleFrame) {
         if !self.made.contains_key(&key(purpose, frame)) {
             let pipeline = self.make(gpu, purpose, frame);
@@ -62,7 +62,7 @@ impl SamplePipelines {
         }
     }
 
-    /// A frame's pipeline that [`Self::add`] has made.
+    /// Returns a frame's pipeline, which [`Self::add`] has created.
     pub(super) fn get(&self, purpose: Use, frame: &SampleFrame) -> &wgpu::RenderPipeline {
         &self.made[&key(purpose, frame)]
     }

@@ -1,8 +1,8 @@
-//! How all samples see a point from the light in Rust, as `point.wgsl` has it; a test compares the two.
+//! Projection of a point to the light's image in Rust. A test compares it with `point.wgsl`.
 
 use glam::{Vec2, Vec4};
 
-/// Where a point of clip space lies in the light's image: u right, v down, 0..1 inside.
+/// Returns the position of a clip-space point in the light's image: u right, v down, 0..1 inside.
 pub fn image_uv(clip: Vec4) -> Vec2 {
     Vec2::new(clip.x / clip.w / 2.0 + 0.5, -clip.y / clip.w / 2.0 + 0.5)
 }

@@ -1,4 +1,4 @@
-// The vertex stage of a sample's picture, and what is known of a visible point.
+// Vertex stage of a sample's picture, and the data of a visible point.
 
 struct PointIn {
     @location(0) position: vec3<f32>,
@@ -33,13 +33,13 @@ fn vs_sample(in: PointIn) -> PointOut {
     return sample_vertex(in);
 }
 
-// A visible point as the light sees it.
+// A visible point in the light's image.
 struct Seen {
     // Texture coordinates in the light's image, u right, v down.
     uv: vec2<f32>,
     // Depth after the division by w, 0 near.
     depth: f32,
-    // Distance along the light's axis; 1 for a light without a position.
+    // Distance along the light's axis. 1 for a light without a position.
     w: f32,
 }
 
@@ -49,11 +49,11 @@ fn seen_at(position: vec3<f32>) -> Seen {
     return Seen(ndc.xy * vec2<f32>(0.5, -0.5) + 0.5, ndc.z, clip.w);
 }
 
-// What a sample knows of a visible point.
+// Data of a visible point for tests and shadings.
 struct Point {
     seen: Seen,
     position: vec3<f32>,
-    // Unit normals: that of the triangle on the side of the eye, and the interpolated one.
+    // Unit normals: the triangle's on the side of the eye, and the interpolated one.
     geometric: vec3<f32>,
     normal: vec3<f32>,
     // Unit directions.
@@ -63,7 +63,7 @@ struct Point {
     base: vec3<f32>,
 }
 
-// Called where control flow is uniform: it takes derivatives.
+// Requires uniform control flow, because it takes derivatives.
 fn point_of(in: PointOut) -> Point {
     let across = normalize(cross(dpdy(in.position), dpdx(in.position)));
     let geometric = select(across, -across, dot(across, in.position) > 0.0);

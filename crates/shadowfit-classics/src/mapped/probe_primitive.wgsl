@@ -1,4 +1,4 @@
-// What a sample's shading knew about each pixel: the triangle's number plus one, and the bits of the light's share.
+// Probe of each pixel: the triangle's number plus one, and the bits of the light's share.
 
 @fragment
 fn fs_probe(in: PointOut, @builtin(primitive_index) triangle: u32) -> @location(0) vec2<u32> {

@@ -1,4 +1,4 @@
-// What a sample's shading knew about each pixel of parts that are drawn without their indices, three vertices a triangle.
+// Probe of each pixel for parts that are drawn without indices, three vertices per triangle.
 
 @vertex
 fn vs_probe(in: PointIn, @builtin(vertex_index) vertex: u32) -> PointOut {

@@ -1,4 +1,4 @@
-//! Draws frames of the classic samples: map, picture, inset, and probes of what the shading knew.
+//! Draws frames of the classic samples: map, picture, inset, and probes of the shading.
 
 use core::fmt;
 
@@ -16,17 +16,17 @@ use super::{CasterFaces, FrameExtras, MapRead, SampleFrame, SampleUniform};
 const MAP_GROUP: u32 = 1;
 const MATERIAL_GROUP: u32 = 2;
 
-/// Why a frame of a sample cannot be drawn.
+/// Error of drawing a sample's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleError {
     /// The map is larger than the device allows, or has no texels.
     MapSize {
-        /// Width and height that were asked for, in texels.
+        /// Requested width and height, in texels.
         size: [u32; 2],
-        /// The most that the device allows, each way.
+        /// Greatest width and height that the device allows.
         limit: u32,
     },
-    /// The test compares with a sampler, and the map is not a depth texture.
+    /// The test compares with a sampler, but the map is not a depth texture.
     Format,
 }
 
@@ -34,16 +34,16 @@ impl fmt::Display for SampleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::MapSize { size: [width, height], limit } => {
-                write!(f, "a map of {width} × {height} texels cannot be made: give 1 to {limit} texels each way")
+                write!(f, "a map of {width} × {height} texels cannot be created: use 1 to {limit} texels each way")
             }
-            Self::Format => write!(f, "this shadow test cannot read a map of this format; choose another one of them"),
+            Self::Format => write!(f, "this shadow test cannot read a map of this format; choose another format"),
         }
     }
 }
 
 impl core::error::Error for SampleError {}
 
-/// Draws frames of samples; owns their map and every pipeline.
+/// Draws frames of samples. Owns their map and every pipeline.
 #[derive(Debug)]
 pub struct SampleRenderer {
     pipelines: SamplePipelines,
@@ -59,7 +59,7 @@ struct Plan {
 }
 
 impl SampleRenderer {
-    /// A renderer for pictures of `samples` per pixel (1 or 4).
+    /// Creates a renderer for pictures with `samples` samples per pixel (1 or 4).
     pub fn new(gpu: &Gpu, samples: u32) -> Self {
         let pipelines = SamplePipelines::new(gpu, samples);
         let uniform = bindings::uniform_buffer::<SampleUniform>(&gpu.device, "sample");
@@ -67,11 +67,11 @@ impl SampleRenderer {
         Self { pipelines, map: None, uniform, group }
     }
 
-    /// Draws a frame into a target of as many samples as this renderer, and submits it.
+    /// Draws a frame into a target with this renderer's number of samples per pixel, and submits it.
     ///
     /// # Errors
     ///
-    /// [`SampleError`] for a map that cannot be made, or a test that cannot read it. Nothing is drawn then.
+    /// [`SampleError`] if the map cannot be created, or the test cannot read it. The frame is not drawn then.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -99,11 +99,11 @@ impl SampleRenderer {
         Ok(())
     }
 
-    /// Draws what the shading of a frame knew about each pixel, and reads it back.
+    /// Draws the shading's data of each pixel of a frame, and reads it back.
     ///
     /// # Errors
     ///
-    /// The outer one as [`Self::draw`]; the inner one where the device was lost.
+    /// The outer error as [`Self::draw`]. The inner error if the device was lost.
     pub async fn probe(
         &mut self,
         gpu: &Gpu,
@@ -129,7 +129,7 @@ impl SampleRenderer {
         Ok(targets.arrive(gpu).await.map_err(ProbeError::from))
     }
 
-    /// The bytes of the map that was drawn last, rows from the top; `None` before the first frame.
+    /// Returns the bytes of the map that was drawn last, rows from the top, or `None` before the first frame.
     ///
     /// # Errors
     ///
@@ -151,7 +151,7 @@ impl SampleRenderer {
         check(gpu, frame)?;
         let (settings, image) = (frame.map, frame.light.image);
         if self.map.as_ref().is_none_or(|map| !map.is_of(&settings, image)) {
-            // The old one goes first: both may be large.
+            // Drops the old map first: both may be large.
             self.map = None;
             self.map = Some(SampleMap::new(gpu, self.pipelines.map(settings.format), settings, image));
         }
@@ -169,7 +169,7 @@ impl SampleRenderer {
         Ok(Plan { casters, seen })
     }
 
-    /// Makes the pipelines of draws that are not there yet.
+    /// Creates the missing pipelines of draws.
     fn add(&mut self, gpu: &Gpu, frame: &SampleFrame, draws: &[Draw], purpose: impl Fn(PartKey) -> Use) {
         for draw in draws {
             self.pipelines.add(gpu, purpose(draw.key), frame);
@@ -249,7 +249,7 @@ impl SampleRenderer {
     }
 }
 
-/// Faces of a part that the picture leaves out.
+/// Returns the faces of a part that the picture culls.
 fn seen_faces(frame: &SampleFrame, key: PartKey) -> Option<wgpu::Face> {
     if frame.double_sided { None } else { key.cull_mode() }
 }

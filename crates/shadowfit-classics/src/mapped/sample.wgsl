@@ -1,5 +1,5 @@
-// What the passes of a classic sample share: the uniform. Positions are relative to the camera's eye. Colours are display values: nothing is
-// linear but what says so.
+// Uniform of the passes of a classic sample. Positions are relative to the camera's eye. Colours are display
+// values unless marked as linear.
 
 struct Sample {
     clip_from_world: mat4x4<f32>,
@@ -7,11 +7,11 @@ struct Sample {
     light_from_world: mat4x4<f32>,
     // Direction toward the light (w = 0), or its position (w = 1).
     light: vec4<f32>,
-    // What the shadow test reads; each test says what.
+    // Numbers of the shadow test. Each test documents its own.
     test: vec4<f32>,
-    // What a shadow test reads besides.
+    // Further numbers of a shadow test.
     further: vec4<f32>,
-    // What the shading reads; each shading says what.
+    // Numbers of the shading. Each shading documents its own.
     shading: vec4<f32>,
     // Width and height of the map, in texels.
     map_size: vec2<f32>,

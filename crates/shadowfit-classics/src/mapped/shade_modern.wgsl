@@ -1,5 +1,5 @@
-// Modern lighting of a sample: linear, with the reflectance and the tone curve of the other scenes. shading.x: irradiance of
-// the light, shading.y: of sky and ground.
+// Modern lighting of a sample: linear, with the reflectance and the tone curve of the other scenes.
+// shading.x: irradiance of the light. shading.y: irradiance of sky and ground.
 
 fn colour(point: Point, share: f32) -> vec3<f32> {
     let base = decoded(point.base);

@@ -1,4 +1,4 @@
-//! The shader modules of mapped frames, put together from pieces: how a map is read, one shadow test, one shading.
+//! The shader modules of mapped frames, assembled from pieces: map access, one shadow test, one shading.
 
 use shadowfit_render::passes::Numbering;
 use shadowfit_render::shaders::{SRGB, material};
@@ -8,17 +8,17 @@ use super::{SampleFormat, SampleFrame};
 const SAMPLE: &str = include_str!("sample.wgsl");
 const STORED: &str = include_str!("stored.wgsl");
 
-/// The pass that draws casters into a map; group 0 is the sample's uniform.
+/// Returns the pass that draws casters into a map. Group 0 is the sample's uniform.
 pub fn caster() -> String {
     [SAMPLE, include_str!("caster.wgsl")].concat()
 }
 
-/// The picture: sample, map and material are groups 0, 1 and 2.
+/// Returns the picture's module. Sample, map and material are groups 0, 1 and 2.
 pub fn shaded(frame: &SampleFrame) -> String {
     [&tested(frame), &frame.shading.wgsl.concat(), include_str!("shaded.wgsl")].concat()
 }
 
-/// The probe of a picture, with its groups.
+/// Returns the module of a picture's probe, with the picture's groups.
 pub fn probe(frame: &SampleFrame, numbering: Numbering) -> String {
     let entries = match numbering {
         Numbering::Primitives => include_str!("probe_primitive.wgsl"),
@@ -27,12 +27,12 @@ pub fn probe(frame: &SampleFrame, numbering: Numbering) -> String {
     [numbering.directive(), &tested(frame), entries].concat()
 }
 
-/// The map's inset: sample and map are groups 0 and 1.
+/// Returns the module of the map's inset. Sample and map are groups 0 and 1.
 pub fn inset(format: SampleFormat) -> String {
     [SAMPLE, map(format), STORED, include_str!("inset.wgsl")].concat()
 }
 
-/// What knows whether a visible point is lit.
+/// Returns the pieces that decide whether a visible point is lit.
 fn tested(frame: &SampleFrame) -> String {
     let (map, test) = (map(frame.map.format), frame.test.wgsl);
     [&material(2), SRGB, SAMPLE, include_str!("point.wgsl"), map, STORED, include_str!("light_image.wgsl"), test]

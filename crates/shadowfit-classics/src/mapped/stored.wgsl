@@ -1,10 +1,11 @@
-// How a map is read at texture coordinates, clamped to its border: by the nearest texel, or linearly between four.
+// Reads of a map at texture coordinates, clamped to its border: the nearest texel, or linear interpolation of
+// four.
 
 fn stored_clamped(texel: vec2<i32>) -> f32 {
     return stored_in(clamp(texel, vec2<i32>(0), vec2<i32>(sample.map_size) - 1));
 }
 
-// Texture coordinates far outside or not finite end at the border.
+// Clamps texture coordinates far outside or not finite.
 fn texels(uv: vec2<f32>) -> vec2<f32> {
     return clamp(uv, vec2<f32>(-1.0), vec2<f32>(2.0)) * sample.map_size;
 }

@@ -1,7 +1,8 @@
-// Averages occlusion over the random vectors of 4x4 pixels: a box of four pixels around the middle, the outermost of its
-// five weighing half, of those that lie in the pixel's plane. Comes after buffers.wgsl.
+// Averages occlusion over the random vectors of 4x4 pixels: a box of four pixels around the middle. The
+// outermost of its five pixels have half weight. Only neighbours in the pixel's plane count. Comes after
+// buffers.wgsl.
 
-// Distance from the plane at which a neighbour weighs nothing, in pixels as high as they are at the point.
+// Distance from the plane at which a neighbour's weight is 0, in units of the pixel height at the point.
 const PLANE_PIXELS: f32 = 4.0;
 
 @fragment

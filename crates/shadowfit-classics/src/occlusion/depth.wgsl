@@ -8,7 +8,7 @@ fn fs_depth_only(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
     }
     let size = vec2<f32>(textureDimensions(positions));
     let random = occlusion_random_3d(vec2<u32>(at.xy));
-    // A sphere that looks as high as the radius of the other method.
+    // A sphere that appears as high as the radius of the other method.
     let radius = occlusion.radius * occlusion.height;
     var sum = 0.0;
     for (var index = 0u; index < 16u; index++) {

@@ -1,17 +1,20 @@
-//! The formulas of screen-space ambient occlusion, as the shaders have them in `formula.wgsl`.
+//! The formulas of screen-space ambient occlusion. `formula.wgsl` has the same in WGSL.
 //!
-//! With normals: José María Méndez, "A Simple and Practical Approach to SSAO", 2010. Deviations: directions 5 and 6 of
-//! the level of detail, which the source reads past the end of its four, are diagonals; the random vectors are a fixed
-//! square of 4×4 pixels instead of a texture of noise, so that a box of that size averages all of them.
+//! With normals: José María Méndez, "A Simple and Practical Approach to SSAO", 2010. Deviations: directions 5
+//! and 6 of the level of detail, which the source reads past the end of its four, are diagonals here. The
+//! random vectors are a fixed square of 4×4 pixels instead of a noise texture, so that a box of that size
+//! averages all of them.
 //!
-//! By depth alone: Martin Mittring, "Finding Next Gen: `CryEngine` 2", 2007. The source gives no numbers: offsets, range
-//! and fall-off are ours.
+//! By depth alone: Martin Mittring, "Finding Next Gen: `CryEngine` 2", 2007. The source gives no numbers, so
+//! offsets, range and fall-off are ours.
 //!
-//! View space is right-handed and looks along -z; view depth is -z. Texture coordinates run to the right and down.
+//! View space is right-handed and looks along -z. View depth is -z. Texture coordinates run to the right and
+//! down.
 
 use glam::{UVec2, Vec2, Vec3};
 
-/// Directions in texture coordinates in which neighbours are looked up. The last two serve the level of detail alone.
+/// Directions in texture coordinates in which neighbours are looked up. Only the level of detail uses the
+/// last two.
 pub const DIRECTIONS: [Vec2; 6] = [
     Vec2::X,
     Vec2::NEG_X,
@@ -27,24 +30,26 @@ pub const PLAIN_DIRECTIONS: u32 = 4;
 /// Neighbours along each direction, in each position buffer.
 pub const NEIGHBOURS: u32 = 4;
 
-/// Points of the sphere that the method by depth alone looks at: eight, and those opposite.
+/// Points of the sphere that the depth-only method samples: eight, and the opposite eight.
 pub const SPHERE_POINTS: u32 = 16;
 
-/// Order of the random vectors in a square of 4×4 pixels (the dither matrix of Bayer, 1973): near pixels differ much.
+/// Order of the random vectors in a square of 4×4 pixels (the dither matrix of Bayer, 1973): adjacent pixels
+/// differ strongly.
 const ORDER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// Angle from one random vector to the next, in radians: 45° and a sixteenth of that. A reflection turns by twice the
-/// angle, and four directions look the same after a quarter turn: so the vectors give 16 different crosses.
+/// Angle from one random vector to the next, in radians: 45° and a sixteenth of that. A reflection rotates by
+/// twice the angle, and four directions repeat after a quarter turn, so the vectors give 16 different
+/// crosses.
 const TURN: f32 = core::f32::consts::FRAC_PI_4 * 17.0 / 16.0;
 
 /// The golden angle, in radians.
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
 
-/// What a neighbour hides of a point: max(0, N·V - bias) / (1 + d), where V is the direction to the neighbour and d its
-/// distance multiplied by `scale`; before the intensity.
+/// Returns the occlusion of a point by a neighbour, before the intensity: max(0, N·V - bias) / (1 + d). V is
+/// the direction to the neighbour and d its distance multiplied by `scale`.
 ///
-/// Positions are in view space, in the scene's units; `normal` is unit. A neighbour at the point itself hides nothing if
-/// the bias is at least 0.
+/// Positions are in view space, in the scene's units. `normal` is unit. A neighbour at the point itself does
+/// not occlude if the bias is at least 0.
 pub fn term(normal: Vec3, position: Vec3, neighbour: Vec3, scale: f32, bias: f32) -> f32 {
     let difference = neighbour - position;
     let distance = difference.length();
@@ -52,12 +57,12 @@ pub fn term(normal: Vec3, position: Vec3, neighbour: Vec3, scale: f32, bias: f32
     (cosine - bias).max(0.0) / (1.0 + distance * scale)
 }
 
-/// The unit vector at which the directions of a pixel (column and row from the left top) are reflected.
+/// Returns the unit vector that reflects the directions of a pixel (column and row from the top left).
 pub fn random_vector(pixel: UVec2) -> Vec2 {
     Vec2::from_angle(order(pixel) as f32 * TURN)
 }
 
-/// The unit vector at which the sphere's points are reflected.
+/// Returns the unit vector that reflects the sphere's points.
 pub fn random_vector_3d(pixel: UVec2) -> Vec3 {
     let index = order(pixel) as f32;
     let z = 1.0 - (index + 0.5) / 8.0;
@@ -68,21 +73,22 @@ fn order(pixel: UVec2) -> u32 {
     ORDER[(pixel.y % 4) as usize][(pixel.x % 4) as usize]
 }
 
-/// The step of a direction in texture coordinates, from which a neighbour's offset follows: the direction reflected at
-/// the pixel's random unit vector, multiplied by radius / view depth.
+/// Returns the step of a direction in texture coordinates: the direction reflected at the pixel's random unit
+/// vector, multiplied by radius / view depth. [`offset`] computes a neighbour's offset from it.
 pub fn step(direction: Vec2, random: Vec2, radius: f32, view_depth: f32) -> Vec2 {
     (direction - random * (2.0 * direction.dot(random))) * (radius / view_depth)
 }
 
-/// Offset of a neighbour (0 to 3) in texture coordinates: 0.25 c1, 0.5 c2, 0.75 c1 and c2, where c1 is the [`step`] and
-/// c2 the same turned by 45°; of back faces each an eighth more.
+/// Returns the offset of a neighbour (0 to 3) in texture coordinates: 0.25 c1, 0.5 c2, 0.75 c1 and c2, where
+/// c1 is the [`step`] and c2 is c1 rotated by 45°. Back faces add an eighth to each factor.
 pub fn offset(step: Vec2, neighbour: u32, is_back: bool) -> Vec2 {
     let turned = Vec2::new(step.x - step.y, step.x + step.y) * core::f32::consts::FRAC_1_SQRT_2;
     let share = 0.25 * (neighbour + 1) as f32 + if is_back { 0.125 } else { 0.0 };
     share * if neighbour.is_multiple_of(2) { step } else { turned }
 }
 
-/// Number of directions at a view depth: 4, or by level of detail the whole part of lerp(6, 2, depth / far).
+/// Returns the number of directions at a view depth: 4, or with level of detail the integer part of lerp(6,
+/// 2, depth / far).
 pub fn directions(view_depth: f32, far: f32, level_of_detail: bool) -> u32 {
     if !level_of_detail {
         return PLAIN_DIRECTIONS;
@@ -91,24 +97,25 @@ pub fn directions(view_depth: f32, far: f32, level_of_detail: bool) -> u32 {
     (6.0 - 4.0 * share) as u32
 }
 
-/// Occlusion, 0..=1, from the sums of the terms of both position buffers: the intensity goes with the front alone. The
-/// sum is divided by the number of front neighbours, with and without back faces.
+/// Returns the occlusion, 0..=1, from the sums of the terms of both position buffers. The intensity applies
+/// to front faces only. The sum is divided by the number of front neighbours, with and without back faces.
 pub fn sum(front: f32, back: f32, intensity: f32, directions: u32) -> f32 {
     ((front * intensity + back) / (NEIGHBOURS * directions) as f32).clamp(0.0, 1.0)
 }
 
-/// A point of the unit sphere's inside, 0 to 15, spread evenly by volume; an odd one lies opposite to the one before.
+/// Returns a point inside the unit sphere, 0 to 15, distributed evenly by volume. An odd point is opposite to
+/// the previous one.
 pub fn sphere_point(index: u32) -> Vec3 {
     let pair = (index / 2) as f32;
     let z = 1.0 - (pair + 0.5) / 4.0;
-    // Lengths in another order than heights, so that neither depends on the other.
+    // Lengths have another order than heights, so that they are independent.
     let length = (((index / 2) * 5 % 8) as f32 + 0.5) / 8.0;
     let point = (Vec2::from_angle(pair * GOLDEN_ANGLE) * (1.0 - z * z).sqrt()).extend(z) * length.cbrt();
     if index.is_multiple_of(2) { point } else { -point }
 }
 
-/// What the surface seen at a point of the sphere hides of it, 0 or more, at most 1: all if it is nearer than the point,
-/// by up to the sphere's radius; less beyond that, nothing from twice the radius on. Depths are view depths.
+/// Returns the occlusion by the visible surface at a point of the sphere, 0 to 1: 1 if it is nearer than the
+/// point by up to the sphere's radius, then falling to 0 at twice the radius. Depths are view depths.
 pub fn behind(point_depth: f32, surface_depth: f32, radius: f32) -> f32 {
     let nearer = point_depth - surface_depth;
     if nearer > 0.0 { (2.0 - nearer / radius).clamp(0.0, 1.0) } else { 0.0 }
@@ -124,10 +131,11 @@ mod tests {
 
     #[test]
     fn a_neighbour_hides_by_its_angle_and_distance() {
-        // The neighbour is (3, 4, 0) away, so 5 units: N·V = 4/5, d = 5 · 0.2 = 1, (0.8 - 0.3) / (1 + 1) = 0.25.
+        // The neighbour is (3, 4, 0) away, so 5 units: N·V = 4/5, d = 5 · 0.2 = 1, (0.8 - 0.3) / (1 + 1) =
+        // 0.25.
         let at = Vec3::new(1.0, -2.0, -9.0);
         assert_near(term(Vec3::Y, at, at + Vec3::new(3.0, 4.0, 0.0), 0.2, 0.3), 0.25);
-        // Below the horizon, in the plane, and at the point itself: nothing.
+        // No occlusion below the horizon, in the plane, and at the point itself.
         for difference in [Vec3::new(3.0, -4.0, 0.0), Vec3::X, Vec3::ZERO] {
             assert_eq!(term(Vec3::Y, at, at + difference, 0.2, 0.0), 0.0, "{difference}");
         }
@@ -167,7 +175,7 @@ mod tests {
 
     #[test]
     fn the_sum_is_divided_by_the_front_neighbours_and_back_faces_have_no_intensity() {
-        // (3 · 2 + 1) / 16 = 0.4375; six directions: 7 / 24 = 0.291667; more than all is all.
+        // (3 · 2 + 1) / 16 = 0.4375. Six directions: 7 / 24 = 0.291667. Larger sums are clamped to 1.
         assert_near(sum(3.0, 1.0, 2.0, 4), 0.4375);
         assert_near(sum(3.0, 1.0, 2.0, 6), 0.291_667);
         assert_eq!(sum(16.0, 16.0, 2.0, 4), 1.0);
@@ -201,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_surface_far_in_front_hides_nothing() {
-        // Radius 0.5. Nearer by 0.3: all. By 0.75: 2 - 1.5 = 0.5. By 1.2, or farther: nothing.
+        // Radius 0.5. Nearer by 0.3: 1. By 0.75: 2 - 1.5 = 0.5. By 1.2, or farther away: 0.
         for (surface, hidden) in [(9.7, 1.0), (9.25, 0.5), (8.8, 0.0), (10.0, 0.0), (11.0, 0.0)] {
             assert_near(behind(10.0, surface, 0.5), hidden);
         }

@@ -1,6 +1,6 @@
-// The formulas of screen-space ambient occlusion: twins of formula.rs, which names their sources.
+// The formulas of screen-space ambient occlusion. formula.rs has the same in Rust and names the sources.
 
-// What a neighbour hides of a point, both in view space, before the intensity.
+// Occlusion of a point by a neighbour, both in view space, before the intensity.
 fn occlusion_term(normal: vec3<f32>, position: vec3<f32>, neighbour: vec3<f32>, scale: f32, bias: f32) -> f32 {
     let difference = neighbour - position;
     let distance = length(difference);
@@ -14,25 +14,25 @@ fn occlusion_order(pixel: vec2<u32>) -> f32 {
     return f32(order[(pixel.y % 4u) * 4u + pixel.x % 4u]);
 }
 
-// The unit vector at which a pixel's directions are reflected.
+// Unit vector that reflects a pixel's directions.
 fn occlusion_random(pixel: vec2<u32>) -> vec2<f32> {
     let angle = occlusion_order(pixel) * 0.834485757;
     return vec2<f32>(cos(angle), sin(angle));
 }
 
-// A unit vector by its height and a number of golden angles.
+// Unit vector of a height and a number of golden angles.
 fn occlusion_spiral(z: f32, turns: f32) -> vec3<f32> {
     let angle = turns * 2.3999632;
     return vec3<f32>(vec2<f32>(cos(angle), sin(angle)) * sqrt(1.0 - z * z), z);
 }
 
-// The unit vector at which the sphere's points are reflected.
+// Unit vector that reflects the sphere's points.
 fn occlusion_random_3d(pixel: vec2<u32>) -> vec3<f32> {
     let index = occlusion_order(pixel);
     return occlusion_spiral(1.0 - (index + 0.5) / 8.0, index);
 }
 
-// One of six directions in texture coordinates; the diagonals serve the level of detail alone.
+// One of six directions in texture coordinates. Only the level of detail uses the diagonals.
 fn occlusion_direction(index: u32) -> vec2<f32> {
     var directions = array<vec2<f32>, 6>(
         vec2<f32>(1.0, 0.0), vec2<f32>(-1.0, 0.0), vec2<f32>(0.0, 1.0), vec2<f32>(0.0, -1.0),
@@ -63,7 +63,7 @@ fn occlusion_sum(front: f32, back: f32, intensity: f32, directions: u32) -> f32 
     return saturate((front * intensity + back) / f32(4u * directions));
 }
 
-// A point in the unit sphere, 0 to 15; an odd one lies opposite to the one before.
+// A point in the unit sphere, 0 to 15. An odd point is opposite to the previous one.
 fn occlusion_sphere(index: u32) -> vec3<f32> {
     let pair = index / 2u;
     let length = (f32(pair * 5u % 8u) + 0.5) / 8.0;
@@ -71,7 +71,7 @@ fn occlusion_sphere(index: u32) -> vec3<f32> {
     return point * select(-1.0, 1.0, index % 2u == 0u);
 }
 
-// What the surface seen at a point of the sphere hides of it, by their view depths.
+// Occlusion by the visible surface at a point of the sphere, by their view depths.
 fn occlusion_behind(point_depth: f32, surface_depth: f32, radius: f32) -> f32 {
     let nearer = point_depth - surface_depth;
     return select(0.0, saturate(2.0 - nearer / radius), nearer > 0.0);

@@ -1,47 +1,48 @@
-//! What a picture with ambient occlusion shows: plain data, and the uniform made of it.
+//! A picture with ambient occlusion: plain data, and the uniform of its shaders.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use shadowfit::{DepthConvention, PerspectiveCamera};
 
-/// How occlusion is found.
+/// Method of computing occlusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OcclusionMethod {
     /// By the angles between a pixel's normal and its neighbours in space.
     #[default]
     Normals,
-    /// By depth alone: points of a sphere around each pixel's surface, of which some lie behind what is seen there. It has
-    /// two known flaws: half of the sphere lies behind any wall, so that flat faces turn grey; and what is far in front
-    /// hides nothing, so that walls have a pale halo around objects. It uses the radius alone, as that of a sphere which
-    /// looks as high, and [`OcclusionSettings::blur`] and [`OcclusionSettings::second_radius`].
+    /// By depth alone: the share of points of a sphere around each pixel's surface that lie behind visible
+    /// surfaces. It has two known flaws. Half of the sphere lies behind any wall, so flat faces turn grey.
+    /// Surfaces far in front do not occlude, so walls have a pale halo around objects. It uses only the
+    /// radius (of a sphere that appears equally high), [`OcclusionSettings::blur`] and
+    /// [`OcclusionSettings::second_radius`].
     DepthOnly,
 }
 
-/// How ambient occlusion is computed.
+/// Settings of ambient occlusion.
 ///
-/// The defaults are for scenes in metres. They were chosen by runs against ray-traced occlusion (32 rays, distance 1 m,
-/// linear fall-off): 81 settings on the built-in arcade, then 27 on arcade and courtyard. A [`Self::second_radius`] of
-/// 0.15 comes a little nearer still.
+/// The defaults are for scenes in metres. They were chosen by comparison with ray-traced occlusion (32 rays,
+/// distance 1 m, linear fall-off): 81 settings on the built-in arcade, then 27 on arcade and courtyard. A
+/// [`Self::second_radius`] of 0.15 is slightly closer to the rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionSettings {
-    /// Reach of the neighbours: divided by a pixel's view depth, in the scene's units, it is a distance in texture
-    /// coordinates, which run from 0 to 1 along each side of the picture.
+    /// Reach of the neighbours in the scene's units. Divided by a pixel's view depth, it is a distance in
+    /// texture coordinates, 0 to 1 along each side of the picture.
     pub radius: f32,
     /// Factor on distances before the fall-off 1 / (1 + d), in 1 / the scene's units.
     pub scale: f32,
-    /// Cosine between normal and neighbour up to which nothing is hidden, 0 or more.
+    /// Cosine between normal and neighbour below which a neighbour does not occlude, 0 or more.
     pub bias: f32,
-    /// Factor on what front faces hide.
+    /// Factor on the occlusion by front faces.
     pub intensity: f32,
-    /// Whether back faces hide too: what lies behind the nearest surface is seen there.
+    /// Whether back faces also occlude. They represent surfaces behind the nearest one.
     pub back_faces: bool,
-    /// Whether near pixels take more directions than far ones: six to two instead of four.
+    /// Whether near pixels use more directions than far ones: six to two instead of four.
     pub level_of_detail: bool,
     /// Whether occlusion is averaged over four pixels each way.
     pub blur: bool,
-    /// Radius of a second pass; at each pixel the greater occlusion of both counts.
+    /// Radius of a second pass. At each pixel the greater occlusion of both counts.
     pub second_radius: Option<f32>,
-    /// How occlusion is found.
+    /// Method of computing occlusion.
     pub method: OcclusionMethod,
 }
 
@@ -62,7 +63,7 @@ impl Default for OcclusionSettings {
 }
 
 impl OcclusionSettings {
-    /// Whether a buffer of back faces is read.
+    /// Returns whether a buffer of back faces is read.
     pub(super) fn reads_backs(&self) -> bool {
         self.back_faces && self.method == OcclusionMethod::Normals
     }
@@ -73,20 +74,21 @@ impl OcclusionSettings {
 pub struct OcclusionLight {
     /// Unit direction toward the sun, in world axes.
     pub to_light: Vec3,
-    /// Light from everywhere, which occlusion darkens.
+    /// Light from all directions, which occlusion darkens.
     pub ambient: Vec3,
-    /// Light that a surface facing the sun gets besides.
+    /// Additional light of a surface that faces the sun.
     pub diffuse: Vec3,
 }
 
 impl OcclusionLight {
-    /// A white sun in the given unit direction and a strong ambient light, by which occlusion is easy to see.
+    /// Returns a white sun in the given unit direction and a strong ambient light, which makes occlusion easy
+    /// to see.
     pub fn new(to_light: Vec3) -> Self {
         Self { to_light, ambient: Vec3::splat(0.55), diffuse: Vec3::splat(0.45) }
     }
 }
 
-/// What a picture shows of occlusion.
+/// Contents of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OcclusionView {
     /// The scene in display values, without linearisation or tone curve.
@@ -94,28 +96,28 @@ pub enum OcclusionView {
     Classic,
     /// The scene in linear light with the tone curve of the shaded pass.
     Modern,
-    /// Occlusion alone in grey: white where nothing is hidden.
+    /// Occlusion alone in grey. White is open.
     Occlusion,
 }
 
-/// What a picture shows. There are no shadows in it.
+/// A frame with ambient occlusion. It has no shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionFrame {
     /// Sun and ambient light.
     pub light: OcclusionLight,
-    /// How occlusion is computed; nothing is hidden where `None`.
+    /// Settings of occlusion. Without them, ambient light is not darkened.
     pub settings: Option<OcclusionSettings>,
-    /// What is shown.
+    /// Contents of the picture.
     pub view: OcclusionView,
-    /// Colour behind the scene, in display values.
+    /// Background colour, in display values.
     pub background: Vec3,
 }
 
-/// What the passes of ambient occlusion read: `Occlusion` in WGSL.
+/// Uniform of the passes of ambient occlusion: `Occlusion` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct OcclusionUniform {
-    /// View space from positions relative to the eye.
+    /// Matrix to view space from positions relative to the eye.
     pub view_from_world: [[f32; 4]; 4],
     /// Texture coordinates of a view-space point are 0.5 + this * (x, y) / view depth.
     pub uv_from_view: [f32; 2],
@@ -133,11 +135,11 @@ pub struct OcclusionUniform {
     pub intensity: f32,
     /// 1 with [`OcclusionSettings::level_of_detail`], else 0.
     pub detail: f32,
-    /// Keeps the colours at multiples of 16 bytes.
+    /// Pads the colours to multiples of 16 bytes.
     pub padding_0: f32,
-    /// As above.
+    /// Padding.
     pub padding_1: f32,
-    /// As above.
+    /// Padding.
     pub padding_2: f32,
     /// [`OcclusionLight::ambient`].
     pub ambient: [f32; 4],
@@ -146,7 +148,7 @@ pub struct OcclusionUniform {
 }
 
 impl OcclusionUniform {
-    /// The uniform of a camera, a light, and settings; negative and NaN numbers count as 0.
+    /// Creates the uniform of a camera, a light and settings. Negative and NaN numbers count as 0.
     pub fn new(camera: &PerspectiveCamera, light: &OcclusionLight, settings: &OcclusionSettings) -> Self {
         let clip_from_view = camera.clip_from_view(DepthConvention::Reversed);
         Self {

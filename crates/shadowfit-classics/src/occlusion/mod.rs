@@ -1,10 +1,11 @@
-//! Screen-space ambient occlusion: buffers of view-space positions and normals, the occlusion of each pixel by its
-//! neighbours, an optional blur, and a picture whose ambient term it darkens. [`formula`] has the formulas.
+//! Screen-space ambient occlusion: buffers of view-space positions and normals, the occlusion of each pixel
+//! by its neighbours, an optional blur, and a picture with a darkened ambient term. [`formula`] has the
+//! formulas.
 //!
-//! Occlusion is a texture of half floats, 0 (open) to 1 (closed), of the picture's size with one sample per pixel, 0
-//! where there is sky. The blur is a box of four pixels that takes only neighbours in the pixel's plane; since random
-//! vectors repeat every four pixels, it averages all of them. Of two radii the greater occlusion counts, so that creases
-//! which only the smaller radius finds stay.
+//! Occlusion is a texture of half floats, 0 (open) to 1 (closed), of the picture's size with one sample per
+//! pixel, and 0 in the sky. The blur is a box of four pixels that only uses neighbours in the pixel's plane.
+//! Random vectors repeat every four pixels, so it averages all of them. With two radii, the greater occlusion
+//! counts, so that creases which only the smaller radius finds remain.
 
 pub mod formula;
 pub mod shaders;

@@ -1,6 +1,6 @@
 // Screen-space ambient occlusion from positions and normals. Comes after buffers.wgsl and formula.wgsl.
 
-// What the neighbours of a pixel hide of it, in all directions. back: 1 for back faces, else 0.
+// Sum of the occlusion terms of a pixel's neighbours in all directions. back: 1 for back faces, else 0.
 fn hidden(buffer: texture_2d<f32>, at: vec2<f32>, position: vec3<f32>, normal: vec3<f32>, back: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(buffer));
     let random = occlusion_random(vec2<u32>(at));
@@ -13,14 +13,14 @@ fn hidden(buffer: texture_2d<f32>, at: vec2<f32>, position: vec3<f32>, normal: v
             let inside = within(pixel);
             let neighbour = textureLoad(buffer, inside, 0);
             let term = occlusion_term(normal, position, neighbour.xyz, occlusion.scale, occlusion.bias);
-            // Sky and what lies beside the picture hide nothing.
+            // Sky and pixels outside the picture do not occlude.
             sum += select(0.0, term, neighbour.w > 0.0 && all(inside == pixel));
         }
     }
     return sum;
 }
 
-// Whether back faces hide, too.
+// Whether back faces occlude, too.
 override BACK_FACES: bool = false;
 
 @fragment

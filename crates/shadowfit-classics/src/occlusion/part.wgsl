@@ -1,4 +1,5 @@
-// Parts of the scene as the passes of screen-space ambient occlusion draw them. Comes after frame.wgsl and material.wgsl.
+// Parts of the scene in the passes of screen-space ambient occlusion. Comes after frame.wgsl and
+// material.wgsl.
 
 struct PartIn {
     @location(0) position: vec3<f32>,
@@ -19,12 +20,13 @@ struct PartOut {
     @location(3) color: vec4<f32>,
 }
 
-// Positions as in the shaded pass and the probe, so that all of them show the same triangle at a pixel's middle.
+// Computes positions as the shaded pass and the probe do, so that all of them show the same triangle at a
+// pixel's middle.
 @vertex
 fn vs_part(in: PartIn) -> PartOut {
     let local = vec4<f32>(in.position, 1.0);
     let position = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
-    // Normals follow the cofactors of the transform; the side is chosen for each pixel.
+    // Cofactors of the transform rotate the normals. The side is chosen for each pixel.
     let a = in.row0.xyz;
     let b = in.row1.xyz;
     let c = in.row2.xyz;
@@ -33,7 +35,8 @@ fn vs_part(in: PartIn) -> PartOut {
     return PartOut(frame.clip_from_world * vec4<f32>(position, 1.0), position, normal, in.uv, in.color);
 }
 
-// Unit interpolated normal, on the side that the eye sees. Called where control flow is uniform: it takes derivatives.
+// Unit interpolated normal, on the side of the eye. Requires uniform control flow, because it takes
+// derivatives.
 fn part_normal(in: PartOut) -> vec3<f32> {
     let geometric = normalize(cross(dpdy(in.position), dpdx(in.position)));
     let facing = select(geometric, -geometric, dot(geometric, in.position) > 0.0);

@@ -1,4 +1,4 @@
-//! The passes that find ambient occlusion and draw pictures with it.
+//! The passes that compute ambient occlusion and draw pictures with it.
 
 use shadowfit::PerspectiveCamera;
 use shadowfit_render::attachment::{cleared, depth};
@@ -12,7 +12,7 @@ use super::{OcclusionFrame, OcclusionSettings, OcclusionUniform};
 const MATERIAL_GROUP: u32 = 2;
 const OCCLUSION_GROUP: u32 = 3;
 
-/// Most radii of a frame.
+/// Greatest number of radii of a frame.
 const RADII: usize = 2;
 
 /// Draws scenes with screen-space ambient occlusion.
@@ -21,7 +21,7 @@ pub struct OcclusionPasses {
     pipelines: Pipelines,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
-    /// Of each radius.
+    /// One for each radius.
     uniforms: [(wgpu::Buffer, wgpu::BindGroup); RADII],
     targets: Option<Targets>,
     /// Whether the last frame was blurred.
@@ -29,7 +29,7 @@ pub struct OcclusionPasses {
 }
 
 impl OcclusionPasses {
-    /// Passes for targets of `samples` per pixel (1 or 4).
+    /// Creates passes for targets with `samples` samples per pixel (1 or 4).
     pub fn new(gpu: &Gpu, samples: u32) -> Self {
         let device = &gpu.device;
         let pipelines = Pipelines::new(device, samples);
@@ -46,11 +46,12 @@ impl OcclusionPasses {
         Self { pipelines, frame_uniform, frame_group, uniforms, targets: None, is_blurred: false }
     }
 
-    /// Draws a frame into a target of these passes' number of samples, and submits it. The target's depth is the frame's
-    /// own afterwards, but for [`OcclusionView::Occlusion`](super::OcclusionView::Occlusion), which clears it.
+    /// Draws a frame into a target with these passes' number of samples per pixel, and submits it. Afterwards
+    /// the target's depth buffer holds the frame's depth, or is cleared for
+    /// [`OcclusionView::Occlusion`](super::OcclusionView::Occlusion).
     ///
-    /// Occlusion that was found elsewhere, such as by rays, may be `given`, 0..=1 for each of the target's pixels, rows
-    /// from the top: it takes the place of that of the frame's settings.
+    /// `given` is occlusion from another source, such as rays: 0..=1 for each of the target's pixels, rows
+    /// from the top. It replaces the occlusion of the frame's settings.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -74,9 +75,9 @@ impl OcclusionPasses {
         gpu.submit([encoder.finish()]);
     }
 
-    /// The occlusion of the frame that was drawn last, once it has come back from the GPU: 0 (open) to 1 (closed), rows from the top;
-    /// 0 where there is sky. A pixel's middle is that of [`Renderer::probe`](shadowfit_render::Renderer::probe) for the same camera
-    /// and size. Empty before the first frame.
+    /// Reads back the occlusion of the frame that was drawn last: 0 (open) to 1 (closed), rows from the top,
+    /// 0 in the sky. Pixel centres match [`Renderer::probe`](shadowfit_render::Renderer::probe) for the same
+    /// camera and size. Empty before the first frame.
     ///
     /// # Errors
     ///
@@ -87,7 +88,7 @@ impl OcclusionPasses {
         Ok(bytes.as_chunks().0.iter().map(|half| from_half(u16::from_le_bytes(*half))).collect())
     }
 
-    /// Writes uniforms, and makes the targets and pipelines that the frame needs.
+    /// Writes uniforms, and creates the targets and pipelines that the frame needs.
     fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -118,7 +119,7 @@ impl OcclusionPasses {
         }
     }
 
-    /// Uploads occlusion that was found elsewhere; that of another size is left out.
+    /// Uploads given occlusion. Ignores occlusion of another size.
     fn take(&self, gpu: &Gpu, given: &[f32]) {
         let Some(targets) = &self.targets else { return };
         let texture = targets.occlusion(false);
@@ -137,7 +138,7 @@ impl OcclusionPasses {
         }
     }
 
-    /// Positions, normals, occlusion and its blur.
+    /// Records the passes of positions, normals, occlusion and blur.
     fn occlusion_passes(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -172,7 +173,7 @@ impl OcclusionPasses {
         }
     }
 
-    /// Positions and normals, or the positions of back faces.
+    /// Records the pass of positions and normals, or of the positions of back faces.
     fn part_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -195,7 +196,7 @@ impl OcclusionPasses {
         self.draw_parts(&mut pass, scene, draws, drawn);
     }
 
-    /// The picture from the occlusion.
+    /// Records the picture's pass, which reads the occlusion.
     fn picture_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -229,7 +230,7 @@ impl OcclusionPasses {
     }
 }
 
-/// A pass over a texture of occlusion, open at first.
+/// Begins a pass over an occlusion texture, which is cleared to 0 (open).
 fn screen_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, view: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("occlusion"),
@@ -238,17 +239,18 @@ fn screen_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, view: &wgpu::TextureVi
     })
 }
 
-/// A half float that is finite and not negative.
+/// Converts a half float that is finite and not negative.
 fn from_half(bits: u16) -> f32 {
-    // The exponents' biases differ by 127 - 15 = 112, which a product adds without a case for subnormal numbers.
+    // The exponent biases differ by 127 - 15 = 112. A product adds the difference without a special case for
+    // subnormals.
     f32::from_bits(u32::from(bits) << 13) * 2.0_f32.powi(112)
 }
 
-/// A number of 0..=1 as a half float, rounded to the nearest; others are brought there.
+/// Converts a number to a half float, clamped to 0..=1 and rounded to the nearest.
 fn to_half(value: f32) -> u16 {
     let value = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
-    // The product takes the difference of the exponents' biases off, subnormal numbers included; half of the last place
-    // rounds.
+    // The product subtracts the difference of the exponent biases, also for subnormals. Adding half of the
+    // last place rounds.
     let bits = (value * 2.0_f32.powi(-112)).to_bits();
     ((bits + 0x0fff + (bits >> 13 & 1)) >> 13) as u16
 }

@@ -11,7 +11,7 @@ use super::formats::{NORMAL_FORMAT, OCCLUSION_FORMAT, POSITION_FORMAT};
 use super::frame::{OcclusionMethod, OcclusionSettings, OcclusionView};
 use super::shaders;
 
-/// What parts are drawn as.
+/// Kinds of passes over the scene's parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Drawn {
     /// Positions and normals.
@@ -25,7 +25,7 @@ pub(super) enum Drawn {
 }
 
 impl Drawn {
-    /// What a view draws parts as, if it does.
+    /// Returns the kind of pass of a view, or `None` if the view does not draw parts.
     pub(super) fn of_view(view: OcclusionView) -> Option<Self> {
         match view {
             OcclusionView::Classic => Some(Self::Classic),
@@ -43,7 +43,7 @@ impl Drawn {
 #[derive(Debug)]
 pub(super) struct Layouts {
     pub(super) uniform: wgpu::BindGroupLayout,
-    /// Three textures that are loaded.
+    /// Three textures read with `textureLoad`.
     pub(super) buffers: wgpu::BindGroupLayout,
     /// Occlusion.
     pub(super) shown: wgpu::BindGroupLayout,
@@ -62,7 +62,7 @@ pub(super) struct Pipelines {
     pub(super) view: wgpu::RenderPipeline,
     surface_module: wgpu::ShaderModule,
     picture_module: wgpu::ShaderModule,
-    /// Made when the first part is drawn that needs it.
+    /// Created when the first part that needs it is drawn.
     parts: HashMap<(Drawn, PartKey), wgpu::RenderPipeline>,
 }
 
@@ -127,7 +127,7 @@ impl Pipelines {
         }
     }
 
-    /// Pipeline of the pass that finds occlusion.
+    /// Returns the pipeline of the pass that computes occlusion.
     pub(super) fn gather(&self, settings: &OcclusionSettings) -> &wgpu::RenderPipeline {
         match settings.method {
             OcclusionMethod::DepthOnly => &self.depth_only,
@@ -136,7 +136,7 @@ impl Pipelines {
         }
     }
 
-    /// Makes those pipelines that draws need and that are not there yet.
+    /// Creates the missing pipelines of draws.
     pub(super) fn add(&mut self, device: &wgpu::Device, drawn: Drawn, draws: &[Draw]) {
         for key in draws.iter().map(|draw| draw.key) {
             if !self.parts.contains_key(&(drawn, key)) {
@@ -146,7 +146,7 @@ impl Pipelines {
         }
     }
 
-    /// Pipeline that [`Self::add`] has made for a part.
+    /// Returns the pipeline of a part, which [`Self::add`] has created.
     pub(super) fn part(&self, drawn: Drawn, key: PartKey) -> &wgpu::RenderPipeline {
         &self.parts[&(drawn, key)]
     }

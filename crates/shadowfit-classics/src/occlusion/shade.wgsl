@@ -1,15 +1,15 @@
-// The scene under a sun and an ambient light, which occlusion darkens. Comes after part.wgsl,
-// uniform.wgsl and srgb.wgsl.
+// The scene under a sun and an ambient light darkened by occlusion. Comes after part.wgsl, uniform.wgsl and
+// srgb.wgsl.
 
 @group(3) @binding(0) var occluded: texture_2d<f32>;
 
-// Whether light is linear, with the tone curve; else it is in display values.
+// Whether light is linear with the tone curve, or in display values.
 override MODERN: bool = false;
 
 @fragment
 fn fs_picture(in: PartOut) -> @location(0) vec4<f32> {
     let base = base_color(in.uv) * in.color;
-    // Blended surfaces are not in the buffers: nothing is known to hide them.
+    // Blended surfaces are not in the buffers, so their occlusion is unknown.
     let hidden = textureLoad(occluded, vec2<i32>(in.clip.xy), 0).x * (1.0 - material.blended);
     let facing = saturate(dot(part_normal(in), frame.to_light));
     let light = occlusion.ambient.rgb * (1.0 - hidden) + occlusion.diffuse.rgb * facing;

@@ -1,7 +1,7 @@
 // Positions and normals in view space. Comes after part.wgsl and uniform.wgsl.
 
 struct Surfaces {
-    // 1 in w where there is a surface.
+    // w is 1 where there is a surface.
     @location(0) position: vec4<f32>,
     @location(1) normal: vec4<f32>,
 }
@@ -16,7 +16,7 @@ fn fs_surface(in: PartOut) -> Surfaces {
     return Surfaces(vec4<f32>(position.xyz, 1.0), normal);
 }
 
-// Back faces, whose normals nobody reads.
+// Back faces. Their normals are not needed.
 @fragment
 fn fs_back(in: PartOut) -> @location(0) vec4<f32> {
     if is_cut_out(in.uv, in.color.a) {

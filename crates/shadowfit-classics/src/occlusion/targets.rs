@@ -6,14 +6,14 @@ use shadowfit_render::passes::DEPTH_FORMAT;
 use super::formats::{NORMAL_FORMAT, OCCLUSION_FORMAT, POSITION_FORMAT};
 use super::pipelines::Layouts;
 
-/// Textures of one size, and the bind groups of those who read them.
+/// Textures of one size, and the bind groups for reading them.
 #[derive(Debug)]
 pub(super) struct Targets {
     pub(super) size: [u32; 2],
     has_backs: bool,
     pub(super) positions: wgpu::TextureView,
     pub(super) normals: wgpu::TextureView,
-    /// Positions of back faces; those of front faces where there are none.
+    /// Positions of back faces, or of front faces if back faces are not drawn.
     pub(super) backs: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
     raw: wgpu::Texture,
@@ -69,7 +69,7 @@ impl Targets {
         }
     }
 
-    /// Whether the textures have a size and what back faces need.
+    /// Returns whether the textures have this size, and back faces if needed.
     pub(super) fn serves(&self, size: [u32; 2], has_backs: bool) -> bool {
         self.size == size && self.has_backs == has_backs
     }

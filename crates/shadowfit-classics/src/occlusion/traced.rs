@@ -1,4 +1,5 @@
-//! Ambient occlusion by rays for the pictures of a sample: waited for, or traced on a thread while the camera rests.
+//! Ray-traced ambient occlusion for the pictures of a sample: either blocking, or on a thread while the
+//! camera rests.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -8,7 +9,7 @@ use shadowfit_scene::Pose;
 use shadowfit_study::{PreparedScene, SceneRays, in_background};
 use shadowfit_truth::{AmbientSettings, AmbientTruth, PixelCamera, Truth};
 
-/// What occlusion was traced for.
+/// Input of a trace.
 #[derive(Clone, Debug, PartialEq)]
 struct Key {
     camera: PerspectiveCamera,
@@ -16,7 +17,7 @@ struct Key {
     pose: Pose,
 }
 
-/// The occlusion that was traced last, and the trace that is running.
+/// The latest traced occlusion, and the running trace.
 #[derive(Debug, Default)]
 pub(crate) struct Traced {
     done: Option<(Key, Vec<f32>)>,
@@ -24,8 +25,8 @@ pub(crate) struct Traced {
 }
 
 impl Traced {
-    /// The occlusion of a picture, rows from the top, 0 where there is sky. Unless it `waits` it is traced on a thread, and
-    /// `None` until it is there.
+    /// Returns the occlusion of a picture, rows from the top, 0 in the sky. If `waits` is false, a thread
+    /// traces it, and the result is `None` until it has finished.
     pub(crate) fn occlusion(
         &mut self,
         scene: &mut PreparedScene,
@@ -40,7 +41,7 @@ impl Traced {
                 None
             }
             Some((of, Err(TryRecvError::Empty), result)) => Some((of, result)),
-            // A thread that is gone leaves nothing, and the next frame begins another one.
+            // If the thread has ended without a result, the next frame starts another.
             Some((_, Err(TryRecvError::Disconnected), _)) | None => None,
         };
         if self.done.as_ref().is_none_or(|(of, _)| *of != key) {
@@ -50,10 +51,10 @@ impl Traced {
             } else if let Some(rays) = ready(scene).filter(|_| self.under_way.is_none()) {
                 let (sender, result) = channel();
                 let work = move || {
-                    // Nobody waits any more where the sample is another one.
+                    // If the sample has changed, there is no receiver.
                     let _ = sender.send(trace(&rays, &camera));
                 };
-                // Where no thread can be made, the picture stays as it is in screen space.
+                // If the thread cannot be started, the picture keeps screen-space occlusion.
                 let started = in_background("occlusion", work);
                 self.under_way = started.is_ok().then(|| (key.clone(), result));
             }
@@ -62,7 +63,7 @@ impl Traced {
     }
 }
 
-/// The rays of a scene's pose, if they are there; they are asked for where they are not.
+/// Returns the rays of a scene's pose if they are ready. Otherwise requests them.
 fn ready(scene: &mut PreparedScene) -> Option<Arc<SceneRays>> {
     scene.take_rays();
     scene.request_rays();
@@ -75,7 +76,7 @@ fn trace(rays: &SceneRays, camera: &PixelCamera) -> Vec<f32> {
     truth.occlusion.into_iter().map(|occlusion| occlusion.unwrap_or(0.0)).collect()
 }
 
-/// The ray-traced occlusion of what rays see through a camera.
+/// Returns the ray-traced occlusion of the surfaces that a camera sees.
 pub(crate) fn truth(rays: &SceneRays, camera: &PixelCamera) -> AmbientTruth {
     let seen = Truth::seen_by_rays(&rays.tracer, camera);
     AmbientTruth::trace(&rays.tracer, camera, &AmbientSettings::default(), &seen)

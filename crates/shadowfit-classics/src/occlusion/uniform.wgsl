@@ -1,4 +1,4 @@
-// What the passes of screen-space ambient occlusion read.
+// Uniform of the passes of screen-space ambient occlusion.
 
 struct Occlusion {
     // View space from positions relative to the eye.

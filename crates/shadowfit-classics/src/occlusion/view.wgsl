@@ -1,4 +1,4 @@
-// Occlusion alone: white where nothing is hidden. Comes after screen.wgsl.
+// Shows occlusion alone: white is open. Comes after screen.wgsl.
 
 @group(0) @binding(0) var occluded: texture_2d<f32>;
 

@@ -1,5 +1,6 @@
-//! A sky on a cube around the eye, seen from inside: looked up by position, whatever place the camera has, at the far
-//! plane, and without writing depth. Its picture is generated, with the sun where the light is.
+//! A sky on a cube around the eye, seen from inside. It is looked up by position, independent of the camera's
+//! position, and drawn at the far plane without writing depth. Its picture is generated, with the sun in the
+//! direction of the light.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -10,10 +11,10 @@ use shadowfit_render::{Gpu, bindings};
 
 use super::picture::SkyPicture;
 
-/// The sky box's shader: uniform, cube and sampler are group 0.
+/// The sky box's shader. Uniform, cube and sampler are group 0.
 pub const WGSL: &str = include_str!("sky_box.wgsl");
 
-/// Width and height of a face, in texels: about a sixth of a degree each.
+/// Width and height of a face, in texels. A texel is about a sixth of a degree wide.
 const FACE_SIZE: u32 = 512;
 
 /// Vertices of a cube of two triangles a side.
@@ -29,17 +30,17 @@ pub struct SkyBox {
     group: wgpu::BindGroup,
 }
 
-/// What the sky box's shader reads: `SkyBox` in WGSL.
+/// Uniform of the sky box's shader: `SkyBox` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SkyBoxUniform {
-    /// Clip space (reversed depth) from positions relative to the eye.
+    /// Matrix to clip space (reversed depth) from positions relative to the eye.
     pub clip_from_world: [[f32; 4]; 4],
 }
 
 impl SkyBox {
-    /// A sky for targets of `samples` per pixel (1 or 4), with the sun in the direction `to_light` (world axes, y up, any
-    /// length).
+    /// Creates a sky for targets with `samples` samples per pixel (1 or 4), with the sun in the direction
+    /// `to_light` (world axes, y up, any length).
     pub fn new(gpu: &Gpu, to_light: Vec3, samples: u32) -> Self {
         let device = &gpu.device;
         let texture = cube(device);
@@ -73,8 +74,8 @@ impl SkyBox {
         sky
     }
 
-    /// Moves the sun to a direction (world axes, any length) and redraws the picture if the direction changed: a few tenths
-    /// of a second of work, on up to six cores.
+    /// Moves the sun to a direction (world axes, any length). Redraws the picture if the direction changed,
+    /// which takes a few tenths of a second on up to six cores.
     pub fn set_light(&mut self, gpu: &Gpu, to_light: Vec3) {
         if self.to_light != to_light {
             self.to_light = to_light;
@@ -88,8 +89,9 @@ impl SkyBox {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&SkyBoxUniform { clip_from_world }));
     }
 
-    /// Draws the sky where nothing was drawn, in display values, into a pass over the [`ENCODED_FORMAT`] view of a
-    /// [`RenderTarget`](shadowfit_render::RenderTarget) with its depth, which was cleared to the far value 0. It sets group 0.
+    /// Draws the sky behind all surfaces, in display values, into a pass over the [`ENCODED_FORMAT`] view of
+    /// a [`RenderTarget`](shadowfit_render::RenderTarget) with its depth, which must have been cleared to the
+    /// far value 0. It sets group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
@@ -127,7 +129,7 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32)
     let module = maker.module("sky box", WGSL.to_owned());
     maker.pipeline(&Shape {
         targets: &[Some(ENCODED_FORMAT.into())],
-        // The cube's sides face outward; what is seen is their inside.
+        // The cube's sides face outward, and the camera sees their back.
         primitive: culled(Some(wgpu::Face::Front)),
         depth: depth(false, wgpu::CompareFunction::GreaterEqual),
         samples,

@@ -1,12 +1,12 @@
-//! Directions and the faces of a cube map, as graphics interfaces look them up (Vulkan specification, "Cube Map Face
-//! Selection"; WebGPU, Metal and Direct3D agree).
+//! Conversion between directions and the faces of a cube map, as graphics APIs define it (Vulkan
+//! specification, "Cube Map Face Selection"; WebGPU, Metal and Direct3D agree).
 
 use glam::{Vec2, Vec3};
 
-/// The face of a direction (world axes, any length but 0; +x, -x, +y, -y, +z, -z from 0 to 5) and the texture coordinates
-/// on it, 0..=1, u to the right and v down.
+/// Returns the face of a direction (world axes, any length but 0; +x, -x, +y, -y, +z, -z from 0 to 5) and the
+/// texture coordinates on it, 0..=1, u to the right and v down.
 ///
-/// The greatest component chooses the face; of equal ones z before y before x.
+/// The greatest component chooses the face. Among equal components, z precedes y, and y precedes x.
 pub fn face_of(direction: Vec3) -> (usize, Vec2) {
     let Vec3 { x, y, z } = direction;
     let size = direction.abs();
@@ -22,7 +22,8 @@ pub fn face_of(direction: Vec3) -> (usize, Vec2) {
     (face, Vec2::new(along, down) / size.max_element() * 0.5 + 0.5)
 }
 
-/// A direction (world axes, greatest component ±1) of texture coordinates on a face, 0 to 5: the inverse of [`face_of`].
+/// Returns the direction (world axes, greatest component ±1) of texture coordinates on a face, 0 to 5: the
+/// inverse of [`face_of`].
 pub fn direction_of(face: usize, uv: Vec2) -> Vec3 {
     let Vec2 { x: along, y: down } = uv * 2.0 - 1.0;
     match face {
@@ -41,7 +42,7 @@ mod tests {
 
     #[test]
     fn directions_have_their_faces_and_coordinates() {
-        // For instance (4, 1, -2): x is greatest, u = (2/4 + 1) / 2 = 0.75, v = (-1/4 + 1) / 2 = 0.375.
+        // Example: for (4, 1, -2), x is greatest, u = (2/4 + 1) / 2 = 0.75, v = (-1/4 + 1) / 2 = 0.375.
         for (direction, face, uv) in [
             (Vec3::new(4.0, 1.0, -2.0), 0, Vec2::new(0.75, 0.375)),
             (Vec3::new(-4.0, 1.0, -2.0), 1, Vec2::new(0.25, 0.375)),

@@ -1,5 +1,5 @@
-//! A sky box around the built-in courtyard: a cube that is seen from inside, as far away wherever the camera is. The
-//! scene is shaded by its texture, ambient and diffuse light, with one map around the camera.
+//! A sky box around the built-in courtyard: a cube seen from inside, at the same distance from every camera
+//! position. The scene is shaded by its texture, ambient and diffuse light, with one map around the camera.
 
 mod cube;
 mod face;
@@ -27,22 +27,23 @@ pub use picture::SkyPicture;
 
 /// Width and height of the map, in texels.
 const MAP: u32 = 2048;
-/// How far shadows reach, and how far above them casters may stand, in metres.
+/// Distance up to which there are shadows, and height of casters above, in metres.
 const DISTANCE: f32 = 30.0;
-/// Depth bias of the map, in texels' sizes.
+/// Depth bias of the map, in texel sizes.
 const BIAS_TEXELS: f32 = 3.0;
-/// Elevation and azimuth of the sun at first, in degrees; azimuth from +z toward +x.
+/// Initial elevation and azimuth of the sun, in degrees. The azimuth is from +z toward +x.
 const ELEVATION: f32 = 30.0;
 const AZIMUTH: f32 = 76.0;
-/// Light of the sun and light from everywhere, as factors of the texture.
+/// Diffuse and ambient light, as factors of the texture.
 const POWER_AND_AMBIENT: [f32; 2] = [0.75, 0.42];
 
 pub(crate) const SAMPLE: Sample = Sample {
     id: "sky-box",
     title: "Sky box",
-    teaches: "A cube around the camera, seen from inside and looked up by the position on it, whatever size it has: the \
-              camera's own translation is left out, and depth is not written, so that everything stands before it.",
-    flaw: "It has no depth: nothing in it comes nearer, and what should pass behind it cannot.",
+    teaches: "A cube around the camera, seen from inside. The position on the cube is the texture coordinate, so its \
+        size does not matter. The camera's translation is left out and depth is not written, so all objects appear in \
+        front of it.",
+    flaw: "It has no depth: nothing in it comes nearer as the camera moves, and no object can be behind it.",
     page: "samples/sky-box.md",
     size: [800, 480],
     view: SampleView {
@@ -62,13 +63,13 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "sky",
             label: "Sky box",
-            help: "Drawn behind everything; without it the background is plain.",
+            help: "Draws the sky behind all objects. Without it the background is plain.",
             kind: OptionKind::Toggle { default: true },
         },
         SampleOption {
             id: "elevation",
             label: "Sun's elevation",
-            help: "Of the light and of the sun in the sky, which is where the light is.",
+            help: "Elevation of the light, and of the sun in the sky.",
             kind: OptionKind::Number { min: 3.0, max: 80.0, default: ELEVATION, unit: "°" },
         },
         SampleOption {
@@ -80,7 +81,7 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "shadows",
             label: "Shadows",
-            help: "By one map for what is near, or none.",
+            help: "With one map around the camera, or none.",
             kind: OptionKind::Choice(&[("source", "one map"), ("off", "none")]),
         },
         SampleOption::LIGHTING,
@@ -90,21 +91,21 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "sun",
             label: "Toward the sun",
-            text: "The sun of the sky stands where the light comes from: shadows point away from it.",
+            text: "The sun in the sky matches the direction of the light: shadows point away from it.",
             options: &[],
             view: Some((DVec3::new(-6.0, 1.6, 1.5), Vec3::new(0.9, 0.3, 0.12))),
         },
         SampleVariant {
             id: "corner",
             label: "A corner of the cube",
-            text: "Three faces of the cube meet in the middle of this picture, and no edge of them shows.",
+            text: "Three faces of the cube meet in the middle of this picture, but no edge is visible.",
             options: &[],
             view: Some((DVec3::new(-2.4, 1.6, 6.0), Vec3::new(1.0, 1.0, -1.0))),
         },
         SampleVariant {
             id: "evening",
             label: "Evening",
-            text: "A low sun: sky, light and shadows go together.",
+            text: "A low sun: sky, light and shadows match.",
             options: &[("elevation", "6")],
             view: None,
         },

@@ -14,7 +14,7 @@ struct SkyBoxVertex {
     @location(0) position: vec3<f32>,
 }
 
-// Corners of a side of the cube, which lies at x = 1: two triangles, counter-clockwise seen from outside.
+// Corners of the cube's side at x = 1: two triangles, counter-clockwise seen from outside.
 fn side_corner(index: u32) -> vec3<f32> {
     var corners = array<vec2<f32>, 6>(
         vec2<f32>(-1.0, -1.0), vec2<f32>(1.0, -1.0), vec2<f32>(1.0, 1.0),
@@ -26,7 +26,8 @@ fn side_corner(index: u32) -> vec3<f32> {
 fn vs_sky_box(@builtin(vertex_index) index: u32) -> SkyBoxVertex {
     let corner = side_corner(index % 6u);
     let side = index / 6u;
-    // Turned from axis to axis, and for the opposite sides by half a turn about another axis, neither of which mirrors.
+    // Rotates the side from axis to axis, and for the opposite sides by half a turn about another axis.
+    // Neither mirrors.
     let turned = select(select(corner.yzx, corner.zxy, side % 3u == 1u), corner, side % 3u == 0u);
     let opposite = vec3<f32>(-turned.x, -turned.y, -turned.z).zyx;
     let position = select(opposite, turned, side < 3u);

@@ -1,6 +1,6 @@
-//! A terrain with vehicles under a spotlight: one large map whose depths are stored reversed, 1 - z/w, and interpolated
-//! from the vertices. Its source's comment asks for a map of 32 bits, and its code makes one of 8. Height map and vehicles
-//! are our own.
+//! A terrain with vehicles under a spotlight: one large map whose depths are stored reversed, 1 - z/w, and
+//! interpolated from the vertices. Its source's comment requests a map of 32 bits, but its code creates one
+//! of 8. Height map and vehicles are our own.
 
 mod scene;
 pub mod shade;
@@ -22,10 +22,11 @@ use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, Sample
 #[cfg(test)]
 pub(crate) use scene::{HeightMap, PLACES};
 
-/// What is taken from the stored depth, and what z/w is taken from: a bias of a hundredth together.
+/// Numbers subtracted from the stored depth, and from which z/w is subtracted. Together they make a bias of
+/// 1/100.
 const OFF_STORED: f32 = 0.03;
 const FROM: f32 = 0.98;
-/// Its shading, by the factor of N·L and an ambient light, which are ours.
+/// Shading with the factor of N·L and an ambient light, which are ours.
 const SHADING: Shading = Shading::new("terrain", &[include_str!("shade.wgsl")], [0.6, 0.0]);
 /// Modern lighting: irradiance of the light and of the sky.
 const MODERN: Shading = Shading::modern(2.6, 0.45);
@@ -33,10 +34,10 @@ const MODERN: Shading = Shading::modern(2.6, 0.45);
 pub(crate) const SAMPLE: Sample = Sample {
     id: "terrain-vehicles",
     title: "Terrain with vehicles",
-    teaches: "One large map over a landscape: things cast on the ground, on themselves and on each other. Depth is stored \
-              reversed, since floats are finest near zero, which is far here.",
-    flaw: "The bias is a hundredth of a perspective depth, which is several units far from the light. It has to be so large \
-           since the source's map of 8 bits has only 256 depths.",
+    teaches: "One large map over a landscape: objects cast on the ground, on themselves and on each other. Depth is \
+        stored reversed, since floats are most precise near zero, which is the far end here.",
+    flaw: "The bias is 1/100 of a perspective depth, which is several units far from the light. It must be so large \
+        because the source's 8-bit map has only 256 depths.",
     page: "samples/terrain-vehicles.md",
     size: [900, 600],
     view: SampleView {
@@ -59,7 +60,7 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "format",
             label: "Map format",
-            help: "The source's comment asks for 32 bits, its code makes 8.",
+            help: "The source's comment requests 32 bits, but its code creates 8.",
             kind: OptionKind::Choice(&[
                 ("r32f", "32-bit float"),
                 ("grey8", "8-bit colour"),
@@ -70,13 +71,13 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleOption {
             id: "off-stored",
             label: "Off the stored",
-            help: "What is taken from the stored depth before it is compared.",
+            help: "Number subtracted from the stored depth before the comparison.",
             kind: OptionKind::Number { min: 0.0, max: 0.1, default: OFF_STORED, unit: "" },
         },
         SampleOption {
             id: "from",
             label: "From",
-            help: "What the point's own z/w is taken from.",
+            help: "Number from which the point's own z/w is subtracted.",
             kind: OptionKind::Number { min: 0.9, max: 1.0, default: FROM, unit: "" },
         },
         SampleOption::INSET,
@@ -92,30 +93,30 @@ pub(crate) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "8-bit",
             label: "8 bits, as the code makes it",
-            text: "On the right 256 depths from 90 to 300 units: the bias of a hundredth is two and a half of their steps, so \
-                   that the two hardly differ.",
+            text: "On the right the 256 depths reach from 90 to 300 units. The bias of 1/100 is two and a half of \
+                their steps, so the two maps hardly differ.",
             options: &[("beside", "format=grey8")],
             view: None,
         },
         SampleVariant {
             id: "8-bit-bands",
             label: "8 bits and a smaller bias",
-            text: "With a bias of half a thousandth, an eighth of a step of 8 bits, the right half falls into bands of shadow. The \
-                   32-bit map on the left bears it.",
+            text: "With a bias of 0.0005, an eighth of an 8-bit step, bands of shadow cover the right half. The \
+                32-bit map on the left does not need more.",
             options: &[("from", "0.9705"), ("beside", "format=grey8")],
             view: None,
         },
         SampleVariant {
             id: "on-itself",
             label: "On itself",
-            text: "Posts and roof of the tractor throw their shadows on its own seat and bonnet.",
+            text: "Posts and roof of the tractor cast shadows on its own seat and bonnet.",
             options: &[("inset", "off")],
             view: Some((DVec3::new(168.0, 14.0, 84.0), Vec3::new(-18.0, -8.0, 16.0))),
         },
         SampleVariant {
             id: "on-another",
             label: "On each other",
-            text: "A blade of the helicopter throws its shadow on the jeep.",
+            text: "A blade of the helicopter casts its shadow on the jeep.",
             options: &[("inset", "off")],
             view: Some((DVec3::new(152.0, 18.0, 150.0), Vec3::new(-11.0, -14.0, 20.0))),
         },
@@ -124,7 +125,7 @@ pub(crate) const SAMPLE: Sample = Sample {
     draws: drawing,
 };
 
-/// Its test, of a map that stores 1 - z/w.
+/// Returns the test for a map that stores 1 - z/w.
 fn test(values: &SampleValues) -> ShadowTest {
     let numbers = [values.get("off-stored"), values.get("from"), 0.0, 0.0];
     ShadowTest::nearest("terrain", include_str!("test.wgsl"), numbers)

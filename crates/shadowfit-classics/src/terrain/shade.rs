@@ -1,13 +1,14 @@
-//! The terrain sample's shading in Rust, as `shade.wgsl` has it; a test compares the two.
+//! The terrain sample's shading in Rust. A test compares it with `shade.wgsl`.
 //!
-//! Colours are display values; `n_l` is a cosine between unit vectors, `share` that of the light, 0 in shadow to 1.
+//! Colours are display values. `n_l` is a cosine between unit vectors. `share` is the share of light, from 0
+//! in shadow to 1.
 
 use glam::Vec3;
 
 /// Light term of [`colour`] in shadow.
 const IN_SHADOW: f32 = 0.3;
 
-/// Texture times its light, which is 0.3 in shadow and 1 and more outside of it.
+/// Returns texture times light. The light is 0.3 in shadow, and 1 or more outside of it.
 pub fn colour(base: Vec3, n_l: f32, share: f32, diffuse: f32, ambient: f32) -> Vec3 {
     let lit = 1.0 + diffuse * n_l.max(0.0);
     base * (IN_SHADOW + (lit - IN_SHADOW) * share + ambient)

@@ -1,6 +1,6 @@
-//! The terrain sample's test in Rust, as `test.wgsl` has it; a test compares the two.
+//! The terrain sample's shadow test in Rust. A test compares it with `test.wgsl`.
 
-/// 0 in shadow, which is where `stored - off_stored > from - depth`; the map stores 1 - z/w.
+/// Returns 0 in shadow, which is where `stored - off_stored > from - depth`, else 1. The map stores 1 - z/w.
 pub fn share(stored: f32, depth: f32, off_stored: f32, from: f32) -> f32 {
     if stored - off_stored > from - depth { 0.0 } else { 1.0 }
 }

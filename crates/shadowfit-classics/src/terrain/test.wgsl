@@ -1,5 +1,5 @@
-// The test of the terrain sample, whose map stores 1 - z/w. test.x: what is taken from the stored depth, test.y: what z/w
-// is taken from.
+// Shadow test of the terrain sample, whose map stores 1 - z/w. test.x is subtracted from the stored depth.
+// z/w is subtracted from test.y.
 
 fn terrain_share(stored: f32, depth: f32, off_stored: f32, whole: f32) -> f32 {
     return select(1.0, 0.0, stored - off_stored > whole - depth);

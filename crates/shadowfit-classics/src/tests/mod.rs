@@ -1,4 +1,5 @@
-//! Facts about the scenes of samples: what holds for every scene that code makes, and places and sizes of their sources.
+//! Facts about the scenes of samples: the checks of every generated scene, and places and sizes of the
+//! sources.
 
 #[path = "../../../shadowfit-scene/src/builtin/tests/coplanar.rs"]
 mod coplanar;
@@ -15,14 +16,14 @@ use shadowfit_scene::{AlphaMode, Primitive, Scene, Triangle};
 
 use crate::SAMPLES;
 
-/// The scenes that samples bring, built, by their names.
+/// Builds the samples' own scenes, with their names.
 fn every() -> impl Iterator<Item = (&'static str, Scene)> {
     let own = ["xna-shadow-mapping", "headlight-projective", "comparison-sampler", "terrain-vehicles"];
     let names = ["shadow-mapping", "street", "still-life", "terrain"];
     names.into_iter().zip(own.map(scene_of))
 }
 
-/// The scene of a sample.
+/// Builds the scene of a sample.
 fn scene_of(id: &str) -> Scene {
     SAMPLES.iter().find(|sample| sample.id == id).expect("a sample").scene()
 }

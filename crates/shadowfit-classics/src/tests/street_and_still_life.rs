@@ -1,4 +1,4 @@
-//! Facts about the street and the still life: places and sizes of the source, what their lamps see.
+//! Facts about the street and the still life: places and sizes of the source, and the views of their lamps.
 
 use std::f32::consts::{FRAC_PI_4, PI};
 
@@ -12,21 +12,21 @@ use super::facts::{drawn, triangles};
 use super::scene_of;
 use crate::comparison::lamp_of_the_scene;
 
-/// World bounds of the nodes of a name, in order.
+/// Returns the world bounds of the nodes with a name, in order.
 fn bounds_of(scene: &Scene, name: &str) -> Vec<Aabb> {
     let pose = scene.pose(None, 0.0);
     let nodes = (0..scene.nodes.len()).filter(|&node| scene.nodes[node].name == name);
     nodes.map(|node| scene.node_bounds(&pose, node).expect(name)).collect()
 }
 
-/// Places of the nodes of a name, in order: world matrices.
+/// Returns the world matrices of the nodes with a name, in order.
 fn places_of(scene: &Scene, name: &str) -> Vec<Mat4> {
     let pose = scene.pose(None, 0.0);
     let nodes = (0..scene.nodes.len()).filter(|&node| scene.nodes[node].name == name);
     nodes.map(|node| pose.world_from_node[node]).collect()
 }
 
-/// A value of the display, of a linear one by the sRGB curve (all here are above its straight part).
+/// Returns the display value of a linear value by the sRGB curve (all here are above its linear part).
 fn displayed(linear: f32) -> f32 {
     1.055 * linear.powf(1.0 / 2.4) - 0.055
 }
@@ -47,7 +47,7 @@ fn street_and_still_life_have_fewer_than_sixty_thousand_triangles() {
     }
 }
 
-/// The source's own list, from z = 10 to z = -100 pair by pair.
+/// The source's own list of vertex pairs, from z = 10 to z = -100.
 const STRIP: [([f32; 3], [f32; 2], [f32; 3]); 18] = [
     ([-20.0, 0.0, 10.0], [-0.25, 25.0], [0.0, 1.0, 0.0]),
     ([-20.0, 0.0, -100.0], [-0.25, 0.0], [0.0, 1.0, 0.0]),
@@ -105,8 +105,8 @@ fn cars_and_lamp_posts_stand_where_their_source_has_them() {
         assert_eq!(places.len(), 2);
         assert!(places.iter().zip(expected).all(|(place, expected)| place.abs_diff_eq(expected, 1e-4)), "{name}");
     }
-    // The second looks along (sin 5π/8, cos 5π/8) = (0.924, -0.383) in x and z; the headlight shines along
-    // (16, -8) / √320 = (0.894, -0.447).
+    // The second car faces (sin 5π/8, cos 5π/8) = (0.924, -0.383) in x and z. The headlight shines along (16,
+    // -8) / √320 = (0.894, -0.447).
     let ahead = places_of(&scene, "car")[1].z_axis.truncate().normalize();
     assert!(ahead.dot(Vec3::new(16.0, 0.0, -8.0).normalize()) > 0.99, "{ahead}");
 }
@@ -135,7 +135,7 @@ fn a_lamp_post_is_brown_and_slender_and_reaches_over_the_road_below_the_top_of_t
     let Material { base_color, base_color_texture: None, .. } = scene.materials[post.material] else { panic!("plain") };
     let shown = base_color.truncate().to_array().map(displayed);
     assert!(shown.iter().zip([0.25, 0.21, 0.20]).all(|(a, b)| (a - b).abs() < 1e-4), "{shown:?}");
-    // Between knee and bend it is about a third of a unit thick on each side.
+    // Between foot and bend its radius is about a third of a unit.
     let shaft = post.positions.iter().filter(|position| (100.0..250.0).contains(&position.y));
     assert!(shaft.map(|position| position.with_y(0.0).length()).fold(0.0, f32::max) < 8.0);
 }

@@ -9,14 +9,14 @@ use crate::terrain::{HeightMap, PLACES};
 
 /// Texels along a side of the height map.
 const SIDE: usize = 256;
-/// Where the sample's light stands.
+/// Position of the sample's light.
 const LIGHT: Vec3 = Vec3::new(128.0, 100.0, 0.0);
 
 fn node(scene: &Scene, name: &str) -> usize {
     scene.nodes.iter().position(|node| node.name == name).expect(name)
 }
 
-/// World positions of all triangles below a node.
+/// Returns the world positions of all triangles of a node's descendants.
 fn triangles_below(scene: &Scene, root: usize) -> Vec<[Vec3; 3]> {
     let instances = scene.instances();
     let hangs = |instance: u32| scene.is_descendant(instances[instance as usize].node, root);
@@ -24,8 +24,8 @@ fn triangles_below(scene: &Scene, root: usize) -> Vec<[Vec3; 3]> {
     all.into_iter().filter(|triangle| hangs(triangle.instance)).map(|triangle| triangle.vertices).collect()
 }
 
-/// Whether the ray from the light through `through` meets a triangle beyond it (Tomas Möller and Ben Trumbore, "Fast,
-/// Minimum Storage Ray/Triangle Intersection", 1997).
+/// Returns whether the ray from the light through `through` hits a triangle beyond it (Tomas Möller and Ben
+/// Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
 fn is_shadowed(through: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
     let ray = through - LIGHT;
     let (ab, ac) = (b - a, c - a);
@@ -93,7 +93,7 @@ fn the_vehicles_are_of_a_size_stand_on_the_ground_and_keep_their_budget() {
         let (low, high) = bounds_below(&scene, root, None, 0.0);
         assert!(low.y.abs() < 0.02, "{}: {low}", place.name);
         assert!((7.0..=12.0).contains(&high.y), "{}: {high}", place.name);
-        // Around it: bounds of what is turned, and of a rotor.
+        // Greatest horizontal extent, with room for rotated vehicles and a rotor.
         let across = (high - low).with_y(0.0).max_element();
         assert!((12.0..=30.0).contains(&across), "{}: {across}", place.name);
         let count = drawn(&scene, Some(root));
@@ -120,7 +120,7 @@ fn no_hill_stands_between_the_light_and_a_vehicle() {
 fn the_helicopter_s_rotor_throws_its_shadow_on_the_jeep() {
     let scene = scene_of("terrain-vehicles");
     let jeep = triangles_below(&scene, node(&scene, "jeep"));
-    // Only blades and hub are so high. Points along the edges of their triangles:
+    // Only blades and hub are so high. Samples points along the edges of their triangles.
     let is_high = |triangle: &[Vec3; 3]| triangle.iter().all(|vertex| vertex.y > 11.4);
     let blades = triangles_below(&scene, node(&scene, "helicopter")).into_iter().filter(is_high);
     let along = blades.flat_map(|[a, b, _]| (0..=20).map(move |step| a.lerp(b, step as f32 / 20.0)));

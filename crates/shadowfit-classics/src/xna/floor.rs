@@ -1,4 +1,4 @@
-//! The floor: a square of pale stone with a grid to read distances from.
+//! The floor: a square of pale stone with a grid for reading distances.
 
 use shadowfit_scene::parts::{Builder, draw_noisy, ground, hash, matt, shade, tiled};
 use shadowfit_scene::{Image, Material, Transform};
@@ -7,19 +7,20 @@ use shadowfit_scene::{Image, Material, Transform};
 const HALF: f32 = 130.0;
 /// Side of a cell of the grid, in the sample's units.
 const CELL: f32 = 10.0;
-/// Cells along a side of the image: even, so that light and dark ones alternate over its edge too.
+/// Cells along a side of the image. An even number, so that light and dark ones also alternate across its
+/// edge.
 const CELLS: u32 = 8;
-/// Pixels along a side of the image: 13 a unit, and less than 6 are seen from the sample's camera.
+/// Pixels along a side of the image: 13 per unit. The sample's camera shows fewer than 6 per unit.
 const SIZE: u32 = 1024;
 /// Half of the width of a grid line, in the sample's units: two pixels of a picture 480 high.
 const LINE: f32 = 0.22;
 
-/// The floor's material, with the image of index 0.
+/// Returns the floor's material, with the image of index 0.
 pub(super) fn material() -> Material {
     tiled(matt("grid floor", [1.0; 3], 0.9), 0, [CELL * CELLS as f32; 2])
 }
 
-/// Pale cells, every second one a little darker, each with its own tint, with fine lines between.
+/// Draws pale cells with fine lines between. Every second cell is slightly darker, and each has its own tint.
 pub(super) fn image() -> Image {
     let cell = (SIZE / CELLS) as f32;
     let line = LINE / CELL * cell;

@@ -1,5 +1,6 @@
-//! The XNA "Shadow Mapping" sample (Microsoft, XNA Creators Club, 2008): a single map whose orthographic box encloses the
-//! camera's frustum, with every number of the source. One deviation: the character is our own figure.
+//! The XNA "Shadow Mapping" sample (Microsoft, XNA Creators Club, 2008): a single map whose orthographic box
+//! encloses the camera's frustum, with all numbers of the source. One deviation: the character is our own
+//! figure.
 
 mod floor;
 mod scene;
@@ -18,22 +19,22 @@ use crate::mapped::{
 use crate::options::{OptionKind, SampleOption, SampleValues};
 use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView, modern};
 
-/// Direction toward the light before it is normalised.
+/// Direction toward the light before normalisation.
 const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
-/// Its length is 1 but for rounding.
+/// Direction of travel of the light. Its length is 1 up to rounding.
 const DIRECTION: Vec3 = Vec3::new(1.0 / 3.0, -2.0 / 3.0, -2.0 / 3.0);
 /// Ambient light of the source.
 const AMBIENT: f32 = 0.15;
-/// Modern lighting: irradiance of sun and of sky and ground.
+/// Modern lighting: irradiance of the sun, and of sky and ground.
 const MODERN: Shading = Shading::modern(1.25, 0.35);
 
 pub(crate) const SAMPLE: Sample = Sample {
     id: "xna-shadow-mapping",
     title: "XNA Shadow Mapping",
-    teaches: "A sun's shadow map from first principles: the light's box encloses what the camera sees, depths are drawn \
-              from there, and each pixel compares its own depth with the stored one.",
-    flaw: "The box moves with the camera and knows no casters outside of the view, half of its depth is empty, and one bias \
-           has to serve every slope.",
+    teaches: "A sun's shadow map from first principles: the light's box encloses the camera's view, the map stores \
+        depths from the light, and each pixel compares its own depth with the stored one.",
+    flaw: "The box moves with the camera and misses casters outside of the view, half of its depth range is unused, \
+        and a single bias serves all slopes.",
     page: "samples/xna-shadow-mapping.md",
     size: [800, 480],
     view: SampleView {
@@ -70,8 +71,8 @@ const OPTIONS: [SampleOption; 8] = [
     SampleOption {
         id: "format",
         label: "Map format",
-        help: "The source takes 32-bit floats, else 16-bit floats, else four packed channels of 8 bits. The plain 8-bit map \
-               has 256 depths.",
+        help: "The source uses 32-bit floats, else 16-bit floats, else four packed channels of 8 bits. The plain \
+            8-bit map has 256 depths.",
         kind: OptionKind::Choice(&[
             ("r32f", "32-bit float"),
             ("r16f", "16-bit float"),
@@ -80,19 +81,20 @@ const OPTIONS: [SampleOption; 8] = [
         ]),
     },
     SampleOption::map_size(
-        "Texels each way. A larger map is the source's first cure of aliasing.",
+        "Texels each way. A larger map is the source's first cure for aliasing.",
         &[("2048", "2048²"), ("512", "512²"), ("1024", "1024²"), ("4096", "4096²")],
     ),
     SampleOption {
         id: "bias",
         label: "Bias",
-        help: "Depth that is taken from a point before it is compared, in units of the stored depth.",
+        help: "Depth subtracted from a point's depth before the comparison, in units of the stored depth.",
         kind: OptionKind::Number { min: 0.0, max: 0.01, default: XNA_DEPTH_BIAS, unit: "" },
     },
     SampleOption {
         id: "margin",
         label: "Box margin",
-        help: "Enlarges the light's box on all sides: the source's cure of missing casters, at the price of sharpness.",
+        help: "Enlarges the light's box on all sides: the source's cure for missing casters, at the price of \
+            sharpness.",
         kind: OptionKind::Number { min: 0.0, max: 400.0, default: 0.0, unit: "units" },
     },
     SampleOption::INSET,
@@ -112,84 +114,86 @@ const CLOSE: (DVec3, Vec3) = (DVec3::new(-26.0, 58.0, 62.0), Vec3::new(0.36, -0.
 const AT_THE_FOOT: (DVec3, Vec3) = (DVec3::new(16.0, 14.0, 16.0), Vec3::new(-0.1, -0.62, -0.78));
 /// Behind the character, whose head and back are out of view.
 const BEHIND: (DVec3, Vec3) = (DVec3::new(-14.0, 34.0, -4.0), Vec3::new(28.0, -32.0, -30.0));
-/// Farther behind: all of it is out of view.
+/// Farther behind, with the whole character out of view.
 const FAR_BEHIND: (DVec3, Vec3) = (DVec3::new(6.0, 34.0, -14.0), Vec3::new(0.12, -0.62, -0.78));
 
 const VARIANTS: [SampleVariant; 9] = [
     SampleVariant {
         id: "acne",
         label: "Self-shadow acne",
-        text: "Without a bias the character shadows itself in stripes: a texel holds one depth for a whole patch of a slope.",
+        text: "Without a bias the character shadows itself in stripes: a texel stores one depth for a whole patch of \
+            a slope.",
         options: &[("bias", "0")],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "acne-8-bit",
         label: "Acne by format: 8 bits",
-        text: "The original bias with 256 stored depths: a step is four times the bias, so that whole patches are in shadow.",
+        text: "The original bias with 256 stored depths: a step is four times the bias, so whole patches are in \
+            shadow.",
         options: &[("format", "grey8")],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "acne-16-bit",
         label: "By format: 16-bit float",
-        text: "A 16-bit float rounds by 0.00012 at most here, an eighth of the bias: hardly anything changes.",
+        text: "A 16-bit float rounds by at most 0.00012 here, an eighth of the bias: hardly anything changes.",
         options: &[("format", "r16f")],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "aliasing",
         label: "Aliasing close up",
-        text: "Near the ground the texels of the one map are larger than pixels: the shadow's edge is a staircase.",
+        text: "Near the ground the texels of the single map are larger than pixels: the shadow's edge is a staircase.",
         options: &[],
         view: Some(AT_THE_FOOT),
     },
     SampleVariant {
         id: "hole",
         label: "Hole behind the model",
-        text: "The camera is behind the character, head and back of which are out of view: what the view's box does not \
-               hold is not in the map, and the shadow has holes.",
+        text: "The camera is behind the character, whose head and back are out of view. Casters outside the view's \
+            box are missing in the map, so the shadow has holes.",
         options: &[],
         view: Some(BEHIND),
     },
     SampleVariant {
         id: "missing-caster",
         label: "Caster off screen",
-        text: "The camera looks at where the shadow should lie. The character is out of view, and so is its shadow; on the \
-               right a margin of 120 units brings both back.",
+        text: "The camera looks at the expected place of the shadow. The character is out of view, so its shadow is \
+            missing. On the right a margin of 120 units brings both back.",
         options: &[("beside", "margin=120")],
         view: Some(FAR_BEHIND),
     },
     SampleVariant {
         id: "wasted-resolution",
         label: "Equal near and far",
-        text: "Texels are equally large near and far: at the camera the shadow is made of blocks, and most of the map in \
-               the corner lies where nothing is seen.",
+        text: "Texels have the same size near and far. At the camera the shadow is made of blocks, while most of the \
+            map (in the corner) covers invisible places.",
         options: &[],
         view: Some((DVec3::new(44.0, 7.0, -64.0), Vec3::new(-34.0, -3.0, 44.0))),
     },
     SampleVariant {
         id: "larger-map",
         label: "Cure: a larger map",
-        text: "4096² texels halve the staircase of the close-up, and cost four times the memory.",
+        text: "4096² texels halve the staircase of the close-up, at four times the memory.",
         options: &[("map", "4096")],
         view: Some(AT_THE_FOOT),
     },
     SampleVariant {
         id: "larger-box",
         label: "Cure: an enlarged box",
-        text: "A margin of 120 units closes the holes of the view from behind, and makes every texel larger.",
+        text: "A margin of 120 units closes the holes of the view from behind, but makes every texel larger.",
         options: &[("margin", "120")],
         view: Some(BEHIND),
     },
 ];
 
-/// Its test: 0 in shadow, by a bias in units of the stored depth.
+/// Returns the test for a bias in units of the stored depth.
 pub(crate) fn test(bias: f32) -> ShadowTest {
     ShadowTest::nearest("xna", include_str!("test.wgsl"), [bias, 0.0, 0.0, 0.0])
 }
 
-/// Its shading, with ambient light that the texture does not colour.
+/// Returns the shading, with ambient light that the texture does not colour.
 fn shading(ambient: f32) -> Shading {
     Shading::new("xna", &[include_str!("shade.wgsl")], [ambient, 0.0])
 }

@@ -1,6 +1,6 @@
 //! The shadow mapping sample's scene: a figure on a grid floor under a sun from its right.
 //!
-//! In the sample's units a person is about 70 tall. Only the figure casts, and both receive.
+//! In the sample's units a person is about 70 tall. Only the figure casts. Figure and floor receive.
 
 use glam::{Quat, Vec3};
 use shadowfit_scene::parts::{Builder, figure_at_ease, looped, rotations};
@@ -8,24 +8,24 @@ use shadowfit_scene::{Lens, Scene, Sun};
 
 use super::floor;
 
-/// Size of the figure, in the sample's units a metre: as tall as its head still fits below the upper edge of the
-/// sample's picture, which cuts 63 units above the origin.
+/// Scale of the figure, in the sample's units per metre: the largest at which its head fits into the sample's
+/// picture, whose upper edge is 63 units above the origin.
 const UNITS_PER_METRE: f32 = 35.4;
-/// Where the camera of the sample starts.
+/// Initial eye of the sample's camera.
 const EYE: Vec3 = Vec3::new(0.0, 70.0, 100.0);
-/// Where it looks: two forward, one down.
+/// Direction of view: two forward, one down.
 const FORWARD: Vec3 = Vec3::new(0.0, -0.447_213_6, -0.894_427_2);
 /// Lens of the sample's camera.
 const LENS: Lens = Lens::Perspective { fov_y: std::f32::consts::FRAC_PI_4, near: 1.0, far: Some(1000.0) };
 /// Direction toward the light.
 const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
 
-/// Time of a whole turn of the figure, in seconds: 200° a second, as the sample's controls turn it.
+/// Time of a whole turn of the figure, in seconds: 200° a second, like the sample's controls.
 const TURN: f32 = 1.8;
 /// Keyframes of a turn.
 const TURN_KEYS: usize = 12;
 
-/// The scene. Its animation turns the figure once.
+/// Builds the scene. Its animation turns the figure once.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("shadow-mapping", vec![floor::material()], vec![floor::image()]);
     floor::build(&mut builder);

@@ -1,6 +1,6 @@
-//! The XNA sample's test in Rust, as `test.wgsl` has it; a test compares the two.
+//! The XNA sample's shadow test in Rust. A test compares it with `test.wgsl`.
 
-/// 0 in shadow, which is where `stored < depth - bias`; depths are those after the division by w.
+/// Returns 0 in shadow, which is where `stored < depth - bias`, else 1. Depths are after the division by w.
 pub fn share(stored: f32, depth: f32, bias: f32) -> f32 {
     if stored < depth - bias { 0.0 } else { 1.0 }
 }

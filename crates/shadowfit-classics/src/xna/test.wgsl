@@ -1,6 +1,6 @@
-// The test of the XNA Shadow Mapping sample. test.x: bias.
+// Shadow test of the XNA Shadow Mapping sample. test.x: bias.
 
-// 1 where light arrives, 0 in shadow.
+// Returns 1 in light, 0 in shadow.
 fn xna_share(stored: f32, depth: f32, bias: f32) -> f32 {
     return select(1.0, 0.0, stored < depth - bias);
 }

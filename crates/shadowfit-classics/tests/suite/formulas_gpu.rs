@@ -1,4 +1,4 @@
-//! The formulas of ambient occlusion in WGSL against their twins in Rust.
+//! The formulas of ambient occlusion in WGSL against their Rust versions.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec2, Vec3};
@@ -6,10 +6,10 @@ use shadowfit_classics::occlusion::formula;
 use shadowfit_render::Gpu;
 use shadowfit_testing::renderer_gpu;
 
-/// Number of cases; a few times 16, the number of random vectors and of points.
+/// Number of cases: a multiple of 16, the number of random vectors and of points.
 const CASES: u32 = 192;
 
-/// Difference allowed: WGSL allows sine and cosine an absolute error of 2⁻¹¹, and the results are at most 1.
+/// Allowed difference: WGSL allows sine and cosine an absolute error of 2⁻¹¹, and the results are at most 1.
 const TOLERANCE: f32 = 1.0 / 2048.0;
 
 #[repr(C)]
@@ -68,8 +68,8 @@ struct Case {
 }
 ";
 
-/// Numbers in 0..1 that fill the space of all columns evenly: the fractional parts of multiples of the powers of a number
-/// (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+/// Returns numbers in 0..1 that fill the space of all columns evenly: the fractional parts of multiples of
+/// the powers of a number (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 fn evenly(index: u32, column: i32) -> f32 {
     (0.5 + f64::from(index + 1) * 1.051_7_f64.powi(-column - 1)).fract() as f32
 }
@@ -115,12 +115,13 @@ fn twin(case: &Case) -> Answer {
     ]
 }
 
-/// What the shader's functions answer.
+/// Returns the results of the shader's functions.
 fn ask(gpu: &Gpu, cases: &[Case]) -> Vec<Answer> {
     compute(gpu, &[include_str!("../../src/occlusion/formula.wgsl"), ASK].concat(), cases)
 }
 
-/// What the entry point `ask` of a module answers to cases, as many as a multiple of 64.
+/// Runs the entry point `ask` of a module on the cases and returns its results. The number of cases is a
+/// multiple of 64.
 pub(crate) fn compute<C: bytemuck::Pod, A: bytemuck::Pod>(gpu: &Gpu, source: &str, cases: &[C]) -> Vec<A> {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -181,6 +182,6 @@ fn occlusion_is_the_same_in_wgsl_and_rust() {
         hidden += usize::from(expected[0][0] > 0.0 && expected[0][3] > 0.0);
     }
     println!("off by at most {worst}");
-    // Terms and hidden points of both kinds were met.
+    // The cases include occluding and non-occluding neighbours, and both kinds of points.
     assert!(hidden > 10 && hidden < CASES as usize / 2, "{hidden}");
 }

@@ -10,7 +10,8 @@ use shadowfit_testing::layout::{assert_same, at_locations, reflected};
 use shadowfit_testing::wgsl::{Shader, parse};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-/// Uniforms whose layouts the tests below compare, and those of shadowfit-render's pieces, which its own tests compare.
+/// Uniforms whose layouts the tests below compare, and uniforms of shadowfit-render, whose own tests compare
+/// them.
 const COMPARED: [&str; 5] = ["Occlusion", "Sample", "SkyBox", "Frame", "Material"];
 
 /// Asserts that the layout of every uniform of a module is compared.

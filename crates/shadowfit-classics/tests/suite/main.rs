@@ -1,5 +1,5 @@
-//! The samples' WGSL, and the classic techniques on the software adapter. Tests that need a graphics device have `gpu` in
-//! their path, and `cargo xtask test` leaves them out on machines without one.
+//! The samples' WGSL, and the classic techniques on the software adapter. Tests that need a graphics device
+//! have `gpu` in their path. `cargo xtask test` skips them on machines without one.
 
 mod formulas_gpu;
 mod layout;

@@ -1,4 +1,4 @@
-//! Ambient occlusion of scenes whose occlusion is known.
+//! Ambient occlusion of scenes with known occlusion.
 
 use glam::Vec3;
 use shadowfit_classics::occlusion::{
@@ -14,7 +14,7 @@ fn plain() -> OcclusionSettings {
     OcclusionSettings { blur: false, ..OcclusionSettings::default() }
 }
 
-/// The mean of the middle half of a picture, each way.
+/// Returns the mean of the middle half of a picture, each way.
 fn middle(values: &[f32]) -> f32 {
     let [width, height] = SIZE.map(|side| side as usize);
     let inside = |index: usize, side: usize| (side / 4..side * 3 / 4).contains(&index);
@@ -33,7 +33,7 @@ fn row(values: &[f32], row: u32) -> f32 {
 fn a_plane_at_an_angle_stays_white_with_normals_and_turns_grey_by_depth_alone() {
     let mut pictures = Pictures::new(&[floor()], 1);
     let camera = camera();
-    // Without a bias: neighbours of a plane lie in it.
+    // No bias is needed: neighbours on a plane do not occlude it.
     let normals = pictures.occlusion(&camera, OcclusionSettings { bias: 0.0, ..plain() });
     let depth_only = pictures.occlusion(&camera, OcclusionSettings { method: DEPTH_ONLY, ..plain() });
     println!("normals {}, depth alone {}", middle(&normals), middle(&depth_only));
@@ -50,7 +50,8 @@ fn a_corner_is_darker_than_the_open_floor() {
     for settings in [plain(), OcclusionSettings::default(), OcclusionSettings { level_of_detail: true, ..plain() }] {
         let open = open.occlusion(&camera, settings);
         let corner = corner.occlusion(&camera, settings);
-        // The floor meets the wall in the middle row; a quarter of the picture farther down it is open again.
+        // The floor meets the wall in the middle row. A quarter of the picture farther down, the floor is
+        // open again.
         let [at, near, far] = [48, 50, 72].map(|line| row(&corner, line));
         println!("at the wall {at}, nearer to the eye {near}, far from it {far}, without it {}", row(&open, 48));
         assert!(row(&open, 48) < 0.01 && at > 0.15 && at > near && near > 0.05 && far < 0.01);
@@ -72,7 +73,7 @@ fn back_faces_add_occlusion_and_never_take_any() {
 
 #[test]
 fn a_wall_has_a_pale_halo_around_an_object_by_depth_alone() {
-    // A plate that hovers 3 m before a wall which the camera looks at.
+    // A plate that hovers 3 m in front of a wall. The camera looks at the wall.
     let plate = [(-0.7, -0.7), (0.7, -0.7), (0.7, 0.7), (-0.7, 0.7)].map(|(x, y)| Vec3::new(x, y + 3.0, 0.0));
     let camera = shadowfit::PerspectiveCamera { forward: Vec3::NEG_Z, ..camera() };
     let mut pictures = Pictures::new(&[plate, wall(-3.0)], 1);
@@ -100,7 +101,7 @@ fn occlusion_darkens_the_ambient_light_alone() {
         let without = pictures.draw(&camera, &sunlit);
         assert_eq!(pictures.draw(&camera, &OcclusionFrame { settings, ..sunlit }), without, "{view:?}");
     }
-    // White surfaces in ambient light show 1 - occlusion times that light, to the byte but for the rounding.
+    // White surfaces in ambient light show (1 - occlusion) times that light, up to rounding to a byte.
     let picture = pictures.draw(&camera, &OcclusionFrame { light: lit(0.8, 0.0), ..frame(settings) });
     let occlusion = pollster::block_on(pictures.passes.read_occlusion(&pictures.gpu)).expect("occlusion");
     assert!(occlusion.iter().any(|occlusion| *occlusion > 0.5));
@@ -111,7 +112,7 @@ fn occlusion_darkens_the_ambient_light_alone() {
     }
 }
 
-/// Whether each pixel shows a triangle, by the renderer's probe.
+/// Returns whether each pixel shows a triangle, according to the renderer's probe.
 fn shown(pictures: &mut Pictures, camera: &shadowfit::PerspectiveCamera) -> Vec<bool> {
     let targets = ProbeTargets::new(&pictures.gpu.device, SIZE);
     let atmosphere = Atmosphere::default();
@@ -123,7 +124,7 @@ fn shown(pictures: &mut Pictures, camera: &shadowfit::PerspectiveCamera) -> Vec<
 
 #[test]
 fn pixels_show_surfaces_where_the_probe_does() {
-    // A turned view of a box before the sky; by depth alone every surface has some occlusion.
+    // A rotated view of a box in front of the sky. By depth alone, every surface has some occlusion.
     let camera = shadowfit::PerspectiveCamera { up: Vec3::new(0.3, 1.0, 0.0), ..camera() };
     let mut pictures = Pictures::new(&cube(0.9), 1);
     let settings = OcclusionSettings { method: DEPTH_ONLY, radius: 0.2, ..plain() };
@@ -152,7 +153,7 @@ fn the_blur_averages_the_random_vectors_away() {
     let camera = camera();
     let raw = pictures.occlusion(&camera, plain());
     let blurred = pictures.occlusion(&camera, OcclusionSettings::default());
-    // Along a row beside the wall occlusion is nearly the same everywhere: what differs between columns is noise.
+    // Along a row beside the wall, occlusion is almost constant, so differences between columns are noise.
     let noise = |values: &[f32]| {
         let line = &values[50 * SIZE[0] as usize + 32..][..64];
         line.array_windows().map(|[a, b]| (a - b).abs()).sum::<f32>() / 63.0
@@ -170,7 +171,7 @@ fn a_picture_of_four_samples_has_the_same_surfaces_and_the_grey_view_shows_occlu
     let grey = frame(Some(OcclusionSettings::default()));
     let picture = smooth.draw(&camera, &grey);
     let reference = single.draw(&camera, &grey);
-    // Away from the edges, which are smooth.
+    // Away from the edges, which are antialiased.
     let at = (80 * SIZE[0] + 64) as usize;
     assert_eq!(picture[at], reference[at]);
     let grey = single.draw(&camera, &OcclusionFrame { view: OcclusionView::Occlusion, ..grey });

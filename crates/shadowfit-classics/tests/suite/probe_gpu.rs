@@ -1,4 +1,5 @@
-//! Probes of samples are the same whether fragments know their primitive or vertices number the triangles.
+//! Probes of samples are equal, whether the shader uses primitive indices or vertices that number the
+//! triangles.
 
 use shadowfit_classics::mapped::{FrameExtras, SampleRenderer};
 use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues};
@@ -8,7 +9,7 @@ use shadowfit_testing::renderer_gpu;
 
 use super::scenes::SIZE;
 
-/// The software adapter without features.
+/// Opens the software adapter without features.
 fn featureless_gpu() -> Gpu {
     let wanted = Wanted { features: wgpu::Features::empty(), limits: Some(wgpu::Limits::default()) };
     pollster::block_on(Gpu::of_adapter(renderer_gpu().adapter, &wanted)).expect("a device")

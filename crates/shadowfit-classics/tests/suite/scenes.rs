@@ -13,7 +13,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 /// Width and height of the pictures, in pixels.
 pub(crate) const SIZE: [u32; 2] = [128, 96];
 
-/// White quadrilaterals by their corners, counter-clockwise seen from their fronts.
+/// Returns a scene of white quadrilaterals from their corners, counter-clockwise seen from the front.
 pub(crate) fn scene(quads: &[[Vec3; 4]]) -> Scene {
     let mut primitive = Primitive::default();
     for (first, quad) in (0..).step_by(4).zip(quads) {
@@ -30,17 +30,17 @@ pub(crate) fn scene(quads: &[[Vec3; 4]]) -> Scene {
     Scene { nodes, meshes, materials: vec![Material::default()], ..Scene::default() }
 }
 
-/// A floor at height 0, 40 m wide.
+/// Returns a floor at height 0, 40 m wide.
 pub(crate) fn floor() -> [Vec3; 4] {
     [(-20.0, 20.0), (20.0, 20.0), (20.0, -20.0), (-20.0, -20.0)].map(|(x, z)| Vec3::new(x, 0.0, z))
 }
 
-/// A wall across the floor that faces +z.
+/// Returns a wall across the floor that faces +z.
 pub(crate) fn wall(z: f32) -> [Vec3; 4] {
     [(-20.0, 0.0), (20.0, 0.0), (20.0, 10.0), (-20.0, 10.0)].map(|(x, y)| Vec3::new(x, y, z))
 }
 
-/// A box of the given half width that stands at the origin, without a bottom.
+/// Returns a box of the given half width at the origin, without a bottom.
 pub(crate) fn cube(half: f32) -> Vec<[Vec3; 4]> {
     let side = |turn: f32| {
         let place = glam::Quat::from_rotation_y(turn);
@@ -53,7 +53,7 @@ pub(crate) fn cube(half: f32) -> Vec<[Vec3; 4]> {
     quads
 }
 
-/// A camera that looks down at the origin at an angle.
+/// Returns a camera that looks down at the origin at an angle.
 pub(crate) fn camera() -> PerspectiveCamera {
     PerspectiveCamera {
         eye: DVec3::new(0.0, 3.0, 5.0),
@@ -66,7 +66,7 @@ pub(crate) fn camera() -> PerspectiveCamera {
     }
 }
 
-/// A scene and what draws it.
+/// A scene and its renderer.
 pub(crate) struct Pictures {
     pub(crate) gpu: Gpu,
     pub(crate) renderer: Renderer,
@@ -103,7 +103,7 @@ impl Pictures {
     }
 }
 
-/// A picture in display values on black.
+/// Returns the frame of a picture in display values on black.
 pub(crate) fn frame(settings: Option<OcclusionSettings>) -> OcclusionFrame {
     OcclusionFrame {
         light: OcclusionLight::new(Vec3::new(0.0, 0.8, 0.6)),

@@ -1,5 +1,5 @@
-//! The formulas of shadow tests and shadings in WGSL against their twins in Rust, on a table of cases. Each function is cut
-//! out of the piece that it stands in.
+//! The formulas of shadow tests and shadings in WGSL against their Rust versions, on a table of cases. Each
+//! function is cut out of its WGSL file.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use shadowfit::bias::acos_bias;
@@ -14,13 +14,13 @@ use crate::formulas_gpu::compute;
 /// Number of cases: a multiple of a workgroup's size.
 const CASES: u32 = 256;
 
-/// Difference that is allowed: the chains are a few operations of f32 on numbers of up to 3, with an arc cosine, whose error
-/// WGSL bounds by 4096 units in the last place, below a tenth.
+/// Allowed difference. A result takes a few f32 operations on numbers of up to 3, and an arc cosine, whose
+/// error WGSL bounds by 4096 units in the last place, below a tenth.
 const TOLERANCE: f32 = 1e-4;
 
-/// What is asked: four rows of four numbers.
+/// Input of a case: four rows of four numbers.
 type Case = [[f32; 4]; 4];
-/// What is answered.
+/// Results of a case.
 type Answer = [[f32; 4]; 6];
 
 const ASK: &str = "
@@ -56,7 +56,7 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ";
 
-/// Functions and constants that are asked, by the WGSL of the crate that they stand in.
+/// Functions and constants under test, by the WGSL file that contains them.
 const PARTS: [(&str, &[&str]); 9] = [
     (include_str!("../../src/xna/test.wgsl"), &["fn xna_share("]),
     (include_str!("../../src/xna/shade.wgsl"), &["fn xna_colour("]),
@@ -72,7 +72,7 @@ const PARTS: [(&str, &[&str]); 9] = [
     (include_str!("../../src/lamp/test.wgsl"), &["const MIN_COSINE", "fn lamp_gradient(", "fn lamp_compared_depth("]),
 ];
 
-/// A function or a constant of a piece, whole.
+/// Returns a whole function or constant of a file.
 fn cut(text: &str, start: &str) -> String {
     let from = text.find(start).unwrap_or_else(|| panic!("no {start} in {text}"));
     let end = if start.starts_with("const") { ";\n" } else { "\n}\n" };
@@ -80,7 +80,7 @@ fn cut(text: &str, start: &str) -> String {
     text[from..from + length].to_owned()
 }
 
-/// Numbers in 0..1 that fill the cube evenly.
+/// Returns numbers in 0..1 that fill the cube evenly.
 fn evenly(index: u32, axis: i32) -> f32 {
     ((0.5 + (f64::from(index) + 1.0) * 1.105_250_7_f64.powi(-axis)).fract()) as f32
 }
@@ -92,7 +92,8 @@ fn case(index: u32) -> Case {
     let share = [0.0, 0.5, 1.0][(index % 3) as usize];
     [
         [number(1), number(2), number(3), inside],
-        // Stored and compared depths close to each other; a bias; what the terrain takes its depth from.
+        // Stored and compared depths close to each other, a bias, and the number from which the terrain
+        // subtracts depth.
         [around(4, 0.5, 0.02), around(5, 0.5, 0.02), number(6) * 0.01, around(7, 0.98, 0.04)],
         [around(8, 0.0, 2.0), share, number(9), around(10, 0.0, 2.0)],
         [around(11, 0.0, 6.0), around(12, 0.0, 6.0), number(13), 0.5 + number(14) * 2.0],
@@ -137,7 +138,7 @@ fn tests_and_shadings_are_the_same_in_wgsl_and_rust() {
     for (case, answer) in cases.iter().zip(&answers) {
         let expected = twin(case);
         let uv = Vec2::new(expected[4][0], expected[4][1]);
-        // Rounding may put a depth or a point on the other side of its limit.
+        // Rounding may move a depth or a point across its limit.
         let [stored, depth, bias, whole] = case[1];
         let is_close = (stored - depth + bias).abs() < 1e-6
             || (stored - bias - whole + depth).abs() < 1e-6

@@ -1,4 +1,4 @@
-//! The sky box as it is drawn, against the picture that it is made of.
+//! The drawn sky box against its picture.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ const LIGHTS: [Vec3; 3] = [Vec3::new(0.3, 0.8, -0.5), Vec3::new(-0.9, 0.25, 0.1)
 /// Texels of a face of the drawn sky.
 const FACE: u32 = 512;
 
-/// The sky behind nothing, before red.
+/// Draws only the sky, over a red background.
 fn seen(pictures: &mut Pictures, sky: &SkyBox, camera: &PerspectiveCamera) -> Vec<[u8; 3]> {
     let frame = SampleFrame {
         camera: *camera,
@@ -41,12 +41,12 @@ fn seen(pictures: &mut Pictures, sky: &SkyBox, camera: &PerspectiveCamera) -> Ve
     pictures.read()
 }
 
-/// A pixel's middle, in pixels.
+/// Returns a pixel's middle, in pixels.
 fn middle(pixel: usize) -> Vec2 {
     UVec2::new(pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]).as_vec2() + 0.5
 }
 
-/// World direction through a place of the picture, in pixels.
+/// Returns the world direction through a point of the picture, in pixels.
 fn ray(camera: &PerspectiveCamera, at: Vec2) -> Vec3 {
     let ndc = at / Vec2::new(SIZE[0] as f32, SIZE[1] as f32) * 2.0 - 1.0;
     let tangent = (camera.fov_y * 0.5).tan();
@@ -54,9 +54,10 @@ fn ray(camera: &PerspectiveCamera, at: Vec2) -> Vec3 {
     camera.view_from_world().transpose().transform_vector3(view)
 }
 
-/// Texels of a face along u or v, whichever are more, that a pixel's width and height cover together.
+/// Returns the number of texels of a face that a pixel's width and height cover together, along u or v,
+/// whichever is greater.
 fn texels_per_pixel(camera: &PerspectiveCamera, pixel: usize) -> f32 {
-    // So little that it is the same face.
+    // Small enough to stay on the same face.
     const PART: f32 = 0.01;
     let uv = |offset: Vec2| face_of(ray(camera, middle(pixel) + offset)).1;
     let [right, down] = [Vec2::X, Vec2::Y].map(|axis| (uv(axis * PART) - uv(Vec2::ZERO)).abs());
@@ -66,11 +67,12 @@ fn texels_per_pixel(camera: &PerspectiveCamera, pixel: usize) -> f32 {
 /// A colour between four texels.
 struct Filtered {
     color: Vec3,
-    /// Change over a texel along u and along v, added: the greatest of the channels and of both rows or columns.
+    /// Change over a texel along u and along v, added. It is the maximum over the channels and over both rows
+    /// or columns.
     change: f32,
 }
 
-/// What a linear filter makes of a picture in a direction; `None` where it would read across an edge.
+/// Filters a picture linearly in a direction. Returns `None` if the filter would read across an edge.
 fn filtered(picture: &SkyPicture, direction: Vec3) -> Option<Filtered> {
     let (face, uv) = face_of(direction);
     let at = uv * picture.size as f32 - 0.5;
@@ -104,8 +106,9 @@ fn every_direction_shows_what_its_face_has_there() {
             let direction = ray(&camera, middle(pixel));
             let Some(expected) = filtered(&picture, direction) else { continue };
             let error = (Vec3::from(color.map(f32::from)) - expected.color).abs().max_element();
-            // Half a level of rounding, and a step of the filter's weights in each axis. The box's corners are rounded to
-            // steps of a pixel, which moves what lies between them by a step at most.
+            // Half a level for rounding, and a step of the filter's weights in each axis. Rasterisation
+            // rounds the box's corners to a fraction of a pixel, which moves points between them by at most
+            // that much.
             let moved = weights + corners * texels_per_pixel(&camera, pixel);
             let tolerance = 0.7 + moved * expected.change;
             let Filtered { color: expected, .. } = expected;
@@ -124,7 +127,7 @@ fn the_sky_stays_when_the_camera_moves() {
     let there = PerspectiveCamera { eye: DVec3::new(-4000.0, 70.0, 1e6), near: 3.0, far: 20.0, ..here };
     let first = seen(&mut pictures, &sky, &here);
     assert_eq!(first, seen(&mut pictures, &sky, &there));
-    // It is all of the picture, and not one colour.
+    // The sky fills the picture and has more than one colour.
     assert!(!first.contains(&[255, 0, 0]) && first.iter().collect::<BTreeSet<_>>().len() > 100);
 }
 

@@ -1,4 +1,4 @@
-//! The picture that the sky box is made of.
+//! The picture of the sky box.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,8 @@ fn faces_join_without_a_seam_at_all_twelve_edges() {
         let [r, g, b, _] = picture.faces[face][(at.y * size + at.x) as usize].map(f32::from);
         Vec3::new(r, g, b)
     };
-    // Of each edge: differences across it, those to the next texels within the face, and their number.
+    // For each edge: the sum of differences across it, the sum of differences to the next texels inside the
+    // face, and their number.
     let mut edges: BTreeMap<[usize; 2], [f32; 3]> = BTreeMap::new();
     let apart = |a: Vec3, b: Vec3| (a - b).abs().max_element();
     for (face, index) in (0..6).flat_map(|face| (0..size).map(move |index| (face, index))) {
@@ -23,7 +24,7 @@ fn faces_join_without_a_seam_at_all_twelve_edges() {
             (UVec2::new(index, 0), IVec2::NEG_Y),
             (UVec2::new(index, size - 1), IVec2::Y),
         ] {
-            // Half a texel to the edge and a little beyond.
+            // Half a texel to the edge and slightly beyond.
             let beyond = direction_of(face, (at.as_vec2() + 0.5 + out.as_vec2() * 0.51) / size as f32);
             let (other, uv) = face_of(beyond);
             assert_ne!(other, face);
@@ -38,7 +39,7 @@ fn faces_join_without_a_seam_at_all_twelve_edges() {
     assert_eq!(edges.len(), 12);
     for (edge, [across, inside, count]) in edges {
         println!("{edge:?}: {} levels across, {} within", across / count, inside / count);
-        // A seam of one level would show.
+        // A seam of one level would be visible.
         assert!(across <= inside + count, "{edge:?}");
     }
 }

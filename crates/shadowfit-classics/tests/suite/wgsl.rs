@@ -1,5 +1,5 @@
-//! The samples' WGSL: every file is used, every module is valid and has its passes' entry points, and WebGL2 can draw with
-//! the modules that it is given.
+//! The samples' WGSL: every file is used, every module is valid and has its passes' entry points, and WebGL2
+//! supports the modules that it receives.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -15,7 +15,8 @@ use shadowfit_testing::wgsl::{Shader, assert_every_file_is_used};
 
 use super::layout;
 
-/// Options of samples that change the WGSL. A sample that lacks an option or a choice keeps the one of its source.
+/// Options of samples that change the WGSL. If a sample lacks an option or a choice, it keeps its source's
+/// choice.
 const OPTIONS: [Choices; 3] = [
     Choices { option: "shadows", choices: &["source", "off", "ours"] },
     Choices { option: "lighting", choices: &["source", "modern"] },
@@ -34,7 +35,8 @@ fn counts() -> [usize; 4] {
     [SAMPLES.len(), shadows, lighting, format]
 }
 
-/// Returns the frame of a sample with one choice per option, all by their indices. `None` for samples without one map.
+/// Returns the frame of a sample with one choice per option, all by index. Returns `None` if the sample does
+/// not use a single map.
 fn frame(row: &[usize]) -> Option<SampleFrame> {
     let [sample, options @ ..] = row else { panic!("a sample and its options") };
     let sample = &SAMPLES[*sample];

@@ -1,4 +1,4 @@
-//! Things of a device that are made at the same time.
+//! Tests of parallel creation.
 
 use core::future::Future;
 use core::pin::pin;
@@ -7,7 +7,7 @@ use core::task::{Context, Poll, Waker};
 use shadowfit_gpu::make_at_once;
 use shadowfit_testing::test_gpu;
 
-/// Several rounds of threads on most machines.
+/// Enough for several rounds of threads on most machines.
 const COUNT: u64 = 65;
 
 fn buffer(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {

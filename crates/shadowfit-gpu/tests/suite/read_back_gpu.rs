@@ -1,12 +1,12 @@
-//! Numbers that come back from a device.
+//! Tests of numbers that are read back from a device.
 
 use shadowfit_gpu::ReadBackRing;
 use shadowfit_testing::{TestGpu, test_gpu};
 
-/// Buffers that take turns.
+/// Number of buffers in the ring.
 const BUFFERS: usize = 2;
 
-/// Records the way back of a number, with twice the number beside it.
+/// Records the read-back of a number, with twice the number as its value.
 fn record(TestGpu { device, queue, .. }: &TestGpu, ring: &mut ReadBackRing<u32>, number: u32) -> bool {
     let source = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -22,7 +22,7 @@ fn record(TestGpu { device, queue, .. }: &TestGpu, ring: &mut ReadBackRing<u32>,
 }
 
 fn take(gpu: &TestGpu, ring: &mut ReadBackRing<u32>) -> Option<(u32, Vec<u8>)> {
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
     ring.take(<[u8]>::to_vec).expect("the device works")
 }
 
@@ -35,7 +35,7 @@ fn gpu_the_newest_result_comes_back_once_and_frees_all_buffers() {
     assert_eq!(take(&gpu, &mut ring), Some((4, 2u32.to_ne_bytes().to_vec())));
     assert_eq!(take(&gpu, &mut ring), None);
     assert!(record(&gpu, &mut ring, 4) && record(&gpu, &mut ring, 5));
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
     assert_eq!(ring.free(), None);
     ring.free_overtaken();
     assert!(ring.free().is_some());

@@ -1,5 +1,5 @@
-//! Meshes that are skinned or morphed: passes that read their positions from the engine's vertex buffer, and fit their
-//! hierarchy to them.
+//! Refits of skinned or morphed meshes: passes that read their positions from the engine's vertex buffer and
+//! fit their hierarchy.
 
 use shadowfit_gpu::bindings::{group, layout, storage};
 use shadowfit_gpu::{compute_pipeline, wgsl_module};
@@ -11,8 +11,8 @@ use crate::error::{RayError, VertexBufferLack};
 use crate::mesh::RayMesh;
 use crate::records::{RefitUniform, TriangleRecord};
 
-/// Uniforms of dispatches begin at multiples of this, in bytes: the greatest alignment that WebGPU allows a device to
-/// ask for.
+/// Alignment of the dispatches' uniforms, in bytes: the greatest alignment that WebGPU allows a device to
+/// require.
 const UNIFORM_STEP: u64 = 256;
 /// Bytes of a position.
 const POSITION: u64 = 12;
@@ -22,13 +22,13 @@ const POSITION: u64 = 12;
 pub struct VertexBuffer<'a> {
     /// The buffer, with the usage `STORAGE`.
     pub buffer: &'a wgpu::Buffer,
-    /// Where the first position begins, in bytes; a multiple of 4.
+    /// Start of the first position, in bytes. A multiple of 4.
     pub offset: u64,
-    /// From one position to the next one, in bytes; a multiple of 4, at least 12.
+    /// Distance from one position to the next, in bytes. A multiple of 4, at least 12.
     pub stride: u32,
 }
 
-/// The passes' pipelines.
+/// The pipelines of the passes.
 #[derive(Debug)]
 pub(crate) struct RefitPass {
     layout: wgpu::BindGroupLayout,
@@ -36,14 +36,14 @@ pub(crate) struct RefitPass {
     level: wgpu::ComputePipeline,
 }
 
-/// What a refit of one mesh needs.
+/// Data for refits of one mesh.
 #[derive(Debug)]
 pub(crate) struct Deforming {
     vertices: u64,
-    /// Three vertices a triangle, in leaf order.
+    /// Three vertex indices per triangle, in leaf order.
     indices: wgpu::Buffer,
     uniforms: wgpu::Buffer,
-    /// The dispatches: triangles, and then levels, deepest first.
+    /// The dispatches: first the triangles, then the levels, deepest first.
     steps: Vec<RefitUniform>,
     bound: Option<Bound>,
 }
@@ -54,14 +54,14 @@ pub(crate) struct Refitted<'a> {
     pub(crate) nodes: &'a wgpu::Buffer,
 }
 
-/// The part of a vertex buffer that is bound, in bytes.
+/// The bound part of a vertex buffer, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Window {
     offset: u64,
     size: u64,
 }
 
-/// The bind group of the last refit, and what it binds.
+/// The bind group of the last refit, with its buffers.
 #[derive(Debug)]
 struct Bound {
     buffers: [wgpu::Buffer; 3],
@@ -118,7 +118,7 @@ impl RefitPass {
 }
 
 impl Deforming {
-    /// Makes the buffers for the refits of a mesh in a scene.
+    /// Creates the buffers for the refits of a mesh in a scene.
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &RayMesh, ranges: &MeshRanges) -> Self {
         let step = |first: u32, count: u32| RefitUniform { first, count, ..RefitUniform::default() };
         let ends = mesh.hierarchy.levels.iter().skip(1).copied().chain([ranges.nodes.len() as u32]);
@@ -128,7 +128,7 @@ impl Deforming {
         steps[1..].reverse();
         let vertices_of = |triangle: &TriangleRecord| mesh.vertices_of(triangle.index);
         let mut indices: Vec<[u32; 3]> = mesh.triangles.iter().map(vertices_of).collect();
-        // An empty buffer cannot be bound.
+        // Empty buffers cannot be bound.
         if indices.is_empty() {
             indices.push([0; 3]);
         }
@@ -143,12 +143,12 @@ impl Deforming {
         Self { vertices: mesh.vertices as u64, indices: index_buffer, uniforms, steps, bound: None }
     }
 
-    /// Bytes of its own buffers.
+    /// Returns the bytes of its buffers.
     pub(crate) fn bytes(&self) -> u64 {
         self.indices.size() + self.uniforms.size()
     }
 
-    /// Makes the bind group, unless the last refit had the same buffers.
+    /// Creates the bind group, unless the last refit had the same buffers.
     fn bind(
         &mut self,
         device: &wgpu::Device,
@@ -201,7 +201,7 @@ fn window(vertices: &VertexBuffer<'_>, count: u64, limits: &wgpu::Limits) -> Res
     Ok(Window { offset: first, size: needed - first })
 }
 
-/// Columns and rows of workgroups for a number of threads, since one row of them may be too short.
+/// Returns columns and rows of workgroups for a number of threads. One row may be too short for all.
 fn groups(threads: u32, limit: u32) -> [u32; 2] {
     let all = threads.div_ceil(WORKGROUP_THREADS);
     let columns = all.min(limit);

@@ -1,15 +1,15 @@
-//! What all buffers and passes here need of a device.
+//! Device requirements of all buffers and passes.
 
 use crate::error::RayError;
 
-/// Threads of a workgroup, as in the WGSL.
+/// Threads per workgroup, as in the WGSL.
 pub(crate) const WORKGROUP_THREADS: u32 = 256;
-/// Storage buffers that the scene binds.
+/// Number of storage buffers that the scene binds.
 pub(crate) const BUFFERS: usize = 5;
 /// Label of the scene's bind group and of its layout.
 pub(crate) const LABEL: &str = "shadowfit rays";
 
-/// Refuses a device that cannot trace rays.
+/// Returns an error for a device that cannot trace rays.
 pub(crate) fn check(limits: &wgpu::Limits) -> Result<(), RayError> {
     let (buffers, threads) =
         (limits.max_storage_buffers_per_shader_stage, limits.max_compute_invocations_per_workgroup);
@@ -21,13 +21,13 @@ pub(crate) fn check(limits: &wgpu::Limits) -> Result<(), RayError> {
     }
 }
 
-/// Bytes that a storage buffer may have.
+/// Returns the greatest size of a storage buffer, in bytes.
 pub(crate) fn buffer_limit(device: &wgpu::Device) -> u64 {
     let limits = device.limits();
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
-/// Does work that the device may refuse or lack memory for.
+/// Runs work that the device may reject or lack memory for.
 pub(crate) fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, RayError> {
     shadowfit_gpu::catch_errors(device, work).map_err(|error| RayError::Device(error.to_string()))
 }

@@ -1,48 +1,50 @@
-//! Instances of meshes: what the shaders read of one, and the box that holds it.
+//! Instances of meshes, with their records for the shaders and their boxes.
 
 use glam::{Affine3A, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
 use super::placed::MeshId;
 use crate::records::{InstanceRecord, NO_ROOT};
 
-/// Which triangles of an instance block the light, by the side that the light sees. The front is the side from which the
-/// corners follow each other counter-clockwise; an instance that is mirrored, by a negative determinant, keeps the sides
-/// of its mesh outward, as glTF says and engines draw it.
+/// The triangles of an instance that block the light, by the side that faces the light. The corners of a
+/// triangle are counter-clockwise as seen from its front. A mirrored instance (negative determinant) keeps
+/// the outward sides of its mesh, as glTF specifies and engines draw it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Sides {
-    /// All of them: what engines draw into shadow maps without culling.
+    /// All triangles, as in shadow maps without culling.
     #[default]
     Both = 0,
-    /// Those whose front faces the light: what back-face culling leaves in shadow maps.
+    /// Triangles whose front faces the light, as in shadow maps with back-face culling.
     Front = 1,
-    /// Those whose back faces the light: what front-face culling leaves.
+    /// Triangles whose back faces the light, as in shadow maps with front-face culling.
     Back = 2,
 }
 
-/// A mesh somewhere in the world.
+/// A mesh, placed in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayInstance {
     /// The mesh, from [`RayScene::add_mesh`](crate::RayScene::add_mesh).
     pub mesh: MeshId,
-    /// From the mesh's own space to the world's axes in metres, relative to the origin that is given with it.
+    /// Transform from the mesh's own space to world axes, in metres relative to the origin of
+    /// [`RayScene::set_instances`](crate::RayScene::set_instances).
     pub world_from_mesh: Affine3A,
-    /// Least and greatest corner of a box that holds it in this frame, in world axes, in metres, relative to the same
-    /// origin; `None` for that of its mesh, transformed. What deforms is traced the faster the less its box holds beside it.
+    /// Least and greatest corner of a box that holds the instance in this frame, in world axes, in metres,
+    /// relative to the same origin. `None` uses the transformed box of its mesh. For a deforming mesh, a
+    /// tighter box makes tracing faster.
     pub bounds: Option<[Vec3; 2]>,
-    /// Which of its triangles block the light.
+    /// The triangles that block the light.
     pub sides: Sides,
-    /// A number of the engine's own, which its WGSL is told of a hit.
+    /// A number that the engine assigns. The engine's WGSL gets it with each hit.
     pub custom: u32,
 }
 
 impl RayInstance {
-    /// An instance whose triangles block the light from both sides, and whose own number is 0.
+    /// Returns an instance whose triangles block the light from both sides, with the number 0.
     pub const fn new(mesh: MeshId, world_from_mesh: Affine3A) -> Self {
         Self { mesh, world_from_mesh, bounds: None, sides: Sides::Both, custom: 0 }
     }
 
-    /// The record, and the box around the instance; `None` where it cannot be met.
+    /// Returns the record and the box of the instance, or `None` if rays cannot hit it.
     pub(crate) fn placed(&self, root: u32, bounds: [Vec3; 2]) -> Option<(InstanceRecord, [Vec3; 2])> {
         let mesh_from_world = inverse(&self.world_from_mesh).filter(|_| root != NO_ROOT)?;
         let bounds = match self.bounds {
@@ -65,7 +67,7 @@ impl RayInstance {
     }
 }
 
-/// The inverse to half a unit in the last place; `None` where it is not finite.
+/// Returns the inverse, exact to half a unit in the last place, or `None` if it is not finite.
 fn inverse(transform: &Affine3A) -> Option<Affine3A> {
     let linear = DMat3::from_cols(
         transform.matrix3.x_axis.as_dvec3(),
@@ -84,12 +86,12 @@ fn inverse(transform: &Affine3A) -> Option<Affine3A> {
     inverse.is_finite().then_some(inverse)
 }
 
-/// Roundings between a corner of a mesh and what a ray in the world finds of it, at most: three products and sums in the
-/// shader, as many here, and the matrix's own.
+/// Greatest number of roundings between a corner of a mesh and its position for a ray in the world: three
+/// products and sums in the shader, three here, and the matrix's own.
 const ROUNDINGS: f32 = 8.0;
 
-/// The box around a transformed box, with what rounding may add: to the box itself, and to the way from a ray in the
-/// world to one in the mesh.
+/// Returns the box around a transformed box, widened by rounding errors of the box itself and of the
+/// transform of rays from the world to the mesh.
 fn world_bounds(world: &Affine3A, mesh: &Affine3A, [least, most]: [Vec3; 2]) -> [Vec3; 2] {
     let [least, most] = [least, most].map(Vec3A::from);
     let centre = world.transform_point3a((least + most) * 0.5);
@@ -97,7 +99,7 @@ fn world_bounds(world: &Affine3A, mesh: &Affine3A, [least, most]: [Vec3; 2]) -> 
     widened(world, mesh, [(centre - half).into(), (centre + half).into()])
 }
 
-/// A box in the world with what rounding may add.
+/// Returns a box in the world, widened by rounding errors.
 fn widened(world: &Affine3A, mesh: &Affine3A, [least, most]: [Vec3; 2]) -> [Vec3; 2] {
     let [least, most] = [least, most].map(Vec3A::from);
     let (world_size, mesh_size) = (world.matrix3.abs(), mesh.matrix3.abs());

@@ -1,4 +1,4 @@
-//! The meshes of a scene: where each lies in the buffers, by numbers that are never used twice.
+//! The meshes of a scene with their places in the buffers, by identifiers that are never reused.
 
 use glam::Vec3;
 
@@ -21,9 +21,9 @@ impl MeshId {
 #[derive(Debug)]
 pub(crate) struct Placed {
     pub(crate) ranges: MeshRanges,
-    /// Stack that a ray through it needs.
+    /// Stack for a ray through the mesh.
     pub(crate) stack: usize,
-    /// The box around it, in its own space.
+    /// The box around the mesh, in its own space.
     pub(crate) bounds: [Vec3; 2],
     pub(crate) deforming: Option<Deforming>,
 }
@@ -31,7 +31,7 @@ pub(crate) struct Placed {
 /// All meshes.
 #[derive(Debug, Default)]
 pub(crate) struct Meshes {
-    /// With the number of meshes that each place had before.
+    /// The meshes, each with the number of earlier meshes in its place.
     places: Vec<(u32, Option<Placed>)>,
     free: Vec<u32>,
 }

@@ -1,13 +1,13 @@
-//! A buffer of records that grows by doubling, and in which ranges are taken and given back.
+//! A buffer of records that grows by doubling, with an allocator of ranges.
 
 use core::ops::Range;
 
 use super::device::{buffer_limit, caught};
 use crate::error::RayError;
 
-/// Records of a buffer at first: enough for small scenes, and less than a page.
+/// Initial number of records in a buffer: enough for small scenes, and less than a page.
 const FIRST_RECORDS: u64 = 64;
-/// Bytes that are uploaded at a time, so that no second copy of a large mesh is in memory.
+/// Bytes per upload, to avoid a second copy of a large mesh in memory.
 const UPLOAD_BYTES: usize = 1 << 20;
 
 /// A storage buffer of records.
@@ -15,9 +15,9 @@ const UPLOAD_BYTES: usize = 1 << 20;
 pub(crate) struct Records {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// What they are, for labels and errors.
+    /// Name of the records, for labels and errors.
     what: &'static str,
-    /// Bytes of one.
+    /// Bytes of one record.
     stride: u64,
     limit: u64,
     buffer: wgpu::Buffer,
@@ -35,7 +35,7 @@ impl Records {
         &self.buffer
     }
 
-    /// Makes room for a number of records, and keeps those that it has. The buffer may be another one then.
+    /// Makes room for a number of records, and keeps the existing ones. This may replace the buffer.
     pub(crate) fn reserve(&mut self, records: u64) -> Result<(), RayError> {
         let bytes = records.saturating_mul(self.stride);
         if bytes <= self.buffer.size() {
@@ -53,12 +53,12 @@ impl Records {
         Ok(())
     }
 
-    /// Writes records from a place on.
+    /// Writes records from index `first` on.
     pub(crate) fn write<T: bytemuck::Pod>(&self, first: u32, records: &[T]) {
         self.queue.write_buffer(&self.buffer, u64::from(first) * self.stride, bytemuck::cast_slice(records));
     }
 
-    /// Writes records from a place on, some at a time.
+    /// Writes records from index `first` on, in several uploads.
     pub(crate) fn write_all<T: bytemuck::Pod>(&self, first: u32, mut records: impl ExactSizeIterator<Item = T>) {
         let at_a_time = (UPLOAD_BYTES / size_of::<T>()).min(records.len());
         let (mut first, mut piece) = (first, Vec::with_capacity(at_a_time));
@@ -71,13 +71,13 @@ impl Records {
     }
 }
 
-/// Such a buffer with its free ranges.
+/// A storage buffer with its free ranges.
 #[derive(Debug)]
 pub(crate) struct Pool {
     pub(crate) records: Records,
-    /// In order, none empty, no two that touch.
+    /// Free ranges in ascending order. They are not empty and do not touch each other.
     free: Vec<Range<u32>>,
-    /// Where nothing was taken yet.
+    /// End of all ranges that were ever taken.
     end: u32,
 }
 
@@ -86,7 +86,7 @@ impl Pool {
         Ok(Self { records: Records::new::<T>(device, queue, what)?, free: Vec::new(), end: 0 })
     }
 
-    /// Takes a range of this length: the first free one that is long enough, or one behind all.
+    /// Takes a range of a length: the first free one that is long enough, or a new one at the end.
     pub(crate) fn take(&mut self, length: usize) -> Result<Range<u32>, RayError> {
         let wanted = length as u64;
         if let Some(place) = self.free.iter().position(|free| free.len() as u64 >= wanted && wanted > 0) {
@@ -105,14 +105,14 @@ impl Pool {
         Ok(taken)
     }
 
-    /// Gives a range back.
+    /// Returns a range to the pool.
     pub(crate) fn give(&mut self, range: Range<u32>) {
         if range.is_empty() {
             return;
         }
         let place = self.free.partition_point(|free| free.end < range.start);
         let mut joined = range;
-        // At most the one in front of it and the one behind it touch it.
+        // At most two free ranges touch it, one in front of it and one behind it.
         while self.free.get(place).is_some_and(|free| free.start <= joined.end) {
             let free = self.free.remove(place);
             joined = joined.start.min(free.start)..joined.end.max(free.end);

@@ -19,13 +19,13 @@ impl MeshRanges {
     pub(crate) fn root(&self) -> u32 {
         match self.nodes.len() {
             0 => NO_ROOT,
-            // A leaf.
+            // The root is a leaf.
             WIDTH => packed(self.triangles.len() as u32, self.triangles.start),
             _ => packed(0, self.nodes.start + WIDTH as u32),
         }
     }
 
-    /// Whether the records of a mesh fill the ranges exactly.
+    /// Returns whether the records of a mesh fill the ranges exactly.
     pub(crate) fn fit(&self, mesh: &RayMesh) -> bool {
         [self.nodes.len(), self.triangles.len(), self.cut_outs.len()]
             == [mesh.hierarchy.nodes.len(), mesh.triangles.len(), mesh.cut_outs.len()]

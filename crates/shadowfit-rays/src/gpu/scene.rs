@@ -20,19 +20,19 @@ use crate::hierarchy::WIDTH;
 use crate::mesh::RayMesh;
 use crate::records::{CutOutRecord, InstanceRecord, NodeRecord, TriangleRecord};
 
-/// The meshes of an engine and their instances of the frame, for shaders with [`rays_wgsl`](crate::rays_wgsl).
+/// The meshes of an engine and their instances in a frame, for shaders with [`rays_wgsl`](crate::rays_wgsl).
 ///
-/// Adding meshes or images, and setting more instances, may make other buffers: record passes that trace, with
-/// [`Self::group`], after it, and submit refits that were recorded before it.
+/// Adding meshes or images, and setting more instances, may replace the buffers. Make these changes after
+/// earlier recorded refits were submitted, and before you record passes that bind [`Self::group`].
 #[derive(Debug)]
 pub struct RayScene {
     device: wgpu::Device,
     queue: wgpu::Queue,
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
-    /// What the group binds, in the order of its bindings.
+    /// The bound buffers, in the order of the bindings.
     bound: [wgpu::Buffer; BUFFERS],
-    /// Place of the nodes of instances, but for the first ones.
+    /// Place of the nodes of instances, except the first group.
     top_nodes: Range<u32>,
     instance_records: Records,
     nodes: Pool,
@@ -40,7 +40,7 @@ pub struct RayScene {
     cut_outs: Pool,
     images: Pool,
     image_ranges: HashMap<ImageId, Range<u32>>,
-    /// Images that were ever added.
+    /// Number of images that were ever added.
     images_added: u32,
     meshes: Meshes,
     refit: Option<RefitPass>,
@@ -49,23 +49,23 @@ pub struct RayScene {
     top: TopLevel,
     /// Longest stack of the meshes of the instances.
     mesh_stack: usize,
-    /// Those that differ from the last frame's; kept so that frames do not allocate.
+    /// Instances that differ from the last frame. Kept so that frames do not allocate.
     changed: Vec<u32>,
     uploaded: u64,
 }
 
 impl RayScene {
-    /// An empty scene, which blocks no ray.
+    /// Returns an empty scene, which blocks no ray.
     ///
     /// # Errors
     ///
-    /// [`RayError::Unsupported`] if the device has no compute shaders or too few storage buffers.
+    /// Returns [`RayError::Unsupported`] if the device has no compute shaders or too few storage buffers, and
     /// [`RayError::Device`] if it is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, RayError> {
         check(&device.limits())?;
         let instance_records = Records::new::<InstanceRecord>(device, queue, "instances")?;
         let mut nodes = Pool::new::<NodeRecord>(device, queue, "nodes")?;
-        // Shaders find the root of the instances at the beginning.
+        // Shaders read the root of the instances from the beginning of the buffer.
         nodes.take(WIDTH)?;
         let top_nodes = nodes.take(TopLevel::room(1))?;
         let triangles = Pool::new::<TriangleRecord>(device, queue, "triangles")?;
@@ -107,19 +107,20 @@ impl RayScene {
     ///
     /// # Errors
     ///
-    /// [`RayError::TooDeep`], [`RayError::TooLarge`], and [`RayError::Device`] if the device is out of memory.
+    /// Returns [`RayError::TooDeep`], [`RayError::TooLarge`], and [`RayError::Device`] if the device is out
+    /// of memory.
     pub fn add_mesh(&mut self, mesh: &RayMesh) -> Result<MeshId, RayError> {
         let placed = self.place(mesh)?;
         Ok(self.meshes.add(placed))
     }
 
-    /// Uploads a mesh whose vertices will move, by [`Self::refit`]; until then it has the shape that it was built with.
-    /// A character needs a mesh of its own where each has a pose of its own. `bounds` are the least and greatest corner
-    /// of a box that holds all poses, in the space of the mesh.
+    /// Uploads a mesh whose vertices [`Self::refit`] will move. It has its built shape before the first
+    /// refit. Characters need separate meshes if their poses differ. `bounds` are the least and greatest
+    /// corner of a box that holds all poses, in the space of the mesh.
     ///
     /// # Errors
     ///
-    /// As [`Self::add_mesh`], and [`RayError::Bounds`].
+    /// Returns the errors of [`Self::add_mesh`], and [`RayError::Bounds`].
     pub fn add_deforming_mesh(&mut self, mesh: &RayMesh, bounds: [Vec3; 2]) -> Result<MeshId, RayError> {
         let [least, most] = bounds;
         if !(least.is_finite() && most.is_finite() && least.cmple(most).all()) {
@@ -139,12 +140,14 @@ impl RayScene {
         }
     }
 
-    /// Gives a mesh another shape, which its instances have at once: for what the CPU deforms or edits. Only as many
-    /// nodes, triangles and cut-outs take no other room. A deforming mesh keeps its shape from now on.
+    /// Replaces the shape of a mesh, and so of all its instances, for meshes that the CPU deforms or edits.
+    /// The mesh keeps its place if the numbers of nodes, triangles and cut-outs are unchanged. A deforming
+    /// mesh becomes a rigid one.
     ///
     /// # Errors
     ///
-    /// [`RayError::NoMesh`], and those of [`Self::add_mesh`]. The mesh has its old shape then.
+    /// Returns [`RayError::NoMesh`] and the errors of [`Self::add_mesh`]. On an error the mesh keeps its old
+    /// shape.
     pub fn update_mesh(&mut self, id: MeshId, mesh: &RayMesh) -> Result<(), RayError> {
         self.uploaded = 0;
         let stack = mesh.hierarchy.stack;
@@ -175,17 +178,18 @@ impl RayScene {
         Ok(())
     }
 
-    /// Removes a mesh. What still stands of it blocks nothing, and must be gone from the next [`Self::set_instances`].
+    /// Removes a mesh. Its remaining instances do not block rays. The next [`Self::set_instances`] must not
+    /// contain them.
     ///
     /// # Errors
     ///
-    /// [`RayError::NoMesh`] if it is not in the scene.
+    /// Returns [`RayError::NoMesh`] if it is not in the scene.
     pub fn remove_mesh(&mut self, mesh: MeshId) -> Result<(), RayError> {
         let placed = self.meshes.remove(mesh).ok_or(RayError::NoMesh)?;
         self.give(&placed.ranges);
         for index in 0..self.instances.len() {
             if self.instances[index].mesh == mesh {
-                // Differs from whatever is set next.
+                // Makes it differ from the next instance in its place.
                 self.instances[index].mesh = MeshId::NONE;
                 self.top.set(index, None);
             }
@@ -194,11 +198,11 @@ impl RayScene {
         Ok(())
     }
 
-    /// Uploads an image, for the cut-outs of meshes that are built from now on.
+    /// Uploads an image, for the cut-outs of meshes that are built later.
     ///
     /// # Errors
     ///
-    /// [`RayError::TooLarge`], and [`RayError::Device`] if the device is out of memory.
+    /// Returns [`RayError::TooLarge`], and [`RayError::Device`] if the device is out of memory.
     pub fn add_image(&mut self, image: AlphaImage<'_>) -> Result<ImageId, RayError> {
         let words = image.words();
         let taken = self.images.take(words.len());
@@ -211,28 +215,30 @@ impl RayScene {
         Ok(id)
     }
 
-    /// Removes an image, after the meshes with cut-outs of it: these would read another one.
+    /// Removes an image. First remove the meshes whose cut-outs use it, because they would read another
+    /// image.
     ///
     /// # Errors
     ///
-    /// [`RayError::NoImage`] if it is not in the scene.
+    /// Returns [`RayError::NoImage`] if it is not in the scene.
     pub fn remove_image(&mut self, image: ImageId) -> Result<(), RayError> {
         let range = self.image_ranges.remove(&image).ok_or(RayError::NoImage)?;
         self.images.give(range);
         Ok(())
     }
 
-    /// Sets the instances of a frame: their transforms are relative to `origin` (world space, metres), which should be
-    /// near what is looked at. Instances whose transform is singular or not finite are never met.
+    /// Sets the instances of a frame. Their transforms are relative to `origin` (world space, metres), which
+    /// should be near the camera. Rays never hit instances whose transform is singular or not finite.
     ///
-    /// Made to be called in every frame: it uploads nothing where nothing has changed; where instances have moved, it
-    /// fits the boxes above them, without allocating, and builds the hierarchy of instances again where their number has
-    /// changed or a ray would cost much more than when it was built.
+    /// Call it in every frame. Without changes it uploads nothing. If instances have moved, it refits the
+    /// boxes of the hierarchy without allocating. It rebuilds the hierarchy of instances if their number has
+    /// changed, or if a ray would cost much more than after the last build.
     ///
     /// # Errors
     ///
-    /// [`RayError::NoMeshOfInstance`], [`RayError::TooDeep`], [`RayError::TooLarge`], and [`RayError::Device`] if the
-    /// device is out of memory. The instances of the frame before stay then.
+    /// Returns [`RayError::NoMeshOfInstance`], [`RayError::TooDeep`], [`RayError::TooLarge`], and
+    /// [`RayError::Device`] if the device is out of memory. On an error the instances of the previous frame
+    /// stay.
     pub fn set_instances(&mut self, origin: DVec3, instances: &[RayInstance]) -> Result<(), RayError> {
         self.uploaded = 0;
         let fits = instances.len() == self.instances.len() && self.find_changed(instances)?;
@@ -245,14 +251,14 @@ impl RayScene {
         Ok(())
     }
 
-    /// Records the passes that fit a deforming mesh to positions that the engine has written, or writes earlier in this
-    /// encoder. A mesh may be refitted once in a submission. Vertices have the order of the positions that the mesh was
-    /// built from.
+    /// Records the passes that fit a deforming mesh to positions in the engine's vertex buffer. The positions
+    /// must be written before these passes run, for example by earlier passes of this encoder. Refit a mesh
+    /// at most once per submission. Vertices are in the order of the positions that the mesh was built from.
     ///
     /// # Errors
     ///
-    /// [`RayError::NoMesh`], [`RayError::NotDeforming`], [`RayError::Vertices`], and [`RayError::TooLarge`]. Nothing is
-    /// recorded then.
+    /// Returns [`RayError::NoMesh`], [`RayError::NotDeforming`], [`RayError::Vertices`], and
+    /// [`RayError::TooLarge`]. On an error it records no pass.
     pub fn refit(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -267,55 +273,56 @@ impl RayScene {
         refit.record(&self.device, &self.queue, encoder, deforming, &scene, vertices)
     }
 
-    /// Layout of the bind group: five storage buffers that compute and fragment shaders read.
+    /// Returns the layout of the bind group: five storage buffers for compute and fragment shaders.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// The bind group that [`rays_wgsl`](crate::rays_wgsl) reads.
+    /// Returns the bind group that [`rays_wgsl`](crate::rays_wgsl) reads.
     pub fn group(&self) -> &wgpu::BindGroup {
         &self.group
     }
 
-    /// What instances and rays are relative to, world space, metres.
+    /// Returns the origin of instances and rays, in world space, in metres.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// Least and greatest corner of a box that holds all instances, in world axes, in metres, relative to the origin;
-    /// `None` where nothing can be met.
+    /// Returns the least and greatest corner of a box that holds all instances, in world axes, in metres,
+    /// relative to the origin. `None` if rays cannot hit any instance.
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         self.top.bounds()
     }
 
-    /// Number of instances.
+    /// Returns the number of instances.
     pub fn instances(&self) -> usize {
         self.instances.len()
     }
 
-    /// Number of triangles of all meshes, each counted once.
+    /// Returns the number of triangles of all meshes. A mesh with several instances counts once.
     pub fn triangles(&self) -> u64 {
         self.meshes.iter().map(|mesh| mesh.ranges.triangles.len() as u64).sum()
     }
 
-    /// Where a mesh's triangles lie among those of the scene, in leaf order; `None` if it is not in the scene.
+    /// Returns the range of a mesh's triangles among all triangles of the scene, in leaf order. `None` if the
+    /// mesh is not in the scene.
     pub fn slots(&self, mesh: MeshId) -> Option<Range<u32>> {
         self.meshes.get(mesh).map(|mesh| mesh.ranges.triangles.clone())
     }
 
-    /// Bytes on the GPU.
+    /// Returns the bytes on the GPU.
     pub fn bytes(&self) -> u64 {
         let deforming = self.meshes.iter().filter_map(|mesh| mesh.deforming.as_ref());
         self.bound.iter().map(wgpu::Buffer::size).chain(deforming.map(Deforming::bytes)).sum()
     }
 
-    /// Bytes that the last [`Self::set_instances`] uploaded.
+    /// Returns the bytes that the last [`Self::set_instances`] uploaded.
     pub fn uploaded(&self) -> u64 {
         self.uploaded
     }
 
-    /// Finds the instances that differ from those of the frame before, which are as many. Returns whether the hierarchy
-    /// of these can be kept: not where rays could go deeper than the stack.
+    /// Finds the instances that differ from the previous frame, which has the same number of instances.
+    /// Returns whether the hierarchy of instances can be kept. It cannot if rays could exceed the stack.
     fn find_changed(&mut self, instances: &[RayInstance]) -> Result<bool, RayError> {
         self.changed.clear();
         let mut mesh_stack = self.mesh_stack;
@@ -333,7 +340,7 @@ impl RayScene {
         Ok(fits)
     }
 
-    /// Moves those that differ.
+    /// Moves the changed instances.
     fn move_instances(&mut self, instances: &[RayInstance]) {
         for index in &self.changed {
             let index = *index as usize;
@@ -347,7 +354,7 @@ impl RayScene {
         self.upload();
     }
 
-    /// Sets other instances.
+    /// Replaces all instances.
     fn replace_instances(&mut self, instances: &[RayInstance]) -> Result<(), RayError> {
         let mut mesh_stack = 0;
         let placed: Result<Vec<Instance>, RayError> = instances
@@ -383,7 +390,7 @@ impl RayScene {
         self.uploaded += self.top.upload(&self.nodes.records, &self.instance_records);
     }
 
-    /// Finds room for a mesh, and uploads it.
+    /// Allocates room for a mesh and uploads it.
     fn place(&mut self, mesh: &RayMesh) -> Result<Placed, RayError> {
         let stack = mesh.hierarchy.stack;
         if stack > STACK {
@@ -393,7 +400,7 @@ impl RayScene {
         let taken = self.take(mesh, &mut ranges).and_then(|()| self.rebind());
         if let Err(error) = taken {
             self.give(&ranges);
-            // The buffers that have grown already are the ones to read.
+            // Some buffers may have been replaced by larger ones. Bind these.
             self.rebind()?;
             return Err(error);
         }
@@ -401,7 +408,7 @@ impl RayScene {
         Ok(Placed { ranges, stack, bounds: mesh.bounds().unwrap_or_default(), deforming: None })
     }
 
-    /// Uploads a mesh where it has its room.
+    /// Uploads a mesh to its ranges.
     fn write(&self, mesh: &RayMesh, ranges: &MeshRanges) {
         let nodes = mesh.hierarchy.nodes.iter().map(|node| {
             let base = if node.count > 0 { ranges.triangles.start } else { ranges.nodes.start };
@@ -416,7 +423,7 @@ impl RayScene {
         self.cut_outs.records.write_all(ranges.cut_outs.start, mesh.cut_outs.iter().copied());
     }
 
-    /// Takes room in the three buffers, as far as there is.
+    /// Takes ranges in the three buffers. On an error, `ranges` has the ranges taken so far.
     fn take(&mut self, mesh: &RayMesh, ranges: &mut MeshRanges) -> Result<(), RayError> {
         ranges.nodes = self.nodes.take(mesh.hierarchy.nodes.len())?;
         ranges.triangles = self.triangles.take(mesh.triangles.len())?;
@@ -424,14 +431,14 @@ impl RayScene {
         Ok(())
     }
 
-    /// Gives the room of a mesh back.
+    /// Returns the ranges of a mesh to the pools.
     fn give(&mut self, ranges: &MeshRanges) {
         self.nodes.give(ranges.nodes.clone());
         self.triangles.give(ranges.triangles.clone());
         self.cut_outs.give(ranges.cut_outs.clone());
     }
 
-    /// Makes the bind group again if a buffer is another one.
+    /// Recreates the bind group if a buffer was replaced.
     fn rebind(&mut self) -> Result<(), RayError> {
         let pools = [&self.nodes, &self.triangles, &self.cut_outs, &self.images].map(|pool| pool.records.buffer());
         let now = [pools[0], self.instance_records.buffer(), pools[1], pools[2], pools[3]];
@@ -444,7 +451,7 @@ impl RayScene {
     }
 }
 
-/// Layout of [`RayScene::group`], for pipelines that are made before there is a scene.
+/// Returns the layout of [`RayScene::group`], for pipelines that are created before a scene.
 pub fn rays_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
     bindings::layout(device, LABEL, stages, &[bindings::storage(true); BUFFERS])

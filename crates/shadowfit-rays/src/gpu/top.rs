@@ -1,7 +1,7 @@
-//! The hierarchy of the instances: built, and fitted again when some of them have moved.
+//! The hierarchy of the instances. It is refitted when some of them have moved.
 //!
-//! A leaf holds one instance, so that rays are taken into its mesh only where they meet its own box. What cannot be met,
-//! because its transform is singular, keeps the box that it had, and its record says that rays pass it by.
+//! A leaf holds one instance, so rays enter its mesh only if they hit its own box. An instance that rays
+//! cannot hit, because its transform is singular, keeps its last box, and its record marks it as skipped.
 
 use glam::Vec3;
 use obvhs::BvhBuildParams;
@@ -13,21 +13,21 @@ use crate::error::RayError;
 use crate::hierarchy::{self, WIDTH, around};
 use crate::records::{InstanceRecord, NO_ROOT, NodeRecord};
 
-/// A refitted hierarchy is built again when its cost has grown by more than this factor since it was built. The time of
-/// a ray grows about as the cost does, and a frame traces many more rays than a build takes.
+/// Growth of the cost since the last build above which the hierarchy is rebuilt. The time of a ray is roughly
+/// proportional to the cost, and the rays of a frame take much longer than a build.
 const MAX_COST_GROWTH: f64 = 1.5;
 
-/// Unchanged records between two changed ones up to which one upload takes both: they are copied in less time than
-/// another upload takes.
+/// Greatest number of unchanged records between two changed ones that share an upload. Copying them takes
+/// less time than another upload.
 const GAP: usize = 256;
 
-/// A build that is twice as fast as that of meshes, since it may be made in any frame; one instance a leaf.
+/// Build parameters, twice as fast as for meshes, since any frame may build. One instance per leaf.
 const BUILD: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::fast_build() };
 
-/// What an instance is in a frame: its record and the box around it; `None` where it cannot be met.
+/// An instance in a frame: its record and its box. `None` if rays cannot hit it.
 pub(crate) type Instance = Option<(InstanceRecord, [Vec3; 2])>;
 
-/// What is never met.
+/// Record of an instance that rays skip.
 const HIDDEN: InstanceRecord = InstanceRecord {
     row_x: [0.0; 4],
     row_y: [0.0; 4],
@@ -38,36 +38,36 @@ const HIDDEN: InstanceRecord = InstanceRecord {
     padding: 0,
 };
 
-/// The instances' records and their hierarchy, as they are on the GPU after [`Self::upload`].
+/// The instances' records and their hierarchy, as on the GPU after [`Self::upload`].
 #[derive(Debug)]
 pub(crate) struct TopLevel {
-    /// The first group, with the root, is the first one of the buffer of nodes.
+    /// Nodes. The first group, with the root, is the first group of the node buffer.
     nodes: Vec<NodeRecord>,
-    /// Place of the second group in the buffer of nodes.
+    /// Place of the second group in the node buffer.
     base: u32,
     parents: Vec<u32>,
     stack: usize,
     /// Leaf of each instance.
     leaves: Vec<u32>,
     records: Vec<InstanceRecord>,
-    /// Sum of the areas of all boxes.
+    /// Sum of the surface areas of all boxes.
     area: f64,
-    /// Cost of a ray when it was built.
+    /// Cost of a ray at the last build.
     built_cost: f64,
     changed_nodes: Vec<bool>,
     changed_records: Vec<bool>,
 }
 
 impl TopLevel {
-    /// Places that the nodes of some instances take beside the first group, however often they are built again. A node
-    /// with fewer than four children has leaves alone, two or more, and is the child of one with four, so that there are
-    /// at most two such nodes for every three instances.
+    /// Returns the number of places for the nodes of some instances, without the first group. It is enough
+    /// for any rebuild. A node with fewer than four children has only leaves, at least two, and its parent
+    /// has four children. So there are at most two inner nodes per three instances.
     pub(crate) fn room(instances: usize) -> usize {
         (instances * 2 / 3 + 1) * WIDTH
     }
 
-    /// Builds the hierarchy of instances whose meshes need a stack of up to a length, for nodes from `base` on. Without
-    /// instances it has one that is never met.
+    /// Builds the hierarchy of instances, for nodes from `base` on. `mesh_stack` is the longest stack of
+    /// their meshes. Without instances it holds one that rays skip.
     pub(crate) fn new(instances: &[Instance], mesh_stack: usize, base: u32) -> Result<Self, RayError> {
         let somewhere = instances.iter().flatten().next().map_or(Vec3::ZERO, |(_, bounds)| bounds[0]);
         let bounds = |instance: &Instance| instance.map_or([somewhere; 2], |(_, bounds)| bounds);
@@ -80,7 +80,7 @@ impl TopLevel {
         Self::build(&bounds, records, mesh_stack, base)
     }
 
-    /// Builds the same instances' hierarchy again, where they are now.
+    /// Builds the hierarchy of the same instances again, at their current places.
     fn rebuilt(&self, mesh_stack: usize) -> Result<Self, RayError> {
         let bounds: Vec<_> = self.leaves.iter().map(|leaf| self.nodes[*leaf as usize].bounds()).collect();
         Self::build(&bounds, self.records.clone(), mesh_stack, self.base)
@@ -128,23 +128,23 @@ impl TopLevel {
         Ok(top)
     }
 
-    /// Stack that a ray needs, beside that of a mesh.
+    /// Returns the stack for a ray, without the stack for a mesh.
     pub(crate) fn stack(&self) -> usize {
         self.stack
     }
 
-    /// Number of records.
+    /// Returns the number of records.
     pub(crate) fn records(&self) -> u64 {
         self.records.len() as u64
     }
 
-    /// The box around all instances that can be met; around where they were for some frames after one cannot be met any
-    /// more. `None` if none can.
+    /// Returns the box around all instances that rays can hit, or `None` if there are none. After an instance
+    /// becomes hidden, its old place may remain in the box for some frames.
     pub(crate) fn bounds(&self) -> Option<[Vec3; 2]> {
         self.records.iter().any(|record| record.root != NO_ROOT).then(|| self.nodes[0].bounds())
     }
 
-    /// Moves an instance; [`Self::refit`] has to follow.
+    /// Moves an instance. Call [`Self::refit`] afterwards.
     pub(crate) fn set(&mut self, index: usize, instance: Instance) {
         let record = instance.map_or(HIDDEN, |(record, _)| record);
         if self.records[index] != record {
@@ -156,10 +156,10 @@ impl TopLevel {
         }
     }
 
-    /// Fits the boxes above those that have changed, and builds the hierarchy again where a ray through the fitted one
-    /// would cost much more than when it was built. `mesh_stack` is the longest one of their meshes.
+    /// Fits the boxes above changed boxes. Rebuilds the hierarchy if a ray would cost much more than after
+    /// the last build. `mesh_stack` is the longest stack of the meshes.
     pub(crate) fn refit(&mut self, mesh_stack: usize) {
-        // Children come after their parents.
+        // Children come after their parents, so a backward pass fits all boxes.
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
             if self.changed_nodes[index] && node.count == 0 && !node.is_none() {
@@ -168,7 +168,7 @@ impl TopLevel {
                 self.set_bounds(index, bounds);
             }
         }
-        // A fitted hierarchy is slow and right; the better one may be too deep.
+        // A refitted hierarchy is slow but correct. The rebuilt one may exceed the stack.
         if self.cost() > self.built_cost * MAX_COST_GROWTH
             && let Ok(better) = self.rebuilt(mesh_stack)
         {
@@ -176,7 +176,7 @@ impl TopLevel {
         }
     }
 
-    /// Sets the box of a node, and notes that it and those above it have changed.
+    /// Sets the box of a node, and marks the node and its parent as changed.
     fn set_bounds(&mut self, index: usize, bounds: [Vec3; 2]) {
         let node = &mut self.nodes[index];
         if node.bounds() != bounds {
@@ -188,14 +188,14 @@ impl TopLevel {
         }
     }
 
-    /// Expected number of boxes that a ray is tested against, by the surface area heuristic.
+    /// Returns the expected number of box tests of a ray, by the surface area heuristic.
     fn cost(&self) -> f64 {
         let whole = self.nodes[0].half_area();
-        // Without any area all hierarchies cost the same.
+        // Without area, all hierarchies cost the same.
         if whole > 0.0 { self.area / whole } else { 0.0 }
     }
 
-    /// Uploads what has changed, and returns its bytes.
+    /// Uploads the changed records and nodes. Returns the number of bytes.
     pub(crate) fn upload(&mut self, nodes: &Records, instances: &Records) -> u64 {
         let (root, others) = self.nodes.split_at(WIDTH);
         let (changed_root, changed) = self.changed_nodes.split_at_mut(WIDTH);
@@ -205,7 +205,7 @@ impl TopLevel {
     }
 }
 
-/// Uploads the changed ones of records, in runs, to `target` from place `base` on. Returns their bytes.
+/// Uploads the changed records, in runs, to `target` from place `base` on. Returns the number of bytes.
 fn upload<T: bytemuck::Pod>(target: &Records, base: u32, records: &[T], changed: &mut [bool]) -> u64 {
     let mut bytes = 0;
     let mut from = 0;

@@ -1,24 +1,31 @@
-//! The WGSL of rays, put together from the pieces in `shaders/`. Every name starts with a prefix, so that the text can be
-//! pasted into any shader.
+//! The WGSL for rays, assembled from the pieces in `shaders/`. Every name starts with a prefix, so the text
+//! can be pasted into any shader.
 
 use crate::STACK;
 use crate::error::RayError;
 
-/// How the WGSL fits into an engine's shader.
+/// Options for inserting the WGSL into an engine's shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayWgslOptions<'a> {
-    /// Bind group that it reads; any will do.
+    /// Index of the bind group that the WGSL reads.
     pub group: u32,
-    /// Prefix of all its names, before an underscore: with `sun` the function `shadowfit_rays_blocked` is called
-    /// `sun_rays_blocked` and constants begin with `SUN_`. A prefix that is not an identifier makes invalid WGSL;
-    /// [`Self::with_prefix`] refuses it.
+    /// Prefix of all names in the WGSL, before an underscore. With `sun`, the function
+    /// `shadowfit_rays_blocked` is called `sun_rays_blocked`, and constants begin with `SUN_`. A prefix that
+    /// is not an identifier makes the WGSL invalid. [`Self::with_prefix`] rejects it.
     pub prefix: &'a str,
-    /// WGSL that defines `fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool`, which says of an opaque hit whether it
-    /// blocks the ray; without it all of them do. Its names get the prefix as well.
+    /// WGSL that defines `fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool`. It returns whether an
+    /// opaque hit blocks the ray. `None` lets all opaque hits block. Its names get the prefix as well.
     ///
-    /// A hit has `instance`, the index in the list of instances (`u32`); `custom`, its own number (`u32`); `triangle`, the
-    /// triangle's own index in its mesh (`u32`); `slot`, its place among the triangles of the scene (`u32`); `weights` of
-    /// its second and third corner (`vec2<f32>`); and `distance`, in metres (`f32`). Hits come in no order.
+    /// A hit has these fields:
+    ///
+    /// - `instance` (`u32`): the index in the list of instances.
+    /// - `custom` (`u32`): the instance's number from the engine.
+    /// - `triangle` (`u32`): the triangle's index in its mesh.
+    /// - `slot` (`u32`): the triangle's place among all triangles of the scene.
+    /// - `weights` (`vec2<f32>`): the weights of its second and third corner.
+    /// - `distance` (`f32`): in metres.
+    ///
+    /// Hits come in no particular order.
     pub counts: Option<&'a str>,
 }
 
@@ -26,16 +33,17 @@ impl<'a> RayWgslOptions<'a> {
     /// The usual prefix.
     pub const PREFIX: &'static str = "shadowfit";
 
-    /// Bind group `group`, the prefix `shadowfit`, and every opaque hit counts.
+    /// Returns the options for the bind group `group`, with the prefix `shadowfit`, in which every opaque hit
+    /// blocks.
     pub const fn group(group: u32) -> Self {
         Self { group, prefix: Self::PREFIX, counts: None }
     }
 
-    /// The same with another prefix: ASCII letters, digits and underscores, with a letter first.
+    /// Returns the options with another prefix: ASCII letters, digits and underscores, with a letter first.
     ///
     /// # Errors
     ///
-    /// [`RayError::Prefix`] for anything else.
+    /// Returns [`RayError::Prefix`] for any other prefix.
     pub fn with_prefix(self, prefix: &'a str) -> Result<Self, RayError> {
         let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         if prefix.starts_with(|c: char| c.is_ascii_alphabetic()) && prefix.chars().all(is_word) {
@@ -45,25 +53,35 @@ impl<'a> RayWgslOptions<'a> {
         }
     }
 
-    /// The same with [`Self::counts`].
+    /// Returns the options with [`Self::counts`].
     #[must_use]
     pub const fn with_counts(self, counts: &'a str) -> Self {
         Self { counts: Some(counts), ..self }
     }
 }
 
-/// WGSL for shaders that trace rays, in compute and fragment shaders:
+/// Returns the WGSL for tracing rays in compute and fragment shaders:
 ///
-/// | function | tells |
-/// |---|---|
-/// | `shadowfit_rays_blocked(origin, direction) -> bool` | whether anything stands on the ray from a point, at any distance from 0 on: `origin` (`vec3<f32>`) is in metres relative to the origin of [`RayScene::set_instances`](crate::RayScene::set_instances), `direction` (`vec3<f32>`) of unit length, toward the light |
-/// | `shadowfit_rays_blocked_above(origin, direction, normal, reach) -> bool` | the same for a ray from a large surface, whose points are rounded by more than the ray starts above it: triangles in the plane of the unit `normal` count from a distance of `reach` metres on |
-/// | `shadowfit_rays_surface(origin, direction, sought) -> shadowfit_RaySurface` | the triangle of a surface whose place is roughly known, such as that of a pixel's depth. `sought` (`shadowfit_RaySought`) has in metres the ray's `distance`, in whose middle the surface lies, how far from there it lies at most if all is well (`sure`), and how far `beside` a triangle the ray may pass; and the surface's unit `normal`, or zero. Found is the first triangle within `sure` of the middle, else the one nearest to the middle: where (`distance`), its unit normal against the ray (`normal`), and which (`slot` and `instance`; `SHADOWFIT_RAYS_NONE` if there is none). Both sides of triangles count |
+/// - `shadowfit_rays_blocked(origin, direction) -> bool` returns whether a triangle blocks the ray from a
+///   point, at any distance from 0 on. `origin` (`vec3<f32>`) is in metres relative to the origin of
+///   [`RayScene::set_instances`](crate::RayScene::set_instances). `direction` (`vec3<f32>`) has unit length
+///   and points toward the light.
+/// - `shadowfit_rays_blocked_above(origin, direction, normal, reach) -> bool` does the same for a ray from a
+///   large surface, where rounding may exceed the height of the ray's start above the surface. Triangles in
+///   the plane of the unit `normal` count only from a distance of `reach` metres on.
+/// - `shadowfit_rays_surface(origin, direction, sought) -> shadowfit_RaySurface` finds the triangle of a
+///   surface whose place is known roughly, such as from a pixel's depth. `sought` (`shadowfit_RaySought`) has
+///   these fields, with lengths in metres: `distance` is the length of the ray, with the expected place at
+///   its middle. `sure` is the usual greatest distance of the surface from the middle. `beside` is the
+///   greatest distance at which the ray may miss a triangle. `normal` is the surface's unit normal, or zero
+///   if it is unknown. The result is the first triangle within `sure` of the middle, or else the triangle
+///   nearest to the middle: its `distance`, its unit `normal` against the ray, and its `slot` and `instance`
+///   (`SHADOWFIT_RAYS_NONE` if there is none). Both sides of triangles count.
+/// - `shadowfit_rays_triangle(slot)` returns the triangle of a hit's slot, with corners `a`, `b` and `c` in
+///   the space of its mesh.
 ///
-/// `shadowfit_rays_triangle(slot)` is the triangle of a hit's slot, with corners `a`, `b` and `c` in the space of its mesh.
-///
-/// A ray that starts on a surface meets it: start it a little above. Reads the bindings 0 to 4 of the group, which is
-/// [`RayScene::group`](crate::RayScene::group); no derivatives.
+/// A ray that starts on a surface hits it, so start it slightly above. The WGSL reads the bindings 0 to 4 of
+/// the bind group [`RayScene::group`](crate::RayScene::group) and uses no derivatives.
 pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
     let rays = include_str!("../shaders/rays.wgsl")
         .replace("GROUP", &options.group.to_string())
@@ -77,7 +95,7 @@ pub fn rays_wgsl(options: &RayWgslOptions<'_>) -> String {
         .replace("SHADOWFIT_", &format!("{}_", options.prefix.to_ascii_uppercase()))
 }
 
-/// The WGSL of the passes of [`RayScene::refit`](crate::RayScene::refit).
+/// Returns the WGSL of the passes of [`RayScene::refit`](crate::RayScene::refit).
 pub fn refit_wgsl() -> String {
     [include_str!("../shaders/types.wgsl"), include_str!("../shaders/refit.wgsl")].concat()
 }

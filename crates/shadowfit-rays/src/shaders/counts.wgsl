@@ -1,5 +1,5 @@
 
-// Every hit that is opaque counts.
+// Every opaque hit counts.
 fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool {
     return true;
 }

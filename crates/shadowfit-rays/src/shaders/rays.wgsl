@@ -1,10 +1,10 @@
 
 struct shadowfit_rays_Instance {
-    // Rows of mesh from world.
+    // Rows of the transform from world to mesh.
     row_x: vec4<f32>,
     row_y: vec4<f32>,
     row_z: vec4<f32>,
-    // First node of its mesh, or NONE.
+    // First node of the mesh, or NONE.
     root: u32,
     // 0 both, 1 front, 2 back.
     sides: u32,
@@ -19,24 +19,24 @@ struct shadowfit_rays_CutOut {
     base_alpha: f32,
     cutoff: f32,
     alphas: vec3<f32>,
-    // Where its image begins, plus 1; 0 for none.
+    // Index of the image's first word, plus 1. 0 for none.
     image: u32,
     wrap: vec2<u32>,
     nearest: u32,
     padding: u32,
 }
 
-// Where a ray meets a triangle.
+// A hit of a ray on a triangle.
 struct shadowfit_RayHit {
     // Index of the instance.
     instance: u32,
-    // The instance's own number.
+    // The instance's number from the engine.
     custom: u32,
-    // The triangle's own index in its mesh.
+    // Index of the triangle in its mesh.
     triangle: u32,
-    // Its place among the triangles of the scene.
+    // Place of the triangle among all triangles of the scene.
     slot: u32,
-    // Of the second and third corner.
+    // Weights of the second and third corner.
     weights: vec2<f32>,
     // In metres.
     distance: f32,
@@ -45,31 +45,31 @@ struct shadowfit_RayHit {
 struct shadowfit_rays_Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
-    // 1 / direction, times a factor that no comparison of distances along one ray depends on.
+    // 1 / direction, times a factor that does not affect comparisons of distances along one ray.
     inverses: vec3<f32>,
 }
 
-// What hierarchies need is compared with this before anything is uploaded.
+// Uploads check that hierarchies do not need a longer stack.
 const SHADOWFIT_RAYS_STACK: u32 = NODES_ON_STACKu;
-// A node in a word has the number of its triangles, or of its instances, in the bits above these.
+// A packed node has the number of its triangles or instances in the bits above these.
 const SHADOWFIT_RAYS_FIRST: u32 = 0x7ffffffu;
 const SHADOWFIT_RAYS_COUNT_AT: u32 = 27u;
-// Greater than any distance that matters, in metres.
+// Greater than any relevant distance, in metres.
 const SHADOWFIT_RAYS_FAR: f32 = 3.0e38;
-// Share of the longest component below which a direction is parallel to a slab: its inverse times a kilometre, in
-// micrometres, is still finite.
+// Share of the longest component below which a direction counts as parallel to a slab. The inverse of this
+// share is still finite after multiplication with a kilometre in micrometres.
 const SHADOWFIT_RAYS_PARALLEL: f32 = 1e-29;
-// A box ends by this factor later than f32 finds: four roundings (T. Ize, "Robust BVH Ray Traversal", 2013).
+// Factor that moves the end of a box outward, for four roundings (T. Ize, "Robust BVH Ray Traversal", 2013).
 const SHADOWFIT_RAYS_LATER: f32 = 1.0000005;
 
-// The nodes of the instances, of which the root comes first, and of the meshes. Each is a shadowfit_rays_Node by its bytes:
-// NVIDIA's driver does not join the loads of a structure's members, and rays take up to a sixth longer with them.
+// The nodes of the instances, root first, and of the meshes. Each has the bytes of a shadowfit_rays_Node.
+// NVIDIA's driver does not join the loads of a structure's members, which makes rays up to a sixth slower.
 @group(GROUP) @binding(0) var<storage, read> shadowfit_rays_nodes: array<array<vec4<u32>, 2>>;
 @group(GROUP) @binding(1) var<storage, read> shadowfit_rays_instances: array<shadowfit_rays_Instance>;
-// Each is a shadowfit_rays_Triangle.
+// Each has the bytes of a shadowfit_rays_Triangle.
 @group(GROUP) @binding(2) var<storage, read> shadowfit_rays_triangles: array<array<vec4<u32>, 3>>;
 @group(GROUP) @binding(3) var<storage, read> shadowfit_rays_cut_outs: array<shadowfit_rays_CutOut>;
-// Of each image its width, its height, and four texels a word, the first one lowest.
+// Width, height and alpha of each image, with four texels per word, the first one in the lowest byte.
 @group(GROUP) @binding(4) var<storage, read> shadowfit_rays_images: array<u32>;
 
 fn shadowfit_rays_node(index: u32) -> shadowfit_rays_Node {
@@ -78,7 +78,7 @@ fn shadowfit_rays_node(index: u32) -> shadowfit_rays_Node {
     return shadowfit_rays_Node(bitcast<vec3<f32>>(least.xyz), least.w, bitcast<vec3<f32>>(most.xyz), most.w);
 }
 
-// The triangle at a place among those of the scene.
+// Returns the triangle at a place among all triangles of the scene.
 fn shadowfit_rays_triangle(slot: u32) -> shadowfit_rays_Triangle {
     let a = shadowfit_rays_triangles[slot][0];
     let b = shadowfit_rays_triangles[slot][1];
@@ -95,7 +95,8 @@ fn shadowfit_rays_ray(origin: vec3<f32>, direction: vec3<f32>) -> shadowfit_rays
     return shadowfit_rays_Ray(origin, direction, 1.0 / select(scaled, signed, abs(scaled) < nearly));
 }
 
-// The ray in the space of an instance's mesh. Its direction is not of unit length, so that distances stay in metres.
+// Returns the ray in the space of an instance's mesh. Its direction is not of unit length, so that distances
+// stay in metres.
 fn shadowfit_rays_in_mesh(instance: u32, ray: shadowfit_rays_Ray) -> shadowfit_rays_Ray {
     let x = shadowfit_rays_instances[instance].row_x;
     let y = shadowfit_rays_instances[instance].row_y;
@@ -144,7 +145,7 @@ fn shadowfit_rays_alpha_at(image: u32, wrap: vec2<u32>, corner: vec2<i32>) -> f3
 
 fn shadowfit_rays_alpha(image: u32, wrap: vec2<u32>, nearest: bool, uv: vec2<f32>) -> f32 {
     let size = vec2<f32>(f32(shadowfit_rays_images[image]), f32(shadowfit_rays_images[image + 1u]));
-    // Whole numbers of this size and their neighbours fit i32, and f32 has no fractions there.
+    // Whole numbers of this size and their neighbours fit into i32, and f32 has no fractions at this size.
     let limit = vec2<f32>(1073741824.0);
     let position = clamp(uv * size - 0.5, -limit, limit);
     let weight = position - floor(position);
@@ -165,7 +166,7 @@ fn shadowfit_rays_alpha(image: u32, wrap: vec2<u32>, nearest: bool, uv: vec2<f32
     return mix(upper, lower, weight.y);
 }
 
-// Whether a triangle with holes is opaque at a point with these weights of its second and third corner.
+// Returns whether a triangle with holes is opaque at the given weights of its second and third corner.
 fn shadowfit_rays_is_opaque(cut_out: shadowfit_rays_CutOut, second_third: vec2<f32>) -> bool {
     let weights = vec3<f32>(1.0 - second_third.x - second_third.y, second_third);
     var alpha = cut_out.base_alpha * dot(cut_out.alphas, weights);
@@ -176,7 +177,7 @@ fn shadowfit_rays_is_opaque(cut_out: shadowfit_rays_CutOut, second_third: vec2<f
     return alpha >= cut_out.cutoff;
 }
 
-// Weights of the second and third corner at a point of a triangle, by areas.
+// Returns the weights of the second and third corner at a point of a triangle, computed from areas.
 fn shadowfit_rays_weights(triangle: shadowfit_rays_Triangle, point: vec3<f32>) -> vec2<f32> {
     let edge1 = triangle.b - triangle.a;
     let edge2 = triangle.c - triangle.a;
@@ -186,8 +187,8 @@ fn shadowfit_rays_weights(triangle: shadowfit_rays_Triangle, point: vec3<f32>) -
     return vec2<f32>(dot(cross(to_point, edge2), normal), dot(cross(edge1, to_point), normal)) / area;
 }
 
-// Whether a ray in the space of a mesh ends at a point of a triangle: not in a hole, and not where an engine's own test lets
-// it pass.
+// Returns whether a ray in the space of a mesh ends at a point of a triangle. It does not end in a hole, nor
+// if the engine's own test ignores the hit.
 fn shadowfit_rays_ends(slot: u32, instance: u32, ray: shadowfit_rays_Ray, distance: f32) -> bool {
     let triangle = shadowfit_rays_triangle(slot);
     let weights = shadowfit_rays_weights(triangle, ray.origin + ray.direction * distance);
@@ -198,29 +199,31 @@ fn shadowfit_rays_ends(slot: u32, instance: u32, ray: shadowfit_rays_Ray, distan
     return shadowfit_rays_counts(shadowfit_RayHit(instance, custom, triangle.index, slot, weights, distance));
 }
 
-// The surface that a ray starts on: nearer than `reach` metres, triangles in its plane do not count.
+// The surface that a ray starts on. Triangles in its plane do not count at less than `reach` metres.
 struct shadowfit_rays_Start {
     // Unit normal, in world space.
     normal: vec3<f32>,
     reach: f32,
 }
 
-// Of the ray that is being traced.
+// Start of the ray that is being traced.
 var<private> shadowfit_rays_start: shadowfit_rays_Start;
 
-// Cosine of the greatest angle between the normals of triangles in one plane.
+// Cosine of the greatest angle between the normals of triangles that count as coplanar.
 const SHADOWFIT_RAYS_SAME_PLANE: f32 = 0.9999;
 
-// The unit normal in world space, against a ray, of an instance's triangle whose normal in its mesh is of any length.
+// Returns the unit normal in world space, against a ray, of an instance's triangle. `normal` is in mesh
+// space, of any length.
 fn shadowfit_rays_normal(normal: vec3<f32>, instance: u32, direction: vec3<f32>) -> vec3<f32> {
     let placed = shadowfit_rays_instances[instance];
     let world = placed.row_x.xyz * normal.x + placed.row_y.xyz * normal.y + placed.row_z.xyz * normal.z;
-    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
+    // Scaled first, because the squared areas of small triangles are too small for f32.
     let unit = normalize(world / max(max(abs(world.x), abs(world.y)), abs(world.z)));
     return select(unit, -unit, dot(unit, direction) > 0.0);
 }
 
-// Whether a triangle with a normal of any length in its mesh, met at a distance, belongs to the surface that the ray starts on.
+// Returns whether a triangle that was hit at a distance belongs to the surface that the ray starts on.
+// `normal` is in mesh space, of any length.
 fn shadowfit_rays_is_start(normal: vec3<f32>, instance: u32, distance: f32) -> bool {
     let start = shadowfit_rays_start;
     if distance >= start.reach {
@@ -229,8 +232,9 @@ fn shadowfit_rays_is_start(normal: vec3<f32>, instance: u32, distance: f32) -> b
     return dot(shadowfit_rays_normal(normal, instance, -start.normal), start.normal) > SHADOWFIT_RAYS_SAME_PLANE;
 }
 
-// Whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle
-// Intersection", 1997, in the form of the obvhs crate: a weight of minus zero misses).
+// Returns whether a triangle blocks a ray in the space of its mesh (T. Möller, B. Trumbore, "Fast, Minimum
+// Storage Ray/Triangle Intersection", 1997, in the form of the obvhs crate, where a weight of minus zero
+// misses).
 fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> bool {
     let triangle = shadowfit_rays_triangle(slot);
     let e1 = triangle.a - triangle.b;
@@ -255,7 +259,7 @@ fn shadowfit_rays_blocks(slot: u32, instance: u32, ray: shadowfit_rays_Ray) -> b
     if shadowfit_rays_is_start(n, instance, distance) {
         return false;
     }
-    // Rays go toward the light: it sees the front where the normal goes along with them.
+    // Rays go toward the light, so the light sees the front if the front's normal points along the ray.
     let sides = shadowfit_rays_instances[instance].sides;
     if sides != 0u && (determinant > 0.0) == (sides == 1u) {
         return false;
@@ -272,30 +276,31 @@ fn shadowfit_rays_blocks_any(first: u32, count: u32, instance: u32, ray: shadowf
     return false;
 }
 
-// A node in a word; NONE for no node.
+// Packs a node into a word. NONE for no node.
 fn shadowfit_rays_packed(node: shadowfit_rays_Node) -> u32 {
     return node.first | (node.count << SHADOWFIT_RAYS_COUNT_AT);
 }
 
-// A node in a word, or NONE if a ray does not meet it.
+// Returns a packed node, or NONE if the ray misses it.
 fn shadowfit_rays_child(node: u32, ray: shadowfit_rays_Ray) -> u32 {
     let child = shadowfit_rays_node(node);
     let meets = shadowfit_rays_meets(child.least, child.most, ray);
     return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
 }
 
-// Whether anything stands on a ray from a point, relative to the origin of the scene, in metres, along a unit direction.
+// Returns whether a triangle blocks the ray from a point, in metres relative to the scene's origin, along a
+// unit direction.
 fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     let world = shadowfit_rays_ray(origin, direction);
     var ray = world;
     var stack: array<u32, SHADOWFIT_RAYS_STACK>;
     var height = 0u;
-    // The instance whose mesh the ray is in, and the height of the stack where it was entered.
+    // The instance whose mesh the ray is in, and the height of the stack at its entry.
     var instance = SHADOWFIT_RAYS_NONE;
     var entered = 0u;
     var current = shadowfit_rays_packed(shadowfit_rays_node(0));
     loop {
-        // Down to a leaf first: the rays of a subgroup then test triangles together.
+        // Descends to a leaf first, so that the rays of a subgroup test triangles together.
         while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {
             let first = current;
             let met = vec4<u32>(
@@ -365,8 +370,8 @@ fn shadowfit_rays_blocked(origin: vec3<f32>, direction: vec3<f32>) -> bool {
     return false;
 }
 
-// The same for a ray that starts on a surface, or beneath it by rounding: nearer than `reach` metres, triangles whose unit
-// normal is `normal`, or its opposite, do not block it.
+// Returns whether a triangle blocks a ray that starts on a surface, or below it because of rounding.
+// Triangles with the unit normal `normal` or its opposite do not block it at less than `reach` metres.
 fn shadowfit_rays_blocked_above(
     origin: vec3<f32>, direction: vec3<f32>, normal: vec3<f32>, reach: f32) -> bool {
     shadowfit_rays_start = shadowfit_rays_Start(normal, reach);

@@ -1,25 +1,25 @@
 
-// The passes that fit a mesh's hierarchy to vertices which have moved: one for its triangles, and then one for each level
-// of its nodes, deepest first.
+// Passes that fit a mesh's hierarchy to moved vertices: one for its triangles, then one for each level of its
+// nodes, deepest first.
 
 struct shadowfit_rays_Refit {
     // First node of the level, or first triangle.
     first: u32,
     count: u32,
-    // Where the first position begins, in words.
+    // Start of the first position, in words.
     offset: u32,
-    // From one position to the next one, in words.
+    // Distance from one position to the next, in words.
     stride: u32,
 }
 
 @group(0) @binding(0) var<uniform> refit: shadowfit_rays_Refit;
 @group(0) @binding(1) var<storage, read> vertices: array<u32>;
-// Three a triangle, in leaf order.
+// Three vertex indices per triangle, in leaf order.
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<shadowfit_rays_Triangle>;
 @group(0) @binding(4) var<storage, read_write> nodes: array<shadowfit_rays_Node>;
 
-// A thread's number among those of a dispatch with more than one row.
+// Returns the number of a thread in a dispatch with more than one row.
 fn number(group: vec3<u32>, groups: vec3<u32>, local: u32) -> u32 {
     return (group.y * groups.x + group.x) * 256u + local;
 }
@@ -29,7 +29,7 @@ fn position(index: u32) -> vec3<u32> {
     return vec3<u32>(vertices[at], vertices[at + 1u], vertices[at + 2u]);
 }
 
-// By bits, since shaders may assume that no number is infinite.
+// Tests the bits, because shaders may assume that no number is infinite.
 fn is_finite(bits: vec3<u32>) -> bool {
     let exponent = vec3<u32>(0x7f800000u);
     return all((bits & exponent) != exponent);
@@ -48,7 +48,7 @@ fn is_finite(bits: vec3<u32>) -> bool {
     let b = position(triangle * 3u + 1u);
     let c = position(triangle * 3u + 2u);
     let slot = refit.first + triangle;
-    // A triangle that is not finite is a point, which no ray meets.
+    // A triangle that is not finite becomes a point, which rays never hit.
     if is_finite(a) && is_finite(b) && is_finite(c) {
         triangles[slot].a = bitcast<vec3<f32>>(a);
         triangles[slot].b = bitcast<vec3<f32>>(b);

@@ -1,26 +1,28 @@
 
-// A surface that a short ray from the eye shall find again.
+// A surface to find again with a short ray from the eye.
 struct shadowfit_RaySought {
-    // Length of the ray, in metres. The surface lies in its middle, give or take half of it.
+    // Length of the ray, in metres. The surface lies at its middle, give or take half the length.
     distance: f32,
-    // How far from the middle it lies at most if all is well, in metres.
+    // Usual greatest distance of the surface from the middle, in metres.
     sure: f32,
-    // How far beside a triangle the ray may pass, in metres.
+    // Greatest distance between the ray and a triangle beside it, in metres.
     beside: f32,
-    // Unit geometric normal against the ray; zero if it is not known.
+    // Unit geometric normal against the ray. Zero if unknown.
     normal: vec3<f32>,
 }
 
-// Cosine of the greatest angle between a known normal and its triangle: far more than the rounding of normals.
+// Cosine of the greatest angle between a known normal and its triangle. The angle is far greater than the
+// rounding of normals.
 const SHADOWFIT_RAYS_SAME_NORMAL: f32 = 0.9995;
 
-// A triangle that a short ray from the eye meets.
+// A triangle that a short ray from the eye hits.
 struct shadowfit_RaySurface {
-    // From the ray's origin, in metres; SHADOWFIT_RAYS_FAR if the ray meets no triangle.
+    // Distance from the ray's origin, in metres. SHADOWFIT_RAYS_FAR if the ray hits no triangle.
     distance: f32,
     // Unit geometric normal, against the ray.
     normal: vec3<f32>,
-    // Place of the triangle among those of the scene, and index of its instance; SHADOWFIT_RAYS_NONE without one.
+    // Place of the triangle among all triangles of the scene, and index of its instance. SHADOWFIT_RAYS_NONE
+    // if there is none.
     slot: u32,
     instance: u32,
 }
@@ -29,15 +31,15 @@ fn shadowfit_rays_no_surface() -> shadowfit_RaySurface {
     return shadowfit_RaySurface(SHADOWFIT_RAYS_FAR, vec3<f32>(0.0), SHADOWFIT_RAYS_NONE, SHADOWFIT_RAYS_NONE);
 }
 
-// How far a ray is followed, in its own space.
+// Limits of a ray, in its own space.
 struct shadowfit_rays_Reach {
-    // Along it, in units of its inverses.
+    // Length along the ray, in units of its inverses.
     most: f32,
-    // Beside it.
+    // Distance beside the ray.
     beside: f32,
 }
 
-// A node in a word, or NONE if a ray does not come near to it within a reach.
+// Returns a packed node, or NONE if it is outside the limits of a ray.
 fn shadowfit_rays_child_within(node: u32, ray: shadowfit_rays_Ray, reach: shadowfit_rays_Reach) -> u32 {
     let child = shadowfit_rays_node(node);
     let a = (child.least - reach.beside - ray.origin) * ray.inverses;
@@ -50,17 +52,17 @@ fn shadowfit_rays_child_within(node: u32, ray: shadowfit_rays_Ray, reach: shadow
     return select(SHADOWFIT_RAYS_NONE, shadowfit_rays_packed(child), meets);
 }
 
-// Distances in metres along and beside a ray, in the space of the ray.
+// Returns limits in metres along and beside a ray, converted to the space of the ray.
 fn shadowfit_rays_scaled(most: f32, beside: f32, ray: shadowfit_rays_Ray) -> shadowfit_rays_Reach {
     let size = abs(ray.direction);
     return shadowfit_rays_Reach(most * max(max(size.x, size.y), size.z), beside * length(ray.direction));
 }
 
-// Where a ray in the space of a mesh meets the plane of a triangle.
+// The hit of a ray in the space of a mesh on the plane of a triangle.
 struct shadowfit_rays_Met {
-    // Of any length.
+    // Normal of any length.
     normal: vec3<f32>,
-    // In metres; SHADOWFIT_RAYS_FAR for a ray in the plane.
+    // Distance in metres. SHADOWFIT_RAYS_FAR for a ray in the plane.
     distance: f32,
     is_inside: bool,
 }
@@ -81,14 +83,14 @@ fn shadowfit_rays_met(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray
     return shadowfit_rays_Met(n, dot(n, c) * inverse_determinant, u >= 0.0 && v >= 0.0 && u + v <= 1.0);
 }
 
-// Whether a ray passes a triangle no farther outside of any edge than a distance, in the space of the ray.
+// Returns whether a ray passes a triangle at most this far outside any edge, in the space of the ray.
 fn shadowfit_rays_is_beside(triangle: shadowfit_rays_Triangle, ray: shadowfit_rays_Ray, distance: f32) -> bool {
     let e1 = triangle.a - triangle.b;
     let e2 = triangle.c - triangle.a;
     let r = cross(ray.direction, triangle.a - ray.origin);
     let determinant = dot(cross(e1, e2), ray.direction);
     let side = select(-1.0, 1.0, determinant > 0.0);
-    // The volume of each edge and the ray is the distance of their lines times the length of this product.
+    // The volume of an edge and the ray is the distance of their lines times the length of this product.
     let u = side * dot(r, e2);
     let v = side * dot(r, e1);
     return u >= -distance * length(cross(ray.direction, e2))
@@ -96,17 +98,18 @@ fn shadowfit_rays_is_beside(triangle: shadowfit_rays_Triangle, ray: shadowfit_ra
         && abs(determinant) - u - v >= -distance * length(cross(ray.direction, e1 + e2));
 }
 
-// How well a triangle fits a surface that lies in the middle of a part of a ray; less is better. Within `sure` of the middle the
-// first one fits best, and beyond it the one that is nearest to the middle. All in metres.
+// Returns the misfit between a hit at distance `at` and a surface at the middle of a ray, in metres. Within
+// `sure` of the middle the first hit fits best, farther away the nearest to the middle. All arguments are in
+// metres.
 fn shadowfit_rays_misfit(at: f32, middle: f32, sure: f32) -> f32 {
     let off = abs(at - middle);
     return select(off, at - middle - sure, off <= sure);
 }
 
-// The triangle of a surface: the first one that the ray meets within `sure` of its middle, else the one nearest to the middle. Both
-// sides of triangles count: what lies before the middle by more than `sure` may be a side that the picture leaves out. Holes
-// count if nothing else is met: pictures decide by smaller images what is a hole.
-// origin: relative to the origin of the scene, in metres. direction: of unit length.
+// Returns the triangle of a surface: the first one that the ray hits within `sure` of its middle, or else the
+// nearest one to the middle. Both sides of triangles count. A hit more than `sure` in front of the middle may
+// be a side that the picture culls. Holes count only if there is no other hit, because pictures decide holes
+// by smaller images. origin: relative to the origin of the scene, in metres. direction: of unit length.
 fn shadowfit_rays_surface(
     origin: vec3<f32>,
     direction: vec3<f32>,
@@ -127,7 +130,7 @@ fn shadowfit_rays_surface(
     var entered = 0u;
     var current = shadowfit_rays_packed(shadowfit_rays_node(0));
     loop {
-        // Down to a leaf first, as in shadowfit_rays_blocked; NONE at the end.
+        // Descends to a leaf first, as in shadowfit_rays_blocked. `current` is NONE at the end.
         while current >> SHADOWFIT_RAYS_COUNT_AT == 0u {
             let first = current;
             let met = vec4<u32>(
@@ -237,7 +240,8 @@ fn shadowfit_rays_surface(
     return found;
 }
 
-// Where a ray meets the plane of one triangle: its normal is a unit one, against the ray.
+// Returns the hit of a ray on the plane of one triangle. Its normal has unit length and points against the
+// ray.
 fn shadowfit_rays_plane(origin: vec3<f32>, direction: vec3<f32>, slot: u32, instance: u32) -> shadowfit_rays_Met {
     let inside = shadowfit_rays_in_mesh(instance, shadowfit_rays_ray(origin, direction));
     var met = shadowfit_rays_met(shadowfit_rays_triangle(slot), inside);

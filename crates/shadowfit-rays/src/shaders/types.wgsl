@@ -2,21 +2,21 @@
 
 struct shadowfit_rays_Node {
     least: vec3<f32>,
-    // Triangles of a leaf, or its one instance; 0 for an inner node.
+    // Number of triangles of a leaf, or 1 for a leaf with an instance. 0 for an inner node.
     count: u32,
     most: vec3<f32>,
-    // A leaf's first triangle or its instance, or the first of an inner node's children; NONE for no node.
+    // First triangle or instance of a leaf, or first child of an inner node. NONE for no node.
     first: u32,
 }
 
 const SHADOWFIT_RAYS_NONE: u32 = 0xffffffffu;
-// Places side by side for the children of a node.
+// Consecutive places for the children of a node.
 const SHADOWFIT_RAYS_WIDTH: u32 = 4u;
 
-// In leaf order, in the space of its mesh.
+// A triangle in leaf order, in the space of its mesh.
 struct shadowfit_rays_Triangle {
     a: vec3<f32>,
-    // Index of its cut-out plus 1, 0 for none.
+    // Index of its cut-out plus 1. 0 for none.
     cut_out: u32,
     b: vec3<f32>,
     index: u32,

@@ -1,4 +1,4 @@
-//! Answers of the GPU, which are those of brute force but for rays within rounding of an edge.
+//! Tests of rays on the GPU. Results equal brute force, except for rays within rounding of an edge.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -12,11 +12,11 @@ fn mesh(triangles: &[[Vec3; 3]]) -> RayMesh {
     RayMesh::from_triangles(triangles.iter().copied()).expect("a mesh")
 }
 
-/// Instances of two meshes, and the triangles of these.
+/// Instances of two meshes, with the triangles of the meshes.
 struct World {
     triangles: [Vec<[Vec3; 3]>; 2],
     instances: Vec<RayInstance>,
-    /// Which of the meshes each one is of.
+    /// Index of each instance's mesh.
     kinds: Vec<usize>,
 }
 
@@ -96,7 +96,7 @@ fn a_scene_whose_origin_is_a_hundred_kilometres_away_has_the_same_answers() {
     let rays = random.rays(1000, 6.0);
     scene.set_instances(DVec3::ZERO, &world.instances).expect("room");
     let near = gpu.blocked(&scene, &rays);
-    // Nothing depends on where the origin is, since all is relative to it.
+    // The place of the origin has no effect, because all positions are relative to it.
     let origin = DVec3::new(100_000.0, 0.0, -70_000.0);
     scene.set_instances(origin, &world.instances).expect("room");
     assert_eq!((scene.origin(), scene.uploaded()), (origin, 0));
@@ -126,7 +126,7 @@ fn rays_aimed_at_the_middle_of_far_stretched_triangles_meet_them_and_no_box_hide
         }
     }
     let missed = gpu.blocked(&scene, &rays).iter().filter(|answer| !**answer).count();
-    // What rounding at a kilometre moves past the edge of a triangle that is seen from its side.
+    // Tolerance for rounding at a kilometre, which moves rays past the edges of triangles seen edge-on.
     assert!(missed * 1000 <= rays.len(), "{missed} of {}", rays.len());
 }
 
@@ -134,7 +134,7 @@ fn rays_aimed_at_the_middle_of_far_stretched_triangles_meet_them_and_no_box_hide
 fn rays_along_axes_meet_walls_without_thickness() {
     let gpu = gpu();
     let mut scene = gpu.scene();
-    // A square in the plane z = 0, whose box is flat.
+    // A square in the plane z = 0 with a flat box.
     let corner = |x, y| Vec3::new(x, y, 0.0);
     let square = [
         [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)],
@@ -144,14 +144,14 @@ fn rays_along_axes_meet_walls_without_thickness() {
     let turns = [Affine3A::IDENTITY, Affine3A::from_rotation_x(FRAC_PI_2), Affine3A::from_rotation_y(FRAC_PI_2)];
     for (turn, axis) in turns.into_iter().zip([Vec3::Z, Vec3::Y, Vec3::X]) {
         scene.set_instances(DVec3::ZERO, &[RayInstance::new(id, turn)]).expect("room");
-        // On no diagonal, where the two triangles have an edge.
+        // The point is not on a diagonal, where the two triangles share an edge.
         let beside = Vec3::new(0.1, 0.3, 0.5) * (Vec3::ONE - axis);
         let rays = [
             [beside - axis * 5.0, axis],
             [beside + axis * 5.0, -axis],
             [beside + axis * 5.0, axis],
             [beside * 20.0 - axis * 5.0, axis],
-            // From the middle of the plane along it.
+            // A ray from the middle of the plane along it.
             [beside, axis.zxy()],
         ];
         assert_eq!(gpu.blocked(&scene, &rays), [true, true, false, false, false], "{axis}");
@@ -179,7 +179,7 @@ fn nothing_blocks_in_a_scene_without_instances_that_can_be_met() {
     let hidden = [at(empty, Affine3A::IDENTITY), at(full, flat), at(full, far)];
     scene.set_instances(DVec3::ZERO, &hidden).expect("room");
     assert_free(&scene);
-    // Among others they change nothing, whether they were hidden from the first or became so.
+    // Hidden instances do not affect others, whether they are hidden from the start or later.
     let seen = [hidden[0], at(full, Affine3A::IDENTITY), hidden[2]];
     scene.set_instances(DVec3::ZERO, &seen).expect("room");
     assert!(gpu.blocked(&scene, &rays).contains(&true) && scene.bounds().is_some());
@@ -246,7 +246,8 @@ fn the_engines_own_wgsl_decides_which_hits_count() {
         (in_slots.as_str(), [false, true, false]),
         ("abs(hit.distance - 2.0) < 1e-5", [true, true, false]),
         ("abs(hit.distance - 1.0) < 1e-5", [false, true, false]),
-        // The weights of the point (0, -0.5): half of the third corner's way from z -1 to 1 is a quarter.
+        // The weights of the point (0, -0.5): a quarter of the way in z from -1 to 1 gives a quarter for the
+        // third corner.
         ("all(abs(hit.weights - vec2<f32>(0.375, 0.25)) < vec2<f32>(1e-5))", [true, true, false]),
         ("false", [false; 3]),
     ];

@@ -1,11 +1,11 @@
-//! Rays against every triangle in `f64`, and random rays and triangles.
+//! Brute-force rays against every triangle in `f64`, and random rays and triangles.
 
 use shadowfit_rays::Sides;
 use shadowfit_rays::glam::{Affine3A, DVec3, Quat, Vec3};
 
 use super::device::Ray;
 
-/// A triangle in the world and the side that blocks, with its front by the winding of its mesh.
+/// A triangle in the world with its blocking sides. Its front follows the winding of its mesh.
 pub(crate) struct Blocker {
     pub(crate) corners: [DVec3; 3],
     /// Normal of the front, of any length.
@@ -13,14 +13,14 @@ pub(crate) struct Blocker {
     pub(crate) sides: Sides,
 }
 
-/// Share of a triangle, and distance in metres, within which `f32` may find something else than `f64`: a thousand
+/// Share of a triangle, and distance in metres, within which `f32` and `f64` may disagree: a thousand
 /// roundings of the coordinates in these tests.
 const MARGIN: f64 = 1e-3;
-/// Sine of the angle between a ray and a triangle below which that margin does not do.
+/// Sine of the angle between a ray and a triangle below which that margin is too small.
 const GRAZING: f64 = 1e-2;
 
 impl Blocker {
-    /// The triangles of an instance; a negative determinant leaves the front where it was in the mesh.
+    /// Returns the triangles of an instance. A negative determinant keeps the front sides of the mesh.
     pub(crate) fn all(triangles: &[[Vec3; 3]], world_from_mesh: &Affine3A, sides: Sides) -> Vec<Self> {
         let transform = world_from_mesh.as_daffine3();
         let blocker = |triangle: &[Vec3; 3]| {
@@ -31,7 +31,7 @@ impl Blocker {
         triangles.iter().map(blocker).collect()
     }
 
-    /// Whether it blocks a ray; `None` within rounding of an edge.
+    /// Returns whether it blocks a ray, or `None` within rounding of an edge.
     fn blocks(&self, [origin, direction]: Ray) -> Option<bool> {
         let [a, b, c] = self.corners;
         let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());
@@ -55,7 +55,7 @@ impl Blocker {
 }
 
 impl Blocker {
-    /// Whether a ray passes the ball around the triangle by.
+    /// Returns whether a ray misses the ball around the triangle.
     fn is_far(&self, origin: DVec3, direction: DVec3) -> bool {
         let centre = self.corners.iter().sum::<DVec3>() / 3.0;
         let radius = self.corners.map(|corner| corner.distance(centre)).into_iter().fold(MARGIN, f64::max);
@@ -65,7 +65,7 @@ impl Blocker {
     }
 }
 
-/// Whether a ray is blocked; `None` where rounding decides.
+/// Returns whether a ray is blocked, or `None` if rounding decides.
 pub(crate) fn is_blocked(blockers: &[Blocker], ray: Ray) -> Option<bool> {
     let mut answer = Some(false);
     for blocker in blockers {
@@ -78,7 +78,8 @@ pub(crate) fn is_blocked(blockers: &[Blocker], ray: Ray) -> Option<bool> {
     answer
 }
 
-/// Compares answers with brute force; rays within rounding of an edge do not count. Many must be blocked, and many free.
+/// Compares results with brute force, except for rays within rounding of an edge. Requires many blocked and
+/// many free rays.
 pub(crate) fn assert_answers(blockers: &[Blocker], rays: &[Ray], answers: &[bool]) {
     let mut counts = [0; 2];
     for (ray, answer) in rays.iter().zip(answers) {
@@ -87,26 +88,26 @@ pub(crate) fn assert_answers(blockers: &[Blocker], rays: &[Ray], answers: &[bool
             counts[usize::from(wanted)] += 1;
         }
     }
-    assert!(counts.iter().all(|count| count * 20 > rays.len()), "{counts:?} of {} rays say little", rays.len());
+    assert!(counts.iter().all(|count| count * 20 > rays.len()), "{counts:?} of {} rays are too few", rays.len());
 }
 
-/// Numbers that look random, the same each time.
+/// Pseudo-random numbers, the same in each run.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    /// 0..1
+    /// Returns a number in 0..1.
     pub(crate) fn share(&mut self) -> f32 {
-        // D. Knuth's MMIX.
+        // D. Knuth's MMIX generator.
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 40) as f32 / (1 << 24) as f32
     }
 
-    /// In a cube around zero.
+    /// Returns a point in a cube around zero.
     pub(crate) fn in_cube(&mut self, half: f32) -> Vec3 {
         Vec3::from([0; 3].map(|_| (self.share() * 2.0 - 1.0) * half))
     }
 
-    /// A unit direction.
+    /// Returns a unit direction.
     pub(crate) fn direction(&mut self) -> Vec3 {
         self.in_cube(1.0).try_normalize().unwrap_or(Vec3::Y)
     }
@@ -123,7 +124,7 @@ impl Random {
         (0..count).map(|_| [self.in_cube(half), self.direction()]).collect()
     }
 
-    /// A turned, stretched, and for each second one mirrored transform to somewhere in a cube.
+    /// Returns a rotation and stretch, half of the time mirrored, with a translation into a cube.
     pub(crate) fn transform(&mut self, half: f32) -> Affine3A {
         let mut scale = Vec3::from([0; 3].map(|_| 0.4 + self.share()));
         if self.share() < 0.5 {

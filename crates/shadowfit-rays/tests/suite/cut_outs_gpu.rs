@@ -1,4 +1,4 @@
-//! Cut-outs on the GPU against the rule that their documentation states.
+//! Tests of cut-outs on the GPU against their documented rule.
 
 use shadowfit_rays::glam::{Affine3A, DVec3, Vec2, Vec3};
 use shadowfit_rays::{AlphaImage, CutMaterial, CutOut, RayError, RayInstance, RayMesh, Wrap};
@@ -19,10 +19,10 @@ impl Image {
 
     fn alpha(&self) -> AlphaImage<'_> {
         let [width, height] = self.size.map(i32::cast_unsigned);
-        AlphaImage::new(width, height, &self.alpha).expect("as many texels")
+        AlphaImage::new(width, height, &self.alpha).expect("an alpha per texel")
     }
 
-    /// Its alpha at texture coordinates.
+    /// Returns its alpha at texture coordinates.
     fn sample(&self, material: &CutMaterial, uv: Vec2) -> f32 {
         let position = uv * Vec2::new(self.size[0] as f32, self.size[1] as f32) - 0.5;
         let (corner, weight) = (position.floor().as_ivec2(), position - position.floor());
@@ -50,14 +50,14 @@ fn wrapped(index: i32, size: i32, wrap: Wrap) -> i32 {
     }
 }
 
-/// A triangle in the plane y = 0 whose corners are these texture coordinates, and a ray through one of its points.
+/// Texture coordinates of a triangle in the plane y = 0, which are also the x and z of its corners.
 const CORNERS: [Vec2; 3] = [Vec2::new(-1.3, -1.7), Vec2::new(2.9, -1.1), Vec2::new(0.2, 2.6)];
 
 fn triangle() -> [Vec3; 3] {
     CORNERS.map(|uv| Vec3::new(uv.x, 0.0, uv.y))
 }
 
-/// Weights and rays.
+/// Returns weights of points in the triangle, with a ray through each.
 fn points(random: &mut Random, count: usize) -> Vec<(Vec3, Ray)> {
     let mut point = || {
         let [a, b, c] = [0; 3].map(|_| 0.02 + random.share());
@@ -68,7 +68,7 @@ fn points(random: &mut Random, count: usize) -> Vec<(Vec3, Ray)> {
     (0..count).map(|_| point()).collect()
 }
 
-/// Alpha nearer than this to the cutoff may be found on its other side.
+/// Greatest difference of alpha and cutoff that rounding may reverse.
 const ROUNDING: f32 = 1e-3;
 
 #[test]
@@ -85,7 +85,7 @@ fn a_triangle_blocks_where_base_vertex_and_image_alpha_reach_the_cutoff() {
         let wrap = [wrap, Wrap::Mirror];
         let material = CutMaterial { image: Some(id), wrap, nearest: number < 3, base_alpha: 0.9, cutoff: 0.3 };
         let cut_out = CutOut { uvs: CORNERS, alphas: [1.0, 0.8, 0.6], material };
-        // A second triangle far away is opaque.
+        // The first triangle is far away and opaque.
         let mesh = RayMesh::from_triangles([triangle().map(|corner| corner + Vec3::X * 50.0), triangle()])
             .and_then(|mesh| mesh.with_cut_outs([(1, cut_out)]))
             .expect("a mesh");
@@ -112,7 +112,7 @@ fn a_triangle_blocks_where_base_vertex_and_image_alpha_reach_the_cutoff() {
 fn one_material_gives_holes_to_all_triangles_of_a_mesh() {
     let gpu = gpu();
     let mut scene = gpu.scene();
-    // Opaque on the right half.
+    // The right half is opaque.
     let image = scene.add_image(AlphaImage::new(2, 1, &[0, 255]).expect("two texels")).expect("room");
     let uvs = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
     let positions = uvs.map(|uv| Vec3::new(uv.x, 0.0, uv.y));
@@ -124,7 +124,7 @@ fn one_material_gives_holes_to_all_triangles_of_a_mesh() {
     let below = |x: f32, z: f32| [Vec3::new(x, -1.0, z), Vec3::Y];
     let rays = [below(0.3, 0.8), below(0.3, 0.1), below(0.7, 0.8), below(0.7, 0.1)];
     assert_eq!(gpu.blocked(&scene, &rays), [false, false, true, true]);
-    // Its place is used again, by the words of an image that is as large.
+    // An image of the same size takes its place.
     assert_eq!(scene.remove_image(image), Ok(()));
     assert_eq!(scene.remove_image(image), Err(RayError::NoImage));
     let other = scene.add_image(AlphaImage::new(2, 1, &[255, 0]).expect("two texels")).expect("room");

@@ -1,4 +1,4 @@
-//! Meshes whose vertices move on the GPU, against meshes that were built where they are.
+//! Tests of meshes whose vertices move on the GPU, against meshes built in the same pose.
 
 use shadowfit_rays::glam::{Affine3A, DVec3, Vec3, Vec3Swizzles};
 use shadowfit_rays::{RayError, RayInstance, RayMesh, RayScene, Sides, VertexBuffer, VertexBufferLack};
@@ -6,9 +6,9 @@ use shadowfit_rays::{RayError, RayInstance, RayMesh, RayScene, Sides, VertexBuff
 use super::brute_force::{Blocker, Random, assert_answers};
 use super::device::{Gpu, gpu};
 
-/// Vertices of an engine: something else, and then the position.
+/// Stride of an engine's vertices, which have other data before the position.
 const STRIDE: u32 = 20;
-/// Not a multiple of what bindings are aligned to.
+/// An offset that is not a multiple of the binding alignment.
 const OFFSET: u64 = 260 + 8;
 
 /// A vertex buffer with positions.
@@ -37,7 +37,7 @@ fn a_deformed_mesh_blocks_as_one_that_was_built_in_its_pose() {
     let indices: Vec<u32> = (0..900).map(|_| (random.share() * 200.0) as u32).collect();
     let mesh = RayMesh::new(&positions, &indices).expect("indices of vertices");
     let mut scene = gpu.scene();
-    // Something in front of it in all buffers.
+    // Another mesh precedes it in all buffers.
     scene.add_mesh(&RayMesh::from_triangles(random.triangles(50, 1.0)).expect("a mesh")).expect("room");
     let bounds = [Vec3::splat(-6.0), Vec3::splat(6.0)];
     let id = scene.add_deforming_mesh(&mesh, bounds).expect("room");
@@ -46,7 +46,7 @@ fn a_deformed_mesh_blocks_as_one_that_was_built_in_its_pose() {
     scene.set_instances(DVec3::ZERO, &[instance]).expect("room");
     let rays = random.rays(600, 5.0);
     for pose in 0..4 {
-        // From 1 on every vertex is somewhere else; in pose 3, one is nowhere.
+        // From pose 1 on every vertex moves. In pose 3 one vertex is NaN.
         let mut moved: Vec<_> = positions.iter().map(|at| *at + at.zxy() * 0.5 * pose as f32).collect();
         let nowhere = 17;
         if pose == 3 {
@@ -54,7 +54,7 @@ fn a_deformed_mesh_blocks_as_one_that_was_built_in_its_pose() {
         }
         refit(&gpu, &mut scene, &instance, &vertices(&gpu, &moved));
         if pose == 2 {
-            // Other buffers, with what the refit has written.
+            // This replaces the buffers. The new ones must contain the results of the refit.
             scene.add_mesh(&RayMesh::from_triangles(random.triangles(900, 1.0)).expect("a mesh")).expect("room");
         }
         let triangles = indices.chunks_exact(3).filter(|triangle| pose < 3 || !triangle.contains(&(nowhere as u32)));
@@ -62,7 +62,7 @@ fn a_deformed_mesh_blocks_as_one_that_was_built_in_its_pose() {
             triangles.map(|triangle| [0, 1, 2].map(|corner| moved[triangle[corner] as usize])).collect();
         let answers = gpu.blocked(&scene, &rays);
         assert_answers(&Blocker::all(&triangles, &transform, Sides::Both), &rays, &answers);
-        // And, to the last ray, as a mesh that is built there.
+        // A mesh built in this pose gives the same result for every ray.
         let mut built = gpu.scene();
         let id = built.add_mesh(&RayMesh::from_triangles(triangles).expect("a mesh")).expect("room");
         built.set_instances(DVec3::ZERO, &[RayInstance::new(id, transform)]).expect("room");

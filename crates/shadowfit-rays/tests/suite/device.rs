@@ -1,4 +1,4 @@
-//! The device of the tests, and rays that are asked on it.
+//! The device of the tests, and tracing of rays on it.
 
 use shadowfit_rays::glam::Vec3;
 use shadowfit_rays::{RayScene, RayWgslOptions, rays_wgsl};
@@ -10,7 +10,7 @@ pub(crate) struct Gpu {
     pub(crate) queue: wgpu::Queue,
 }
 
-/// Returns a device that tests use after each other.
+/// Returns a device that tests share one after the other.
 pub(crate) fn gpu() -> Gpu {
     Gpu::from(test_gpu())
 }
@@ -34,7 +34,7 @@ impl Gpu {
         RayScene::new(&self.device, &self.queue).expect("a device that can trace")
     }
 
-    /// Whether each ray is blocked.
+    /// Returns whether each ray is blocked.
     pub(crate) fn blocked(&self, scene: &RayScene, rays: &[Ray]) -> Vec<bool> {
         self.blocked_where(scene, rays, &RayWgslOptions::group(0))
     }
@@ -127,7 +127,7 @@ impl Gpu {
     }
 }
 
-/// One thread a ray.
+/// Shader with one thread per ray.
 const ASK: &str = "
 struct AskedRay {
     origin: vec3<f32>,

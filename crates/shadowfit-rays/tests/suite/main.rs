@@ -1,4 +1,4 @@
-//! Rays on the GPU against brute force in `f64`, and what scenes and meshes promise.
+//! Tests of rays on the GPU against brute force in `f64`, and of scenes and meshes.
 
 mod answers_gpu;
 mod brute_force;

@@ -1,4 +1,4 @@
-//! Meshes and images on the CPU: refused input, the order of triangles, and memory.
+//! Tests of meshes and images on the CPU: rejected input, the order of triangles, and memory.
 
 use allocation_counter::measure;
 use shadowfit_rays::glam::Vec3;

@@ -1,4 +1,4 @@
-//! What scenes promise beside answers: room that is used again, frames that cost nothing, and limits.
+//! Tests of scenes apart from ray results: reuse of freed room, frames without cost, and limits.
 
 use allocation_counter::measure;
 use shadowfit_rays::glam::{Affine3A, DVec3, Vec3};
@@ -51,7 +51,7 @@ fn a_mesh_of_another_shape_has_it_in_all_of_its_instances() {
     let instances = [Vec3::ZERO, Vec3::X * 3.0].map(|at| RayInstance::new(id, Affine3A::from_translation(at)));
     scene.set_instances(DVec3::ZERO, &instances).expect("room");
     let rays = random.rays(500, 2.0);
-    // As many triangles, more of them, none, and some again.
+    // An equal number of triangles, then more, none, and some again.
     for (count, half) in [(100, 1.5), (150, 1.0), (0, 1.0), (90, 1.0)] {
         let triangles = random.triangles(count, half);
         let shape = RayMesh::from_triangles(triangles.iter().copied()).expect("a mesh");
@@ -71,7 +71,7 @@ fn a_mesh_of_another_shape_has_it_in_all_of_its_instances() {
     assert_eq!(scene.update_mesh(id, &RayMesh::default()), Err(RayError::NoMesh));
 }
 
-/// Instances on a square grid, a few metres apart.
+/// Returns instances on a square grid, a few metres apart.
 fn grid(scene: &mut RayScene, random: &mut Random, side: u32) -> Vec<RayInstance> {
     let mesh = scene.add_mesh(&mesh(random, 12)).expect("room");
     let cell = |index: u32| Vec3::new((index % side) as f32, 0.0, (index / side) as f32) * 5.0;
@@ -83,11 +83,11 @@ fn frames_in_which_nothing_moved_upload_and_allocate_nothing_and_others_what_mov
     let gpu = gpu();
     let mut scene = gpu.scene();
     let mut instances = grid(&mut scene, &mut Random(11), 40);
-    // Never equal to itself, and yet unchanged.
+    // NaN is never equal to itself, but this transform is unchanged.
     instances[700].world_from_mesh.translation.x = f32::NAN;
     scene.set_instances(DVec3::ZERO, &instances).expect("room");
     let all = scene.uploaded();
-    // Records of 64 bytes, and nodes of 32: one for each instance, and one more for every three of them or fewer.
+    // Records of 64 bytes and nodes of 32 bytes: one for each instance, and at least one more per three instances.
     let nodes = (all - 1600 * 64) / 32;
     assert!((1600 + 533..=1600 * 8 / 3 + 4).contains(&nodes), "{nodes}");
     let mut still = Ok(());
@@ -110,7 +110,7 @@ fn bounds_hold_all_instances_and_little_more() {
     let [least, most] = scene.bounds().expect("two instances");
     let (wanted_least, wanted_most) = (Vec3::new(-5.0, 0.0, 0.0), Vec3::new(11.0, 2.0, 3.0));
     assert!(least.cmple(wanted_least).all() && most.cmpge(wanted_most).all());
-    // A few units in the last place of 11 m, for the rounding of rays.
+    // The tolerance is a few units in the last place of 11 m, for the rounding of rays.
     assert!(least.distance(wanted_least) < 1e-4 && most.distance(wanted_most) < 1e-4, "{least} {most}");
 }
 
@@ -127,14 +127,14 @@ fn what_is_larger_than_the_device_allows_is_refused_with_its_bytes_and_changes_n
     let mut scene = gpu.scene();
     let bytes = scene.bytes();
     let refused = scene.add_mesh(&mesh(&mut random, 2000));
-    // Records of 48 bytes: 1365 of them.
+    // 1365 records of 48 bytes fit.
     let wanted = RayError::TooLarge { what: "triangles", bytes: 96_000, limit: 65_520 };
     assert!(matches!(refused, Err(RayError::TooLarge { what: "nodes", .. })) || refused == Err(wanted.clone()));
     assert!(wanted.to_string().contains("96000") && wanted.to_string().contains("65520"));
-    let small = scene.add_mesh(&mesh(&mut random, 50)).expect("room for as many");
+    let small = scene.add_mesh(&mesh(&mut random, 50)).expect("room for a few");
     assert_eq!(scene.slots(small), Some(0..50));
     let instances = vec![RayInstance::new(small, Affine3A::IDENTITY); 2000];
-    // At least eight nodes for every three instances, 32 bytes each.
+    // There are at least eight nodes of 32 bytes per three instances.
     let refused = scene.set_instances(DVec3::ZERO, &instances);
     let is_refused = |bytes: u64| (2000 * 8 / 3 * 32..2000 * 3 * 32).contains(&bytes);
     let refused_nodes = matches!(refused, Err(RayError::TooLarge { what: "nodes", bytes, .. }) if is_refused(bytes));
@@ -152,7 +152,7 @@ fn devices_without_storage_buffers_are_refused_with_what_they_lack() {
     assert_eq!(refused, wanted);
 }
 
-/// Run by hand, optimised and with `--nocapture`: no test asserts on time.
+/// Run it by hand, optimised and with `--nocapture`. Tests must not assert on time.
 #[test]
 #[ignore = "measures the time of frames"]
 fn the_time_of_frames_with_a_thousand_movers_of_ten_thousand() {

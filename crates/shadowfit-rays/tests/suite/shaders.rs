@@ -1,4 +1,5 @@
-//! The WGSL: valid with what every WebGPU device has, and laid out as the Rust that fills it.
+//! Tests of the WGSL: it is valid on every WebGPU device, and its structs have the layout of the Rust
+//! records.
 
 use naga::valid::Capabilities;
 use shadowfit_rays::records::{CutOutRecord, InstanceRecord, NodeRecord, RefitUniform, TriangleRecord};

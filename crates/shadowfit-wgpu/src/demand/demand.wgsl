@@ -1,53 +1,55 @@
-// What a depth buffer shows: which texel each visible point asks for, by its place across the light, and how far away
-// it is. The twin of `DemandSpace::index` and `DepthHistogram::bin`. In front of it stand the constants CELLS, LEVELS,
-// SIDE, DEPTHS, CLASSES, MIN_FACING, and DepthTexture, the depth texture's type.
+// Counts the visible points of a depth buffer by position perpendicular to the light, needed texel size and
+// view depth. The GPU version of `DemandSpace::index` and `DepthHistogram::bin`. Rust inserts the constants
+// CELLS, LEVELS, SIDE, DEPTHS, CLASSES and MIN_FACING in front, and DepthTexture, the depth texture's type.
 
 struct Demand {
-    // Homogeneous position relative to the eye from a pixel's column and row, and its depth minus the far plane's.
+    // Matrix from a pixel's column and row, and its depth minus the far plane's, to the homogeneous position
+    // relative to the eye.
     world_from_pixel: mat4x4<f32>,
-    // View depth of a position relative to the eye, in metres, is dot(xyz, position) + w.
+    // Coefficients of the view depth: for a position relative to the eye it is dot(xyz, position) + w, in
+    // metres.
     view: vec4<f32>,
     direction: vec3<f32>,
     far_depth: f32,
     x: vec3<f32>,
     cell: f32,
     y: vec3<f32>,
-    // Length of y is one over this.
+    // The length of y is one over this.
     shape: f32,
-    // First pixel of the picture, and its width and height.
+    // First pixel of the view, and its width and height.
     corner: vec2<u32>,
     size: vec2<u32>,
     // Pixels from one point to the next, across and down.
     step: u32,
-    // Sides of this picture's pixels that make up one of a picture of the height that needs are counted in.
+    // Pixels of this view per pixel of a view with the reference height, along a side.
     pixels: f32,
     // Exponent of the finest level's texel.
     exponent: i32,
-    // Depths of the histogram's bins, in metres, and bins per factor of two.
+    // View depths of the histogram's ends, in metres, and bins per factor of two.
     near: f32,
     far: f32,
     bins_per_octave: f32,
-    // Width of a pixel that faces the eye, in metres: at the eye, and what it grows by per metre of view depth.
+    // Width of a pixel that faces the eye, in metres: at the eye, and its growth per metre of view depth.
     pixel_width: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> demand: Demand;
 @group(0) @binding(1) var depths: DepthTexture;
-// The cells of the grid, then the bins of the histogram.
+// Cells of the grid, then bins of the histogram.
 @group(0) @binding(2) var<storage, read_write> counts: array<atomic<u32>, CELLS + DEPTHS * CLASSES>;
 
-// Threads along a side of a workgroup; each looks at PARTS² points.
+// Threads along a side of a workgroup. Each thread counts PARTS² points.
 const THREADS: u32 = 16u;
 const PARTS: u32 = 2u;
 
-// Neighbouring points mostly count in the same few cells, so a workgroup counts them first: in slots, by a key that is
-// the index plus 1.
+// Neighbouring points mostly belong to a few cells, so a workgroup counts them first: in slots, with the
+// index plus 1 as key.
 const SLOTS: u32 = THREADS * THREADS;
 const SLOT_BITS: u32 = 8u;
 var<workgroup> keys: array<atomic<u32>, SLOTS>;
 var<workgroup> tallies: array<atomic<u32>, SLOTS>;
 
-// More than depths can differ by.
+// Greater than any difference of depths.
 const NOTHING: f32 = 2.0;
 
 fn count(index: u32) {
@@ -61,7 +63,7 @@ fn count(index: u32) {
     }
 }
 
-// Depth of a pixel minus that of the far plane; 0 where nothing is drawn, and outside the picture.
+// Returns the depth of a pixel minus the far plane's depth; 0 where nothing is drawn, and outside the view.
 fn depth_at(pixel: vec2<i32>) -> f32 {
     if any(pixel < vec2<i32>(0)) || any(pixel >= vec2<i32>(demand.size)) {
         return 0.0;
@@ -69,8 +71,8 @@ fn depth_at(pixel: vec2<i32>) -> f32 {
     return textureLoad(depths, vec2<i32>(demand.corner) + pixel, 0) - demand.far_depth;
 }
 
-// Change of depth from a pixel to the next along an axis on the surface that it shows, which is the same everywhere on
-// a plane. It is taken from the neighbour that is nearer in depth, so that what lies behind a silhouette does not
+// Returns the change of depth from a pixel to the next along an axis on its surface, which is constant on a
+// plane. It is taken from the neighbour that is nearer in depth, so that surfaces behind a silhouette do not
 // count.
 fn change(pixel: vec2<i32>, axis: vec2<i32>, depth: f32) -> f32 {
     let next = depth_at(pixel + axis);
@@ -88,7 +90,8 @@ fn power_of_two(power: i32) -> f32 {
     return bitcast<f32>(u32(power + 127) << 23u);
 }
 
-// Side of the widest square texel with which a point shows no more than one pixel per texel: the least singular value.
+// Returns the width of the widest square texel that gives a point at most one pixel per texel: the least
+// singular value.
 fn needed_texel(a: vec2<f32>, b: vec2<f32>) -> f32 {
     let half_sum = (dot(a, a) + dot(b, b)) * 0.5;
     let difference = (dot(a, a) - dot(b, b)) * 0.5;
@@ -100,13 +103,13 @@ fn needed_texel(a: vec2<f32>, b: vec2<f32>) -> f32 {
     return 0.0;
 }
 
-// Index of the cell of a place across the light and of the texel that is asked for there; CELLS if there is none.
+// Returns the index of the cell for a place perpendicular to the light and the texel size needed there; CELLS
+// if there is none.
 fn cell_of(place: vec2<f32>, texel: f32) -> u32 {
     let half_side = f32(SIDE / 2u);
     let cells = place / demand.cell;
     let reach = max(abs(cells.x), abs(cells.y)) / half_side;
-    // Points so far away that their level has no cell for them count as coarser: they lie within the power of two
-    // above.
+    // Points too far away for a cell of their level count at a coarser level that contains them.
     let asked = clamp(exponent(texel) - demand.exponent, 0, LEVELS - 1);
     let level = max(asked, exponent(reach) - 126);
     if level >= LEVELS {
@@ -116,10 +119,10 @@ fn cell_of(place: vec2<f32>, texel: f32) -> u32 {
     return (u32(level) * SIDE + at.y) * SIDE + at.x;
 }
 
-// Index of a view depth's bin, for the texel that is asked for there across the light.
+// Returns the index of the bin for a view depth and the texel size needed there, perpendicular to the light.
 fn bin_of(depth: f32, texel: f32) -> u32 {
     let bin = min(u32(log2(depth / demand.near) * demand.bins_per_octave), DEPTHS - 1u);
-    // The octave is rounded to the nearest.
+    // The octave is rounded to the nearest one.
     let finer = (demand.pixel_width.x + demand.pixel_width.y * depth) / texel;
     let class_index = clamp(exponent(finer * sqrt(2.0)) - 127, 0, i32(CLASSES) - 1);
     return u32(class_index) * DEPTHS + bin;
@@ -139,11 +142,12 @@ fn see(pixel: vec2<i32>) {
     let homogeneous = m * vec4<f32>(vec2<f32>(pixel), depth, 1.0);
     let position = homogeneous.xyz / homogeneous.w;
     let view_depth = dot(demand.view.xyz, position) + demand.view.w;
-    // Shadows end there.
+    // Shadows end at this view depth.
     if !(view_depth < demand.far) {
         return;
     }
-    // Derivatives of the position on the surface's plane, for one pixel to the right and one down, and along the ray.
+    // Derivatives of the position on the surface's plane, for one pixel right and one down, and along the
+    // ray.
     let scale = demand.pixels / homogeneous.w;
     let right_change = m[0] + m[2] * across;
     let down_change = m[1] + m[2] * along;
@@ -151,7 +155,7 @@ fn see(pixel: vec2<i32>) {
     let down = (down_change.xyz - position * down_change.w) * scale;
     let ray = (m[2].xyz - position * m[2].w) / homogeneous.w;
 
-    // The normal on the side of the eye.
+    // The sign makes the normal face the eye.
     let perpendicular = cross(right, down);
     let is_behind = dot(perpendicular, ray) * dot(ray, demand.view.xyz) > 0.0;
     let facing = select(-1.0, 1.0, is_behind) * dot(perpendicular, demand.direction);

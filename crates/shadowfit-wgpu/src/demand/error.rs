@@ -1,4 +1,4 @@
-//! Why visible points cannot be counted on the GPU. Fits then take boxes instead.
+//! Errors of counting visible points on the GPU. Fits then use the bounding boxes.
 
 use core::fmt;
 
@@ -6,30 +6,32 @@ use shadowfit::FitError;
 
 use crate::pixels::DepthBufferError;
 
-/// Why a [`DemandPass`](super::DemandPass) could not be made, or could not count a picture.
+/// The reason why a [`DemandPass`](super::DemandPass) could not be created, or could not count a view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DemandPassError {
-    /// The device cannot run the pass at all: fit with [`FitInput::demand`](shadowfit::FitInput::demand) left empty, from
-    /// boxes.
+    /// The device cannot run the pass. Leave [`FitInput::demand`](shadowfit::FitInput::demand) empty, so that
+    /// fits use the bounding boxes.
     Unsupported(Unsupported),
-    /// The view, the light or the distance.
+    /// The view, the light or the distance is invalid.
     Fit(FitError),
-    /// The depth buffer of the view.
+    /// The depth buffer of the view is invalid.
     DepthBuffer(DepthBufferError),
-    /// The device refused to make a resource, for example because it is out of memory; with its own words.
+    /// The device refused to create a resource, for example because it is out of memory. Contains the
+    /// device's message.
     Device(String),
     /// Counts could not be read back: the device is lost.
     Lost,
 }
 
-/// What a device lacks for a [`DemandPass`](super::DemandPass), or for a pass of the module `exact_edges`.
+/// Missing capability of a device for a [`DemandPass`](super::DemandPass), or for a pass of the module
+/// `exact_edges`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsupported {
     /// Compute shaders with storage buffers.
     Compute,
-    /// Reading depth textures in shaders without a sampler, which OpenGL does not have.
+    /// Reads of depth textures in shaders without a sampler. OpenGL lacks them.
     DepthLoads,
-    /// As many storage buffers in a compute shader as rays need beside a list of pixels: 6.
+    /// Six storage buffers in a compute shader, for rays and a list of pixels.
     StorageBuffers,
 }
 
@@ -40,16 +42,16 @@ impl fmt::Display for DemandPassError {
                 let what = match lack {
                     Unsupported::Compute => "run compute shaders with storage buffers",
                     Unsupported::DepthLoads => "load depth textures in compute shaders",
-                    Unsupported::StorageBuffers => "bind as many storage buffers to a compute shader as it takes",
+                    Unsupported::StorageBuffers => "bind enough storage buffers to a compute shader",
                 };
-                write!(f, "what is visible cannot be counted here, since this device cannot {what}: fit from boxes")
+                write!(f, "visible points cannot be counted, because this device cannot {what}: fit from boxes")
             }
             Self::Fit(error) => error.fmt(f),
             Self::DepthBuffer(error) => error.fmt(f),
             Self::Device(message) => {
-                write!(f, "what is visible cannot be counted, since the device refused it: {message}")
+                write!(f, "visible points cannot be counted, because the device refused: {message}")
             }
-            Self::Lost => write!(f, "what is visible could not be read back, since the device is lost: open it again"),
+            Self::Lost => write!(f, "visible points could not be read back, because the device is lost: open it again"),
         }
     }
 }

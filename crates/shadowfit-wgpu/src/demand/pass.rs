@@ -1,4 +1,4 @@
-//! The pass itself: pipeline, dispatch, and the counts that come back.
+//! The demand pass: pipeline, dispatch, and read-back of the counts.
 
 use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, SIDE};
 use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, VisibleDemand, VisibleDemandSpace};
@@ -9,21 +9,21 @@ use super::error::{DemandPassError, Unsupported};
 use super::view::{DemandUniform, DemandView};
 use crate::pixels::check;
 
-/// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
-/// is being recorded.
+/// Number of frames whose counts may be on their way back at once: graphics APIs let the CPU be up to three
+/// frames ahead, and one more is being recorded.
 const FRAMES: usize = 4;
 
-/// Name of the pass's resources, for debuggers.
+/// Label of the pass's resources, for graphics debuggers.
 const LABEL: &str = "shadowfit demand";
 
-/// Threads of a workgroup, as in the WGSL.
+/// Threads per workgroup, as in the WGSL.
 const WORKGROUP_THREADS: u32 = 256;
-/// Points along a side of a workgroup's square, as in the WGSL.
+/// Width of a workgroup's square of points, as in the WGSL.
 const SQUARE: u32 = 32;
-/// Bytes of a workgroup's own memory, as in the WGSL.
+/// Workgroup memory in bytes, as in the WGSL.
 const WORKGROUP_BYTES: u32 = 2 * 4 * WORKGROUP_THREADS;
 
-/// Counts the visible points of a depth buffer: see the [module](super).
+/// Pass that counts the visible points of a depth buffer; see the [module](super).
 #[derive(Debug)]
 pub struct DemandPass {
     device: wgpu::Device,
@@ -32,18 +32,19 @@ pub struct DemandPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
     counts: wgpu::Buffer,
-    /// The uniform of each picture on its way.
+    /// One uniform for each frame on its way.
     uniforms: Vec<wgpu::Buffer>,
     read_backs: ReadBackRing<VisibleDemandSpace>,
 }
 
 impl DemandPass {
-    /// A pass for depth textures of `samples` per pixel.
+    /// Creates a pass for depth textures with `samples` per pixel.
     ///
     /// # Errors
     ///
-    /// [`DemandPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose
-    /// shaders cannot load depth: fit from boxes then. [`DemandPassError::Device`] if it is out of memory.
+    /// [`DemandPassError::Unsupported`] if the device has no compute shaders or storage buffers, or uses
+    /// OpenGL, whose shaders cannot load depth. Fit from bounding boxes then. [`DemandPassError::Device`] if
+    /// the device is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, DemandPassError> {
         supported(&device.limits(), device.adapter_info().backend).map_err(DemandPassError::Unsupported)?;
         caught(device, || {
@@ -71,22 +72,23 @@ impl DemandPass {
         })
     }
 
-    /// Samples per pixel of the depth textures that it is for.
+    /// Returns the samples per pixel of the supported depth textures.
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Records the pass and the way back of its counts, after the pass that fills the depth buffer. `depth` is a view
-    /// of the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass
-    /// before it has stored (`StoreOp::Store`); `timestamps` may time the pass.
+    /// Records the pass and the read-back of its counts. Call it after the pass that fills the depth buffer.
+    /// `depth` is a view of the depth aspect of the whole texture, of any depth format, with usage
+    /// `TEXTURE_BINDING`. Its depths must be stored (`StoreOp::Store`). `timestamps` may time the pass.
     ///
-    /// Returns whether it was recorded: nothing is recorded while as many pictures are on their way as a GPU can be
-    /// behind, and fits go on with the counts that they have; nor of a view that begins where shadows have ended.
+    /// Returns whether the pass was recorded. It is skipped while the counts of too many earlier frames have
+    /// not arrived; fits then use the previous counts. It is also skipped for a view that begins beyond the
+    /// shadow distance.
     ///
     /// # Errors
     ///
-    /// [`DemandPassError`] for the view, the texture, and a device out of memory. Nothing is recorded then. Whether the
-    /// device was lost shows in [`Self::take`].
+    /// [`DemandPassError`] for an invalid view or texture, and if the device is out of memory. The pass is
+    /// not recorded then. A lost device is reported by [`Self::take`].
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -95,7 +97,7 @@ impl DemandPass {
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) -> Result<bool, DemandPassError> {
         check(depth.texture(), &[self.samples], view.rectangle)?;
-        // One whose depths make no sense is refused below.
+        // A view with invalid depths is refused below.
         let is_view = view.frustum.near <= view.frustum.far;
         if is_view && !view.frustum.begins_before(view.max_distance) {
             return Ok(false);
@@ -121,29 +123,30 @@ impl DemandPass {
         Ok(self.read_backs.record(encoder, &self.counts, space))
     }
 
-    /// The newest picture that the GPU has finished, given once; `None` until there is one. Never waits.
+    /// Returns the counts of the newest frame that the GPU has finished. The counts of a frame are returned
+    /// once. `None` if no new counts have arrived. Never waits.
     ///
     /// # Errors
     ///
     /// [`DemandPassError::Lost`] if the device was lost.
     pub fn take(&mut self) -> Result<Option<VisibleDemand>, DemandPassError> {
-        // This only polls. Whether a picture is finished shows below.
+        // This only polls. The read-backs below show which frames are finished.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.newest()
     }
 
-    /// As [`Self::take`], but waits for the picture that was submitted last: for headless runs and tests, whose
-    /// pictures have to be the same each time.
+    /// Waits for the counts of the last submitted frame, then returns them like [`Self::take`]. Use it in
+    /// headless runs and tests whose images must be reproducible.
     ///
     /// # Errors
     ///
-    /// [`DemandPassError::Lost`] if the device was lost or does not answer.
+    /// [`DemandPassError::Lost`] if the device was lost or does not respond.
     pub fn wait(&mut self) -> Result<Option<VisibleDemand>, DemandPassError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| DemandPassError::Lost)?;
         self.newest()
     }
 
-    /// Forgets the pictures that are on their way: for camera cuts, beside
+    /// Drops the counts that have not arrived yet. Call it after a camera cut, together with
     /// [`ShadowFitter::reset`](shadowfit::ShadowFitter::reset).
     pub fn reset(&mut self) {
         self.read_backs.forget();
@@ -155,7 +158,7 @@ impl DemandPass {
     }
 }
 
-/// The WGSL of the pass for depth textures of a number of samples per pixel.
+/// Returns the WGSL of the pass for depth textures with this number of samples per pixel.
 pub fn demand_wgsl(samples: u32) -> String {
     let texture = if samples > 1 { "texture_depth_multisampled_2d" } else { "texture_depth_2d" };
     format!(
@@ -171,7 +174,7 @@ const MIN_FACING: f32 = {MIN_FACING};
     )
 }
 
-/// The feature that a device lacks for the pass, if any.
+/// Returns an error if the device lacks a capability for the pass.
 pub(crate) fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupported> {
     let has_compute = limits.max_storage_buffers_per_shader_stage > 0
         && limits.max_compute_invocations_per_workgroup >= WORKGROUP_THREADS
@@ -183,7 +186,7 @@ pub(crate) fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result
     }
 }
 
-/// Does work whose errors would otherwise end the program, such as lack of memory.
+/// Runs `work`, and returns errors that would otherwise end the program, such as lack of memory.
 fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, DemandPassError> {
     catch_errors(device, work).map_err(|error| DemandPassError::Device(error.to_string()))
 }

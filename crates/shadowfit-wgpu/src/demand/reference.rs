@@ -1,6 +1,6 @@
-//! The counts of the compute pass over a depth buffer in plain Rust and f64: positions by the inverse of the matrix, the
-//! surface's plane by differences of depths, cells and bins by the core. Checks of a graphics device compare the pass with
-//! it, and devices without compute shaders can count by it.
+//! CPU version of the compute pass over a depth buffer, in plain Rust and f64. Positions come from the
+//! inverse of the matrix, the surface's plane from differences of depths, and cells and bins from the core.
+//! Device checks compare the pass with it. It can also count for devices without compute shaders.
 
 use shadowfit::demand::{PIXELS, VisibleDemand, needed_texel};
 use shadowfit::glam::{DMat4, DVec3, DVec4};
@@ -9,10 +9,10 @@ use super::error::DemandPassError;
 use super::view::DemandView;
 use crate::pixels::check_rectangle;
 
-/// Share of a pixel over which movements are measured.
+/// Share of a pixel's width over which derivatives are measured.
 const SHARE: f64 = 1e-3;
 
-/// The values of a depth texture of one sample a pixel, read back.
+/// Values of a depth texture with one sample per pixel, read back from the GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Depths {
     /// Width of the texture, in pixels.
@@ -21,20 +21,20 @@ pub struct Depths {
     pub values: Vec<f32>,
 }
 
-/// A picture whose pixels are turned into points.
+/// A view whose pixels are converted to points.
 struct Picture<'a> {
     view: &'a DemandView,
     depths: &'a Depths,
     world_from_clip: DMat4,
 }
 
-/// Counts the visible points of a depth buffer on the CPU, as [`DemandPass`](super::DemandPass) does on the GPU. The two
-/// differ by the points that rounding moves into a neighbouring cell or bin.
+/// Counts the visible points of a depth buffer on the CPU, as [`DemandPass`](super::DemandPass) does on the
+/// GPU. The results differ only for points that rounding moves into a neighbouring cell or bin.
 ///
 /// # Errors
 ///
-/// [`DemandPassError::DepthBuffer`] for a rectangle beyond the depths, and [`DemandPassError::Fit`] for a view or light that
-/// makes no sense.
+/// [`DemandPassError::DepthBuffer`] for a rectangle outside the depths, and [`DemandPassError::Fit`] for an
+/// invalid view or light.
 pub fn count_on_cpu(view: &DemandView, depths: &Depths) -> Result<VisibleDemand, DemandPassError> {
     let texture = [depths.width, (depths.values.len() as u32).checked_div(depths.width).unwrap_or(0)];
     check_rectangle(view.rectangle, texture)?;
@@ -73,8 +73,9 @@ impl Picture<'_> {
         }
     }
 
-    /// Position of a pixel's point relative to the eye, and its movements on its surface for a pixel to the right and one
-    /// down of a picture whose part in the frustum is [`PIXELS`] high.
+    /// Returns the position of a pixel's point relative to the eye, and the movement of that point along its
+    /// surface for one pixel right and one pixel down, in metres. Pixels have the size that they would have
+    /// if the frustum were [`PIXELS`] high, so that the counts do not depend on the resolution.
     fn point(&self, x: i32, y: i32) -> Option<[DVec3; 3]> {
         let depth = self.depth(x, y)?;
         let [across, along] = [(1, 0), (0, 1)].map(|(i, j)| {
@@ -92,7 +93,7 @@ impl Picture<'_> {
         Some([self.unproject(x, y, depth), moved(1.0, 0.0, across?), moved(0.0, 1.0, along?)])
     }
 
-    /// Depth of a pixel, `None` where nothing is drawn and outside the picture.
+    /// Returns the depth of a pixel, or `None` where nothing is drawn and outside the view.
     fn depth(&self, x: i32, y: i32) -> Option<f64> {
         let [left, top, width, height] = self.view.rectangle;
         let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return None };
@@ -110,15 +111,15 @@ impl Picture<'_> {
         ))
     }
 
-    /// Direction of view through a pixel, away from the eye.
+    /// Returns the viewing direction through a pixel, away from the eye.
     fn ray(&self, x: i32, y: i32) -> DVec3 {
         let at = |depth: f64| self.unproject(f64::from(x), f64::from(y), depth);
         let ray = at(0.6) - at(0.4);
         if ray.dot(self.view.frustum.forward.as_dvec3()) < 0.0 { -ray } else { ray }
     }
 
-    /// Width of a pixel that faces the eye at a view depth, of a picture whose part in the frustum is [`PIXELS`] high, in
-    /// metres.
+    /// Returns the width of a pixel on a surface that faces the eye at a view depth, in metres. The pixel has
+    /// the size that it would have if the frustum were [`PIXELS`] high.
     fn pixel_width(&self, x: i32, y: i32, depth: f64) -> f64 {
         let frustum = &self.view.frustum;
         let forward = frustum.forward.as_dvec3();
@@ -127,7 +128,7 @@ impl Picture<'_> {
         let at = |row: f64| {
             let (x, y) = ((f64::from(x) + 0.5) / width * 2.0 - 1.0, 1.0 - row / height * 2.0);
             let [a, b] = [0.0, 1.0].map(|z| self.world_from_clip * DVec4::new(x, y, z, 1.0));
-            // Along the ray w · view depth is linear, as all of a homogeneous position.
+            // Along the ray w · view depth is linear, like all homogeneous coordinates.
             let [of_a, of_b] = [a, b].map(|p| forward.dot(p.truncate()) + (offset - depth) * p.w);
             (a.truncate() * of_b - b.truncate() * of_a) / (a.w * of_b - b.w * of_a)
         };

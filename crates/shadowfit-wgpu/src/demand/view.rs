@@ -1,4 +1,4 @@
-//! The camera that a depth buffer was drawn with, and the uniform that follows from it.
+//! Camera that a depth buffer was drawn with, and the uniform for it.
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::demand::PIXELS;
@@ -10,32 +10,35 @@ use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use super::error::DemandPassError;
 use crate::pixels::{DepthBufferError, world_from_pixel};
 
-/// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
-/// as long for any resolution. In the courtyard with 1080 rows, every fourth pixel counts at most 1.1% of the points in
-/// another cell than all pixels do (with 36 rows: 15%), in a tenth of the time on a software adapter.
+/// Greatest number of rows at which every pixel is counted. In a larger picture only every second, third, ...
+/// pixel is counted, across and down, so that the pass takes the same time at any resolution. In the
+/// courtyard at 1080 rows, every fourth pixel is counted. That moves at most 1.1% of the points to another
+/// cell (15% with a limit of 36 rows), in a tenth of the time on a software adapter.
 const MAX_ROWS: u32 = 270;
 
-/// The picture that a depth buffer shows, and the light that its points are counted for.
+/// Camera of a depth buffer, and the light that its points are counted for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DemandView {
-    /// The view of the camera.
+    /// Frustum of the camera.
     pub frustum: ViewFrustum,
-    /// The matrix that the depth buffer was drawn with: from world positions relative to [`ViewFrustum::origin`], in
-    /// metres, to clip space. Perspective or orthographic, with a finite far plane or an infinite one.
+    /// Matrix that the depth buffer was drawn with, from world positions relative to [`ViewFrustum::origin`],
+    /// in metres, to clip space. It can be perspective or orthographic, with a finite or infinite far plane.
     pub clip_from_world: Mat4,
-    /// Its depth convention: 0..1, plain or reversed. Pixels at the far plane's depth show nothing.
+    /// Depth convention of the depth buffer: 0..1, plain or reversed. Pixels at the far plane's depth have no
+    /// surface.
     pub depth: DepthConvention,
     /// **Direction of travel** of the light in world axes, of any length.
     pub direction: Vec3,
-    /// The world's up direction, [`MapSettings::up`].
+    /// Up direction of the world, [`MapSettings::up`].
     pub up: Vec3,
-    /// Where shadows end, in metres of view depth, [`MapSettings::max_distance`]; points beyond are left out.
+    /// Shadow distance, in metres of view depth, [`MapSettings::max_distance`]. Points beyond are not
+    /// counted.
     pub max_distance: f32,
-    /// The picture's part of the depth texture, in pixels: left, top, width, height.
+    /// Part of the depth texture that the view fills, in pixels: left, top, width, height.
     pub rectangle: [u32; 4],
 }
 
-/// The uniform of the pass: `Demand` in WGSL, where the fields are explained.
+/// Uniform of the pass: `Demand` in WGSL, where the fields are explained.
 #[allow(missing_docs)]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -60,8 +63,8 @@ pub struct DemandUniform {
 }
 
 impl DemandView {
-    /// The picture of a perspective camera, drawn with [`PerspectiveCamera::clip_from_world`], that fills a texture of
-    /// `size` pixels. `direction` is the light's direction of travel in world axes.
+    /// Returns the view of a perspective camera, drawn with [`PerspectiveCamera::clip_from_world`], that
+    /// fills a texture of `size` pixels. `direction` is the light's direction of travel in world axes.
     ///
     /// # Errors
     ///
@@ -84,17 +87,17 @@ impl DemandView {
         })
     }
 
-    /// Pixels from one point to the next, across and down.
+    /// Returns the distance between counted pixels, across and down, in pixels.
     pub(super) fn step(&self) -> u32 {
         self.rectangle[3].div_ceil(MAX_ROWS).max(1)
     }
 
-    /// The cells and bins that the counts belong to.
+    /// Returns the cells and bins that the counts belong to.
     pub(super) fn space(&self) -> Result<VisibleDemandSpace, DemandPassError> {
         Ok(VisibleDemandSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
     }
 
-    /// The uniform of the shader.
+    /// Returns the uniform of the shader.
     pub(super) fn uniform(&self, space: &VisibleDemandSpace) -> Result<DemandUniform, DemandPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(DepthBufferError::Depth(self.depth).into());
@@ -102,7 +105,7 @@ impl DemandView {
         self.check_depth()?;
         let VisibleDemandSpace { demand: space, near, far } = *space;
         let [left, top, width, height] = self.rectangle;
-        // The histogram has no bins for depths that are not positive, as orthographic views may have them.
+        // The histogram has no bins for negative or zero depths, which orthographic views may have.
         let octaves = (f64::from(far) / f64::from(near)).log2();
         let (first, bins_per_octave) = if near > 0.0 { (near, DEPTHS as f64 / octaves) } else { (f32::MAX, 0.0) };
         Ok(DemandUniform {
@@ -126,7 +129,7 @@ impl DemandView {
         })
     }
 
-    /// Refuses a matrix in which depth runs the other way than the convention says.
+    /// Refuses a matrix whose depth runs in the opposite direction of the convention.
     fn check_depth(&self) -> Result<(), DepthBufferError> {
         let clip_from_world = self.clip_from_world.as_dmat4();
         let depth_of = |corners: &[Vec3]| {
@@ -135,28 +138,30 @@ impl DemandView {
             clip.z / clip.w
         };
         let (near, far) = (depth_of(&self.frustum.corners[..4]), depth_of(&self.frustum.corners[4..]));
-        // What is not a number is refused as a singular matrix.
+        // NaN is refused as a singular matrix.
         let is_other = if self.depth == DepthConvention::Reversed { near < far } else { near > far };
         if is_other { Err(DepthBufferError::OtherDepth(self.depth)) } else { Ok(()) }
     }
 
-    /// From a pixel's column and row, and its depth minus the far plane's, to positions relative to the eye.
+    /// Returns the matrix from a pixel's column and row, and its depth minus the far plane's, to positions
+    /// relative to the eye.
     fn world_from_pixel(&self) -> Result<Mat4, DepthBufferError> {
         let [_, _, width, height] = self.rectangle;
         let matrix = world_from_pixel(&self.clip_from_world, [width, height], self.depth);
         matrix.map(|matrix| matrix.as_mat4()).filter(Mat4::is_finite).ok_or(DepthBufferError::SingularMatrix)
     }
 
-    /// The plane whose distance from a position relative to the eye is its view depth, in metres.
+    /// Returns the plane whose distance from a position relative to the eye is its view depth, in metres.
     fn view_depth(&self) -> [f32; 4] {
-        // The middle of the near rectangle is the most exact point.
+        // The centre of the near rectangle is the most precise point.
         let middle = (self.frustum.corners[0] + self.frustum.corners[2]) * 0.5;
         let forward = self.frustum.forward;
         forward.extend(self.frustum.near - forward.dot(middle)).to_array()
     }
 
-    /// Width of a pixel that faces the eye, of a picture whose part in the frustum is [`PIXELS`] high, in metres: at the
-    /// eye, and its growth per metre of view depth.
+    /// Returns the width of a pixel on a surface that faces the eye, in metres: at view depth 0, and its
+    /// growth per metre of view depth. The pixel has the size that it would have if the frustum were
+    /// [`PIXELS`] high.
     fn pixel_width(&self) -> [f32; 2] {
         let [near, far] = [self.frustum.near, self.frustum.far];
         let height = |top: usize, bottom: usize| {

@@ -1,45 +1,46 @@
-//! Why a texture of the engine cannot hold shadow maps.
+//! Errors of a texture that the engine passes in for its shadow maps.
 
 use core::fmt;
 
-/// Why a texture cannot hold maps.
+/// The reason why a texture cannot hold the maps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MapTextureError {
-    /// It has another dimension than two.
+    /// The texture is not two-dimensional.
     Dimension(wgpu::TextureDimension),
-    /// It has another format than the maps.
+    /// The texture's format differs from the maps' format.
     Format {
-        /// The texture's.
+        /// Format of the texture.
         texture: wgpu::TextureFormat,
-        /// That of the maps.
+        /// Format of the maps.
         maps: wgpu::TextureFormat,
     },
-    /// It is larger or smaller than the maps.
+    /// The texture is larger or smaller than the maps.
     Size {
-        /// Its width and height, in texels.
+        /// Width and height of the texture, in texels.
         texture: [u32; 2],
-        /// Those of the maps.
+        /// Width and height of the maps, in texels.
         maps: [u32; 2],
     },
-    /// It ends before the last map.
+    /// The texture ends before the last map.
     Layers {
-        /// Number of its layers.
+        /// Number of layers of the texture.
         texture: u32,
         /// Layer of the first map.
         base_layer: u32,
         /// Number of maps.
         maps: u32,
     },
-    /// It has several samples a texel.
+    /// The texture has several samples per texel.
     Samples(u32),
-    /// It lacks usages.
+    /// The texture lacks usages.
     Usages {
-        /// Those that are missing.
+        /// Missing usages.
         missing: wgpu::TextureUsages,
     },
-    /// OpenGL's shaders read textures from their first layer on only.
+    /// The first map is in a layer other than 0. OpenGL's shaders read textures only from layer 0 on.
     BaseLayer(u32),
-    /// OpenGL has a texture of so many layers, which is given, that is no array: of a single one, or a cube.
+    /// OpenGL does not treat a texture with this number of layers as an array, but as a plain texture or a
+    /// cube.
     NoArray(u32),
 }
 
@@ -54,15 +55,15 @@ impl fmt::Display for MapTextureError {
             Self::Layers { texture, base_layer, maps } => {
                 write!(f, "it has {texture} layers: {maps} maps from layer {base_layer} on need more")
             }
-            Self::Samples(samples) => write!(f, "it has {samples} samples a texel: maps have 1"),
+            Self::Samples(samples) => write!(f, "it has {samples} samples per texel: maps have 1"),
             Self::Usages { missing } => write!(f, "it lacks the usage {missing:?}"),
             Self::BaseLayer(layer) => {
-                write!(f, "its first map is in layer {layer}: OpenGL's shaders read textures from layer 0 on only")
+                write!(f, "its first map is in layer {layer}: OpenGL's shaders read textures only from layer 0 on")
             }
             Self::NoArray(layers) => {
                 write!(
                     f,
-                    "on OpenGL one of {layers} layers is no array, but a plain texture or a cube: give it one more"
+                    "OpenGL treats a texture of {layers} layers as a plain texture or a cube, not an array: add a layer"
                 )
             }
         }

@@ -1,22 +1,26 @@
-//! An engine's own alpha test.
+//! The engine's own alpha test.
 
-/// An engine's own alpha test of hits, which ray tracing pipelines call an any-hit shader: for textures of its own, or
-/// instances that cast for some views only. The passes that draw casters into the maps must discard the same, and the
-/// depth pre-pass what the picture discards: where maps are sure they decide, and an edge between both would be a seam.
+/// The engine's own alpha test of ray hits, like an any-hit shader of a ray tracing pipeline. Use it for the
+/// engine's own textures, or for instances that cast shadows only in some views. The passes that draw casters
+/// into the maps must discard the same fragments, and the depth pre-pass must discard the same fragments as
+/// the main pass. Otherwise seams appear between pixels that the maps decide and pixels that rays decide.
 #[derive(Clone, Debug)]
 pub struct AnyHit {
-    /// WGSL that defines `fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool`, as
-    /// [`RayWgslOptions::counts`](shadowfit_rays::RayWgslOptions::counts) says: whether a hit blocks its ray. The ray from the
-    /// eye that finds a pixel's triangle asks it, too, and prefers hits that count. Hits come in no order. What it binds is in group [`Self::GROUP`], 3. It is part of a compute shader, so textures are sampled
-    /// with `textureSampleLevel`. Names of its own need a prefix, since the pass has many.
+    /// WGSL that defines `fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool`, which returns whether a
+    /// hit blocks its ray; see [`RayWgslOptions::counts`](shadowfit_rays::RayWgslOptions::counts). The pass
+    /// calls it for shadow rays, and for the ray from the eye that finds a pixel's triangle and prefers hits
+    /// that block. Hits come in no particular order. The WGSL's resources are bound at group 3
+    /// ([`Self::GROUP`]). It runs in a compute shader, so textures must be sampled with
+    /// `textureSampleLevel`. Its names need a prefix to avoid conflicts with the names of the pass.
     pub wgsl: String,
-    /// Layout of the bind group that the WGSL reads, visible to compute shaders; `None` where it binds nothing. The pass
-    /// itself binds 6 storage buffers, which the device's limit counts together with those of the layout.
+    /// Layout of the bind group that the WGSL reads, visible to compute shaders; `None` if the WGSL has no
+    /// bindings. The pass itself binds 6 storage buffers, which count toward the device's limit together with
+    /// the layout's own.
     pub layout: Option<wgpu::BindGroupLayout>,
 }
 
 impl AnyHit {
-    /// The bind group that [`Self::wgsl`] may read; it is given for each picture
+    /// Index of the bind group that [`Self::wgsl`] may read. The bind group is set per view
     /// ([`EdgeView::any_hit`](super::EdgeView::any_hit)).
     pub const GROUP: u32 = 3;
 }

@@ -1,12 +1,12 @@
-// Second edge pass: as many workgroups as the list needs, for each pass over it.
+// Second edge pass: computes the number of workgroups for each pass over the list.
 
 @group(0) @binding(0) var<storage, read> list: List;
 @group(0) @binding(1) var<storage, read_write> groups: Groups;
 
 struct Groups {
-    // Of PIXELS pixels, whose rays are traced.
+    // Workgroups for tracing: PIXELS pixels per workgroup.
     trace: vec3<u32>,
-    // Of TRACE_THREADS pixels, whose triangles are looked for.
+    // Workgroups for finding triangles: TRACE_THREADS pixels per workgroup.
     surfaces: vec3<u32>,
 }
 

@@ -1,4 +1,5 @@
-// The finest level of a map's pyramid: the depth nearest to the light and the farthest one of each block of texels.
+// Finest level of a map's pyramid: for each block of texels the depth nearest to the light and the farthest
+// depth.
 
 struct Layer {
     layer: u32,

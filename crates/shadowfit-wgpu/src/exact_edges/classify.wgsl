@@ -1,12 +1,13 @@
-// First edge pass: which pixels the maps are sure of, and which need rays. FOOTPRINT is how many texels on each side of a
-// point have to agree, and COARSEST_FOOTPRINT the same in the last map.
+// First edge pass: finds the pixels that the maps decide, and lists the others for rays. FOOTPRINT is the
+// number of texels on each side of a point that must agree, and COARSEST_FOOTPRINT the number in the last
+// map.
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 @group(1) @binding(5) var texels: sampler;
 
-// The factor in the texture where the filter decides.
+// Factor in the texture where the filter decides.
 const FILTER_DECIDES: f32 = -1.0;
-// Blocks of 2x2 texels along a side of the greatest footprint that is looked at in a map.
+// Greatest footprint that is read in a map, in blocks of 2x2 texels along a side.
 const MOST_BLOCKS: f32 = 6.0;
 
 var<workgroup> unsure_count: atomic<u32>;
@@ -14,13 +15,14 @@ var<workgroup> facing_count: atomic<u32>;
 var<workgroup> filtered_count: atomic<u32>;
 var<workgroup> first_slot: u32;
 
-// A surface's own depth at a texel differs from that of its plane by no more than what it changes by over this part of a
-// texel: the rasteriser rounds corners to a 256th, and normals have ten bits or more.
+// Part of a texel that bounds the difference between a surface's depth and its plane's depth: the difference
+// is at most the plane's depth change over this part. The rasteriser rounds corners to 1/256, and normals
+// have ten bits or more.
 const ROUNDED_TEXEL: f32 = 0.02;
 
-// How many of the four texels around a corner are not nearer to the light than the point's plane, and how many of them
-// shadow it by the technique's bias. rounding: by how much the plane's depth may be off there, toward the light.
-// rise: the same of the point, which may lie deeper than its surface.
+// Returns how many of the four texels around a corner are not nearer to the light than the point's plane, and
+// how many of them shadow it by the technique's bias. rounding: error bound of the plane's depth, toward the
+// light. rise: error bound of the point's depth, since the point may lie deeper than its surface.
 fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32, rise: f32) -> vec2<f32> {
     let stored = stored_around(corner, projected);
     let offset = corner - projected.texel;
@@ -35,8 +37,8 @@ fn compared(corner: vec2<f32>, projected: shadowfit_Projected, rounding: f32, ri
     return vec2<f32>(dot(select(vec4<f32>(0.0), vec4<f32>(1.0), is_lit), vec4<f32>(1.0)), dot(counts, vec4<f32>(1.0)));
 }
 
-// The verdict of the texels that the filter reads around the points of a pixel: LIT, SHADOWED, UNSURE or TOO_WIDE.
-// spread: by how much the points differ from the one that is projected, in texels.
+// Returns the verdict of the texels that the filter reads around the points of a pixel: LIT, SHADOWED, UNSURE
+// or TOO_WIDE. spread: greatest distance of the points from the projected one, in texels.
 fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f32>, rise: f32) -> u32 {
     let first = floor(projected.texel - spread - 0.5) - (FOOTPRINT - 1.0);
     let last = floor(projected.texel + spread - 0.5) + FOOTPRINT;
@@ -57,9 +59,9 @@ fn footprint(map: shadowfit_Map, projected: shadowfit_Projected, spread: vec2<f3
     return select(select(UNSURE, LIT, counts.x == read), SHADOWED, counts.y == read);
 }
 
-// By how much the starts of a pixel's rays differ from its first sample in a map, in texels: they are points of it, and lie
-// above the surface. In the coarsest map they are taken to differ by more, since most casters that are thinner than a texel
-// are read there.
+// Returns the greatest distance between the starts of a pixel's rays and its first sample in a map, in
+// texels. The starts are different points of the pixel, and lie above the surface. The distance is larger in
+// the coarsest map, where most casters thinner than a texel are read.
 fn spread_in(entry: i32, map: shadowfit_Map, surface: Surface) -> vec2<f32> {
     let texels = texels_per_pixel(map, surface);
     let above = (map.uv_from_world * vec4<f32>(surface.normal * height_at(surface.position), 0.0)).xy * map.size;
@@ -69,7 +71,8 @@ fn spread_in(entry: i32, map: shadowfit_Map, surface: Surface) -> vec2<f32> {
     return edges.point_reach * (abs(texels[0]) + abs(texels[1])) + abs(above) + abs(along) + beside;
 }
 
-// By how much the depth of a point's plane may be nearer to the light, since its surface may be nearer to the eye.
+// Returns how much nearer to the light a point's plane may be in depth, because the surface may be nearer to
+// the eye.
 fn rise_in_map(map: shadowfit_Map, surface: Surface) -> f32 {
     let m = map.uv_from_world;
     let to_light = shadowfit_receiver.to_light;
@@ -78,10 +81,10 @@ fn rise_in_map(map: shadowfit_Map, surface: Surface) -> f32 {
     return depth * abs(dot(surface.off, surface.normal)) / cosine;
 }
 
-// Whether a ray toward the light meets a box.
+// Returns whether a ray toward the light intersects a box.
 fn meets(unknown: Unknown, position: vec3<f32>) -> bool {
     let to_light = shadowfit_receiver.to_light;
-    // A direction along an axis has no place where it crosses the sides across.
+    // Avoids a division by zero for a direction along an axis.
     let inverse = 1.0 / select(vec3<f32>(1e-30), to_light, abs(to_light) > vec3<f32>(1e-30));
     let a = (unknown.least - position) * inverse;
     let b = (unknown.most - position) * inverse;
@@ -90,11 +93,11 @@ fn meets(unknown: Unknown, position: vec3<f32>) -> bool {
     return min(min(far.x, far.y), far.z) >= max(max(max(near.x, near.y), near.z), 0.0);
 }
 
-// The bits of the maps that are not sure of a point; of all of them, and the highest bit, where the filter decides.
+// Returns the bits of the maps that are unreliable at a point. If the filter decides, the highest bit is set.
 fn unsure_maps(position: vec3<f32>) -> u32 {
     var maps = edges.unsure_maps;
-    // Until a box that says nothing, and not for a number of them: software rasterisers build a shader for each dispatch
-    // where uniforms alone end a loop.
+    // The loop ends at the first empty box, not at a box count in the uniform: software rasterisers compile a
+    // shader for each dispatch if a uniform alone ends a loop.
     for (var box = 0u; box < MAX_UNKNOWNu; box += 1u) {
         let under = edges.unknown[box].maps | (edges.unknown[box].is_filtered << 31u);
         if under == 0u {
@@ -107,8 +110,9 @@ fn unsure_maps(position: vec3<f32>) -> u32 {
     return maps;
 }
 
-// x: the verdict of a map, by its place in the order: LIT, SHADOWED, UNSURE or TOO_WIDE. y: the same, except where the cone
-// of a sun with a radius is too wide: there it is the verdict of the texels right around the pixel.
+// Returns the verdict of a map in x: LIT, SHADOWED, UNSURE or TOO_WIDE. y is the same verdict, unless the
+// cone of a sun with a radius is too wide. Then y is the verdict of the texels directly around the pixel.
+// entry: index of the map in the order.
 fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<u32> {
     let map = shadowfit_entry(entry);
     if (unsure & (1u << map.layer)) != 0u {
@@ -128,9 +132,10 @@ fn verdict_of_map(entry: i32, surface: Surface, unsure: u32) -> vec2<u32> {
     return vec2<u32>(select(near, verdict, IS_SOFT), near);
 }
 
-// The verdict of all maps: LIT, SHADOWED or UNSURE. The finest one decides in which its footprint is whole and not too
-// wide; by view depth others may lack what shadows it. Where the cone of a sun with a radius is too wide for finer maps,
-// the first of them must not contradict: close to the pixel it has casters and gaps that are narrower than a coarse texel.
+// Returns the verdict of all maps: LIT, SHADOWED or UNSURE. It comes from the finest map whose footprint is
+// inside it and not too wide. With selection by view depth, only the first map decides, because other maps
+// may lack the point's casters. If the cone of a sun with a radius is too wide for finer maps, the finest map
+// must agree: close to the pixel it contains casters and gaps that are narrower than a coarse texel.
 fn verdict_of_maps(surface: Surface, unsure: u32) -> u32 {
     let selection = shadowfit_select(surface.position);
     if selection.first < 0 || selection.first == selection.clamped {
@@ -150,7 +155,7 @@ fn verdict_of_maps(surface: Surface, unsure: u32) -> u32 {
     return select(verdict, UNSURE, verdict == TOO_WIDE || is_contrary);
 }
 
-// A pixel's verdict, and the factor that goes into the texture.
+// A pixel's verdict, and its factor in the texture.
 struct Classified {
     verdict: u32,
     factor: f32,
@@ -182,8 +187,8 @@ fn classified(pixel: vec2<i32>) -> Classified {
     return Classified(verdict, select(factor, FILTER_DECIDES, verdict == UNSURE));
 }
 
-// Adds the counts of a workgroup to those of the list, and reserves places on it. Additions of 0 are left out: all workgroups
-// add to the same words, one after the other.
+// Adds the counts of a workgroup to the list's counts, and reserves places on the list. Additions of 0 are
+// skipped, because all workgroups add to the same words one after the other.
 fn add_counts() {
     let unsure = atomicLoad(&unsure_count);
     if unsure != 0u {
@@ -208,7 +213,7 @@ fn classify(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocat
         let untraced = bitcast<f32>(bitcast<u32>(found.factor) & ~TRACED_BIT);
         textureStore(factors, edges.corner + id.xy, vec4<f32>(untraced, 0.0, 0.0, 0.0));
     }
-    // Neighbours reserve their places together.
+    // Reserve the places of neighbouring pixels together.
     var slot = 0u;
     if verdict == UNSURE {
         slot = atomicAdd(&unsure_count, 1u);

@@ -6,30 +6,34 @@ use shadowfit::glam::DVec3;
 
 use crate::pixels::DepthBufferError;
 
-/// Why the edges of a picture cannot be traced; nothing is recorded then, and the filter decides everywhere.
+/// The reason why edges cannot be traced. Then the pass records no commands, and the filter decides all
+/// pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EdgeError {
-    /// The depth buffer of the view.
+    /// The depth buffer of the view is invalid.
     DepthBuffer(DepthBufferError),
-    /// The texture of normals has another size or sample count than the pass reads, or is no float texture.
+    /// The texture of normals is not a float texture with the size of the depth texture, one sample and the
+    /// usage `TEXTURE_BINDING`.
     Normals {
         /// Format of the texture.
         format: wgpu::TextureFormat,
-        /// Its width and height, in pixels.
+        /// Width and height of the texture, in pixels.
         size: [u32; 2],
-        /// Those of the depth texture.
+        /// Width and height of the depth texture, in pixels.
         expected: [u32; 2],
     },
-    /// A distance of the rays' start that is not a finite number, or is negative.
+    /// The ray offset is negative or not finite.
     RayOffset(f32),
-    /// An eye that is not finite.
+    /// The eye is not finite.
     Eye(DVec3),
-    /// The WGSL of an [`AnyHit`](super::AnyHit), or its layout beside that of the pass, makes no pipeline; in the words of
-    /// the shader compiler.
+    /// The WGSL of an [`AnyHit`](super::AnyHit), or its layout together with the pass's layouts, does not
+    /// form a valid pipeline. Contains the shader compiler's message.
     AnyHit(String),
-    /// The bind group of an [`AnyHit`](super::AnyHit) is missing, or it has none. Says whether it has one.
+    /// A bind group for an [`AnyHit`](super::AnyHit) without a layout, or a layout without a bind group.
+    /// Contains whether there is a layout.
     AnyHitGroup(bool),
-    /// The device refused to make a resource, for example because it is out of memory; with its own words.
+    /// The device refused to create a resource, for example because it is out of memory. Contains the
+    /// device's message.
     Device(String),
 }
 
@@ -43,13 +47,13 @@ impl fmt::Display for EdgeError {
                  sample, usage TEXTURE_BINDING and the depth texture's {columns} × {rows} pixels is needed"
             ),
             Self::RayOffset(offset) => {
-                write!(f, "rays start {offset} m above the surface: give a finite distance that is not negative")
+                write!(f, "rays start {offset} m above the surface: set a finite distance that is not negative")
             }
-            Self::Eye(eye) => write!(f, "the view's eye is at {eye}: give a finite world position, in metres"),
-            Self::AnyHit(message) => write!(f, "the engine's own test of hits does not compile: {message}"),
+            Self::Eye(eye) => write!(f, "the view's eye is at {eye}: set a finite world position, in metres"),
+            Self::AnyHit(message) => write!(f, "the engine's alpha test of ray hits does not compile: {message}"),
             Self::AnyHitGroup(has_layout) => f.write_str(any_hit_group(*has_layout)),
             Self::Device(message) => {
-                write!(f, "edges cannot be traced, since the device refused it: {message}")
+                write!(f, "edges cannot be traced, because the device refused: {message}")
             }
         }
     }
@@ -63,12 +67,13 @@ impl From<DepthBufferError> for EdgeError {
     }
 }
 
-/// The message for a view and a pass of which one lacks what the other has of an engine's own test of hits.
+/// Returns the message for a view and a pass if only one of them has a bind group for the alpha test of ray
+/// hits.
 fn any_hit_group(has_layout: bool) -> &'static str {
     if has_layout {
-        "the engine's own test of hits reads a bind group, and the view has none: set EdgeView::any_hit"
+        "the engine's alpha test of ray hits reads a bind group, but the view has none: set EdgeView::any_hit"
     } else {
-        "the view has a bind group for the engine's own test of hits, and the pass has no layout for it: make the pass \
+        "the view has a bind group for the alpha test of ray hits, but the pass has no layout for it: create the pass \
          with EdgePass::with_any_hit and a layout"
     }
 }

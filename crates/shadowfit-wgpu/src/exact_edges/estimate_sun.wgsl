@@ -1,20 +1,21 @@
-// What a map says about the rays to a sun with a radius: where its casters are as far away as they are in the mean, as in
-// the filter that follows them, each ray meets one texel. Many are looked up, and rays correct what is wrong by where they
-// are (control variates: P. Glasserman, "Monte Carlo methods in financial engineering", 2003).
+// Estimate from the map for rays to a sun with a radius. It assumes that all casters have the mean distance,
+// as the PCSS filter does, so that each ray corresponds to one texel. Many look-ups cover the disc, and rays
+// correct the error of the look-ups at their places (control variates: P. Glasserman, "Monte Carlo methods in
+// financial engineering", 2003).
 
 // Look-ups over the sun's disc.
 const LOOK_UPS: u32 = 32u;
 
 struct Estimate {
-    // Whether a map holds the pixel, and casters in the way. Where it is not known it is 0.
+    // Whether a map covers the pixel, and contains casters toward the sun. If not, the estimate is 0.
     is_known: bool,
     projected: shadowfit_Projected,
-    // Texels at the casters, for each of the sun's radii across the light.
+    // Texels at the casters' distance per sun radius, along the two directions perpendicular to the light.
     x: vec2<f32>,
     y: vec2<f32>,
 }
 
-// Sum of the distances to casters, in units of the stored depth, and their number.
+// Returns the sum of the distances to casters, in units of the stored depth, and their number.
 fn casters_of(unsure: Unsure) -> vec2<f32> {
     let selection = shadowfit_select(unsure.surface.position);
     if selection.first < 0 {
@@ -29,7 +30,7 @@ fn estimate_of(unsure: Unsure, casters: vec2<f32>) -> Estimate {
     let selection = shadowfit_select(unsure.surface.position);
     let map = shadowfit_entry(max(selection.first, 0));
     let projected = shadowfit_project(map, unsure.surface.position, unsure.surface.normal);
-    // Depth per metre toward the light.
+    // Change of depth per metre toward the light.
     let m = map.uv_from_world;
     let depth = dot(vec3<f32>(m[0].z, m[1].z, m[2].z), shadowfit_receiver.to_light);
     let radius = -casters.x / (max(casters.y, 1.0) * depth) * edges.sun_tangent;
@@ -38,7 +39,7 @@ fn estimate_of(unsure: Unsure, casters: vec2<f32>) -> Estimate {
     return Estimate(casters.y > 0.0, projected, x, y);
 }
 
-// For the ray to a place in the sun's disc.
+// Returns the estimate for the ray to a place in the sun's disc.
 fn estimate_at(map: Estimate, place: vec2<f32>, in_sun: vec2<f32>) -> f32 {
     if !map.is_known {
         return 0.0;
@@ -46,7 +47,7 @@ fn estimate_at(map: Estimate, place: vec2<f32>, in_sun: vec2<f32>) -> f32 {
     return shadowfit_look_up(map.projected.texel + map.x * in_sun.x + map.y * in_sun.y, map.projected);
 }
 
-// One of the look-ups over the disc.
+// Returns one of the look-ups over the disc.
 fn estimate_part(map: Estimate, look_up: u32) -> f32 {
     // The golden angle, pi (3 - sqrt 5).
     let angle = f32(look_up) * 2.39996323;

@@ -1,4 +1,4 @@
-//! What the passes write: the texture of factors, and the list of pixels whose rays are traced.
+//! Outputs of the passes: the texture of factors, and the list of pixels to trace.
 
 use shadowfit_gpu::bindings::{UNIFORM, group, layout, plain_texture, storage, texture};
 use shadowfit_gpu::catch_errors;
@@ -7,32 +7,33 @@ use super::error::EdgeError;
 use super::noise::RANKS;
 use super::shader::TRACE_THREADS;
 
-/// Counts at the beginning of a list: pixels on it, facing pixels, those of them that the filter decides, and how many
-/// were on it before some were left out.
+/// Counters at the beginning of a list: listed pixels, facing pixels, facing pixels that the filter decides,
+/// and listed pixels before the budget removed some.
 pub(super) const COUNTS: usize = 4;
 
-/// Bytes of a pixel on a list: `Listed` in WGSL.
+/// Bytes per pixel on a list: `Listed` in WGSL.
 const LISTED: u64 = 12;
 
-/// Where the arguments of the pass that looks for triangles begin, behind those of the pass that traces, in bytes.
+/// Offset of the dispatch arguments of the pass that finds triangles, in bytes. The arguments of the pass
+/// that traces come first.
 pub(super) const SURFACE_GROUPS: u64 = 16;
 
-/// Textures and buffers of a picture's size.
+/// Textures and buffers whose size depends on the view's size.
 #[derive(Debug)]
 pub(super) struct Target {
     pub(super) size: [u32; 2],
-    /// For the passes to write to.
+    /// Texture view that the passes write to.
     pub(super) factors: wgpu::TextureView,
     pub(super) list: wgpu::Buffer,
-    /// Workgroups of the passes that trace and look for triangles.
+    /// Dispatch arguments of the passes that trace and find triangles.
     pub(super) groups: wgpu::Buffer,
     pub(super) group: wgpu::BindGroup,
     pub(super) arguments: wgpu::BindGroup,
-    /// Made for the first frame that may not trace all pixels.
+    /// Created for the first frame with a budget of traced pixels.
     pub(super) kept: Option<Kept>,
 }
 
-/// The pixels that a frame may trace, where it may not trace all.
+/// Resources of the pixels that are traced in a frame with a budget.
 #[derive(Debug)]
 pub(super) struct Kept {
     pub(super) list: wgpu::Buffer,
@@ -41,28 +42,28 @@ pub(super) struct Kept {
     pub(super) arguments: wgpu::BindGroup,
 }
 
-/// Layouts of what does not depend on the maps.
+/// Bind group layouts that do not depend on the maps.
 #[derive(Debug)]
 pub(super) struct Layouts {
-    /// What the picture's shader reads.
+    /// Layout for the shader of the engine's main pass.
     pub(super) read: wgpu::BindGroupLayout,
-    /// Of the pass that counts workgroups.
+    /// Layout for the pass that counts workgroups.
     pub(super) arguments: wgpu::BindGroupLayout,
-    /// Of the pass that leaves pixels out.
+    /// Layout for the pass that applies the budget.
     pub(super) select: wgpu::BindGroupLayout,
 }
 
-/// A float texture that is loaded.
+/// Float texture that is read with `textureLoad`.
 pub(super) const FLOATS: wgpu::BindingType = texture(wgpu::TextureSampleType::Float { filterable: false }, false);
 
 impl Layouts {
-    /// Where the device `computes`; otherwise only what the picture's shader reads.
+    /// Creates all layouts if the device `computes`; otherwise only the layout for the engine's main pass.
     pub(super) fn new(device: &wgpu::Device, computes: bool) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
         let stages = wgpu::ShaderStages::FRAGMENT | compute;
         let arguments = [storage(true), storage(false)];
         let select = [storage(true), storage(false), storage(true), UNIFORM];
-        // Devices without storage buffers refuse layouts of them.
+        // Devices without storage buffers refuse layouts that contain them.
         let used = if computes { usize::MAX } else { 0 };
         Self {
             read: layout(device, "shadowfit exact factors", stages, &[FLOATS]),
@@ -76,7 +77,7 @@ impl Layouts {
         group(device, "shadowfit edges arguments", &self.arguments, &resources)
     }
 
-    /// What the picture's shader reads.
+    /// Creates the bind group for the engine's main pass.
     pub(super) fn group(&self, device: &wgpu::Device, factors: &wgpu::TextureView) -> wgpu::BindGroup {
         let resources = [wgpu::BindingResource::TextureView(factors)];
         group(device, "shadowfit exact factors", &self.read, &resources)
@@ -103,8 +104,7 @@ impl Target {
 }
 
 impl Target {
-    /// Makes the resources that leave out pixels, so that a frame traces about as many as its budget allows, and writes the
-    /// budget.
+    /// Creates the resources that limit the number of traced pixels, and writes the budget of the frame.
     pub(super) fn keep(
         &mut self,
         device: &wgpu::Device,
@@ -145,7 +145,7 @@ impl Kept {
     }
 }
 
-/// A texture of factors.
+/// Creates a texture of factors.
 pub(super) fn factors(device: &wgpu::Device, size: [u32; 2]) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::STORAGE_BINDING
         | wgpu::TextureUsages::TEXTURE_BINDING
@@ -155,7 +155,7 @@ pub(super) fn factors(device: &wgpu::Device, size: [u32; 2]) -> wgpu::TextureVie
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// A list with room for all pixels of a picture.
+/// Creates a list with room for all pixels of a view.
 fn list(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Buffer {
     let pixels = (u64::from(width) * u64::from(height)).next_multiple_of(u64::from(TRACE_THREADS));
     device.create_buffer(&wgpu::BufferDescriptor {

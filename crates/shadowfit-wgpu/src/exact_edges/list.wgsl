@@ -1,11 +1,12 @@
-// The pixels whose rays are traced.
+// List of the pixels to trace.
 
 struct List {
     count: LIST_COUNT,
-    // Pixels that face the light within the distance of shadows, and those of them that are left to the filter.
+    // Number of pixels that face the light within the shadow distance, and number of these that the filter
+    // decides.
     facing: LIST_COUNT,
     filtered: LIST_COUNT,
-    // Of a list from which some were left out: how many there were before. Otherwise 0.
+    // Number of listed pixels before the budget removed some; 0 without a budget.
     unsure: u32,
     pixels: array<Listed>,
 }
@@ -13,8 +14,8 @@ struct List {
 struct Listed {
     // Column, and row in the upper half.
     pixel: u32,
-    // The triangle of its first sample, once it is looked for: its place among those of the rays, or SHADOWFIT_RAYS_NONE, and its
-    // instance.
+    // Triangle of the pixel's first sample, after the third pass: its slot among the rays' triangles, or
+    // SHADOWFIT_RAYS_NONE, and its instance.
     slot: u32,
     instance: u32,
 }

@@ -1,14 +1,15 @@
-//! Blue noise: a square of ranks. The pixels below any rank are spread evenly, also across the square's sides.
+//! Blue noise: a square of ranks. The pixels below any rank are spread evenly, also across the sides of the
+//! square.
 
 use std::sync::LazyLock;
 
-/// Pixels along a side of the square.
+/// Width of the square, in pixels.
 pub(super) const SIDE: usize = 64;
 
-/// Variance of the Gaussian by which pixels repel each other, in square pixels; 1.5² is Ulichney's.
+/// Variance of the Gaussian by which pixels repel each other, in square pixels. Ulichney uses 1.5², too.
 const VARIANCE: f32 = 1.5 * 1.5;
 
-/// The rank of each pixel, in rows, computed once per process.
+/// Rank of each pixel, in rows, computed once per process.
 pub(super) static RANKS: LazyLock<Vec<u32>> = LazyLock::new(ranks);
 
 /// Returns the rank of each pixel, in rows. Each rank goes to the middle of the largest void between the pixels of lower
@@ -30,7 +31,8 @@ fn ranks() -> Vec<u32> {
     ranks
 }
 
-/// Square of the distance of a pixel to the first one, in pixels, across the sides where that is nearer.
+/// Returns the squared distance of a pixel to the first pixel, in square pixels, across the sides if that is
+/// nearer.
 fn squared(at: usize) -> f32 {
     let near = |place: usize| place.min(SIDE - place) as f32;
     near(at % SIDE).powi(2) + near(at / SIDE).powi(2)
@@ -46,7 +48,8 @@ mod tests {
         let mut sorted = ranks.clone();
         sorted.sort_unstable();
         assert!(sorted.iter().zip(0..).all(|(rank, wanted)| *rank == wanted));
-        // Of a sixteenth of all pixels each square of 8 has its 4, and of more in proportion, give or take 4: by chance some differ by 10.
+        // Each square of 8 × 8 pixels contains its share of the lowest ranks ± 4. A random choice would
+        // differ by up to 10.
         for few in [1, 2, 4].map(|part| (SIDE * SIDE / 16 * part) as u32) {
             let wanted = few as usize / 64;
             for square in 0..64 {

@@ -1,62 +1,62 @@
-//! How a picture's edges came out.
+//! Result of tracing a frame's edges.
 
 use core::fmt;
 
 use crate::demand::Unsupported;
 
-/// How the edges of a frame came out.
+/// Result of tracing a frame's edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeOutcome {
-    /// Rays were traced where the maps were not sure.
+    /// Rays were traced where the texels of the maps disagree.
     Traced,
-    /// The filter decides everywhere.
+    /// The filter decides all pixels.
     Filtered(FallbackReason),
 }
 
-/// Why the edges of a frame are filtered.
+/// The reason why the edges of a frame are filtered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FallbackReason {
-    /// The technique's edges are.
+    /// The technique has filtered edges.
     Technique,
-    /// The device lacks something.
+    /// The device lacks a capability.
     Device(Unsupported),
-    /// There are no rays.
+    /// No rays were passed in.
     Rays,
-    /// The edges of no picture were traced yet, or it was an error.
+    /// No edges have been traced yet, or tracing failed.
     Picture,
-    /// The sun gives nothing, or had no frame yet.
+    /// The sun is off, or had no frame yet.
     NoMaps,
-    /// Two sets of maps are mixed while the sun [steps](crate::SunShadows::set_light_steps).
+    /// The look-up blends two sets of maps during a [light step](crate::SunShadows::set_light_steps).
     Fading,
 }
 
 impl fmt::Display for FallbackReason {
-    /// A clause, such as "this graphics device has no compute shaders".
+    /// Writes a clause, such as "this graphics device has no compute shaders".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Technique => "the technique says so",
+            Self::Technique => "the technique filters edges",
             Self::Device(Unsupported::Compute) => "this graphics device has no compute shaders",
             Self::Device(Unsupported::DepthLoads) => "OpenGL's shaders cannot read the depth buffer",
             Self::Device(Unsupported::StorageBuffers) => {
                 "this graphics device binds too few storage buffers to a shader"
             }
-            Self::Rays => "there are no rays, since this graphics device cannot hold the scene's triangles for them",
-            Self::Picture => "the edges of the picture were not traced",
-            Self::NoMaps => "the sun gives no light, or has no maps yet",
-            Self::Fading => "one set of maps fades into another one",
+            Self::Rays => "there are no rays, because this graphics device cannot hold the scene's triangles for them",
+            Self::Picture => "the edges of this frame were not traced",
+            Self::NoMaps => "the sun is off, or has no maps yet",
+            Self::Fading => "one set of maps is fading into another",
         })
     }
 }
 
-/// How many pixels of a picture were traced.
+/// Pixel counts of a view by the source of their factor: the map, rays or the filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EdgeCounts {
-    /// Pixels that face the light within the distance of shadows.
+    /// Pixels that face the light within the shadow distance.
     pub facing: u32,
-    /// Those of them that the maps were not sure of.
+    /// Facing pixels whose texels in the maps disagree.
     pub unsure: u32,
-    /// Those of them that were traced.
+    /// Unsure pixels that were traced.
     pub traced: u32,
-    /// Those that were left to the filter.
+    /// Facing pixels whose factor comes from the filter.
     pub filtered: u32,
 }

@@ -1,4 +1,4 @@
-//! The pass itself: what it needs of a device, its pipelines, and a frame of it.
+//! The edge pass: its device requirements, its pipelines, and the recording of a frame.
 
 use shadowfit_gpu::bindings::{UNIFORM, group, layout, storage, texture, uniform_buffer, written_texture};
 use shadowfit_gpu::{ReadBackRing, catch_errors, compute_pipeline, make_at_once, wgsl_module};
@@ -18,16 +18,16 @@ use crate::pixels::check;
 use crate::uniforms::FadingUniform;
 use crate::{ShadowMapDescriptor, SunShadows};
 
-/// Name of the passes and their resources, for debuggers.
+/// Label of the passes and their resources, for graphics debuggers.
 const LABEL: &str = "shadowfit edges";
-/// Pixels along a side of a workgroup that classifies, as in the WGSL.
+/// Width of a classifying workgroup, in pixels, as in the WGSL.
 const SQUARE: u32 = 8;
-/// Pictures whose counts may be on their way back at once, as many as a GPU may be behind and one more.
+/// Number of frames whose counts may be on their way back at once: one more than a GPU may lag behind.
 const FRAMES: usize = 4;
-/// Storage buffers of the pass that traces: those of the rays, and the list.
+/// Storage buffers of the pass that traces: the buffers of the rays, and the list.
 const STORAGE_BUFFERS: u32 = 6;
 
-/// Finds the factors of a picture: see the [module](super). One for each view.
+/// Pass that computes the shadow factors of a view; see the [module](super). Create one for each view.
 #[derive(Debug)]
 pub struct EdgePass {
     device: wgpu::Device,
@@ -38,20 +38,20 @@ pub struct EdgePass {
     pipelines: Option<Pipelines>,
     uniform: wgpu::Buffer,
     receiver: wgpu::Buffer,
-    /// Gathers the texels of maps, which may wrap around.
+    /// Sampler that gathers the texels of maps, which may wrap around.
     texels: wgpu::Sampler,
     target: Option<Target>,
-    /// Made for the first sun with a radius.
+    /// Created for the first sun with a radius.
     pyramids: Option<Pyramids>,
-    /// What is bound in their place for one without.
+    /// Bound instead of the pyramids for a sun without a radius.
     no_bounds: wgpu::TextureView,
-    /// What shaders read where no edges are traced: one pixel, which is the filter's.
+    /// View and bind group for shaders if no edges are traced: a single pixel that selects the filter.
     nothing: (wgpu::TextureView, wgpu::BindGroup),
     result: EdgeOutcome,
     counts: ReadBackRing<()>,
 }
 
-/// Pipelines for maps of a descriptor and pictures of a shape.
+/// Pipelines for one descriptor of maps and one shape of views.
 #[derive(Debug)]
 struct Pipelines {
     key: (ShadowMapDescriptor, Shape),
@@ -64,7 +64,7 @@ struct Pipelines {
     trace: wgpu::ComputePipeline,
 }
 
-/// Layouts of bind groups that come from outside of the pipelines.
+/// Bind group layouts that other objects own.
 struct PassLayouts<'a> {
     receiver: &'a wgpu::BindGroupLayout,
     rays: &'a wgpu::BindGroupLayout,
@@ -72,7 +72,7 @@ struct PassLayouts<'a> {
     select: &'a wgpu::BindGroupLayout,
 }
 
-/// Bind groups of a picture: the look-up, and the picture with the list that a pass writes or reads.
+/// Bind groups of a frame. The list of pixels is writable in one and read-only in the others.
 struct Groups {
     receiver: wgpu::BindGroup,
     classify: wgpu::BindGroup,
@@ -81,22 +81,23 @@ struct Groups {
 }
 
 impl EdgePass {
-    /// A pass that has traced nothing yet. On devices without compute shaders, and on OpenGL, whose shaders cannot load
-    /// depth, [`Self::record`] says so, and all edges are filtered.
+    /// Creates a pass. On devices without compute shaders, and on OpenGL, whose shaders cannot load depth,
+    /// all edges are filtered, and [`Self::record`] returns the reason.
     ///
     /// # Errors
     ///
-    /// [`EdgeError::Device`] for a device out of memory.
+    /// [`EdgeError::Device`] if the device is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, EdgeError> {
         Self::with(device, queue, None)
     }
 
-    /// The same with an engine's own test of hits. On devices that trace nothing it is ignored.
+    /// Creates a pass with the engine's own alpha test of ray hits. Devices that cannot trace ignore it.
     ///
     /// # Errors
     ///
-    /// [`EdgeError::AnyHit`] for WGSL that is not valid beside the pass's own, and [`EdgeError::Device`] for a
-    /// device out of memory. Whether the layout suits the WGSL and the device shows with the first picture.
+    /// [`EdgeError::AnyHit`] for WGSL that is invalid together with the pass's WGSL, and
+    /// [`EdgeError::Device`] if the device is out of memory. Whether the layout matches the WGSL and the
+    /// device is checked with the first frame.
     pub fn with_any_hit(device: &wgpu::Device, queue: &wgpu::Queue, any_hit: AnyHit) -> Result<Self, EdgeError> {
         let pass = Self::with(device, queue, Some(any_hit))?;
         if pass.unsupported.is_none() {
@@ -142,49 +143,53 @@ impl EdgePass {
         catch_errors(device, made).map_err(|error| EdgeError::Device(error.to_string()))
     }
 
-    /// The layout of what [`exact_factor_wgsl`](super::exact_factor_wgsl) reads: in fragment and compute shaders.
+    /// Returns the layout of the bind group that [`exact_factor_wgsl`](super::exact_factor_wgsl) reads, for
+    /// fragment and compute shaders.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layouts.read
     }
 
-    /// The bind group that [`exact_factor_wgsl`](super::exact_factor_wgsl) reads: another one where the size of the
-    /// picture changes, and where edges are filtered. Take it after [`Self::record`].
+    /// Returns the bind group that [`exact_factor_wgsl`](super::exact_factor_wgsl) reads. Call it after
+    /// [`Self::record`] in each frame: the bind group changes with the size of the view, and when edges
+    /// change from traced to filtered or back.
     pub fn group(&self) -> &wgpu::BindGroup {
         let traced = self.target.as_ref().filter(|_| self.result == EdgeOutcome::Traced);
         traced.map_or(&self.nothing.1, |target| &target.group)
     }
 
-    /// The factors of the picture that was traced last, an `R32Float` texture of the depth texture's size: the share of
-    /// the light that reaches a pixel, 0..=1, and -1 where the filter decides. The lowest bit of a factor is set where it was
-    /// traced, and clear elsewhere. One pixel where edges are filtered.
+    /// Returns the factors of the last traced frame: an `R32Float` texture of the depth texture's size. A
+    /// factor is the share of the light that reaches a pixel, 0..=1, or -1 where the filter decides. The
+    /// lowest bit of a factor is set if the pixel was traced. If edges are filtered, the texture is a single
+    /// pixel.
     pub fn factors(&self) -> &wgpu::TextureView {
         let traced = self.target.as_ref().filter(|_| self.result == EdgeOutcome::Traced);
         traced.map_or(&self.nothing.0, |target| &target.factors)
     }
 
-    /// What the device lacks, so that all edges are filtered.
+    /// Returns the missing capability of the device. If there is one, all edges are filtered.
     pub fn unsupported(&self) -> Option<Unsupported> {
         self.unsupported
     }
 
-    /// How the edges of the last picture came out.
+    /// Returns the result of the last frame.
     pub fn result(&self) -> EdgeOutcome {
         self.result
     }
 
-    /// Leaves the edges of the next picture to the filter: for a frame without a pre-pass.
+    /// Filters the edges of the next frame, for a frame without a depth pre-pass.
     pub fn skip(&mut self) {
         self.result = EdgeOutcome::Filtered(FallbackReason::Picture);
     }
 
-    /// Records the passes, after those of the maps and the one that fills the depth buffer, and before the picture is
-    /// shaded. The sun's maps are those of its last update. `rays` have what casts in this frame.
+    /// Records the passes. Call it after the passes of the maps and the depth pre-pass, and before the main
+    /// pass. It uses the sun's maps of the last update. `rays` must contain the casters of this frame.
     ///
-    /// Returns how edges come out; where they are filtered nothing is recorded.
+    /// Returns whether edges are traced or filtered. If they are filtered, no pass is recorded.
     ///
     /// # Errors
     ///
-    /// [`EdgeError`] for the view, its textures, and a device out of memory. Edges are filtered then.
+    /// [`EdgeError`] for an invalid view or texture, and if the device is out of memory. Edges are filtered
+    /// then.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -195,11 +200,11 @@ impl EdgePass {
         self.record_timed(encoder, sun, rays, view, None)
     }
 
-    /// [`Self::record`] with timestamps at the beginning and the end of the passes.
+    /// Calls [`Self::record`] with timestamps at the beginning and the end of the passes.
     ///
     /// # Errors
     ///
-    /// As [`Self::record`].
+    /// The errors of [`Self::record`].
     pub fn record_timed(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -234,12 +239,13 @@ impl EdgePass {
         }
     }
 
-    /// WGSL of the engine's own test of hits.
+    /// Returns the WGSL of the engine's alpha test of ray hits.
     fn counts_wgsl(&self) -> Option<&str> {
         self.any_hit.as_ref().map(|any_hit| any_hit.wgsl.as_str())
     }
 
-    /// An error of a pipeline: the pass's own WGSL is valid.
+    /// Converts the error of a pipeline. The pass's own WGSL is valid, so that the engine's WGSL is the
+    /// cause.
     fn refused(&self, error: &wgpu::Error) -> EdgeError {
         match error {
             wgpu::Error::Validation { .. } if self.any_hit.is_some() => EdgeError::AnyHit(error.to_string()),
@@ -290,13 +296,13 @@ impl EdgePass {
         Ok(())
     }
 
-    /// Refuses a bind group for an engine's own test of hits that is missing, or that has no layout.
+    /// Refuses a view whose bind group for the alpha test is missing or has no layout.
     fn check_any_hit(&self, view: &EdgeView<'_>) -> Result<(), EdgeError> {
         let has_layout = self.any_hit.as_ref().is_some_and(|any_hit| any_hit.layout.is_some());
         if has_layout == view.any_hit.is_some() { Ok(()) } else { Err(EdgeError::AnyHitGroup(has_layout)) }
     }
 
-    /// Makes what a picture needs that is not there yet.
+    /// Creates the missing resources of a frame.
     fn make(&mut self, sun: &SunShadows, rays: &RayScene, view: &EdgeView<'_>, frame: u32) -> Result<(), EdgeError> {
         let shape = Shape {
             samples: view.depth.texture().sample_count(),
@@ -317,10 +323,10 @@ impl EdgePass {
         Ok(())
     }
 
-    /// The counts of the newest picture that the GPU has finished, given once, a frame or two late; `None` until there
-    /// are any. Never waits.
+    /// Returns the counts of the newest frame that the GPU has finished, a frame or two late. The counts of a
+    /// frame are returned once. `None` if no new counts have arrived. Never waits.
     pub fn take_counts(&mut self) -> Option<EdgeCounts> {
-        // This only polls; what is finished shows below.
+        // This only polls. The read-backs below show which frames are finished.
         let _status = self.device.poll(wgpu::PollType::Poll);
         let ((), counts) = self.counts.take(bytemuck::pod_read_unaligned::<[u32; COUNTS]>).ok()??;
         let [traced, facing, filtered, before] = counts;
@@ -349,7 +355,7 @@ impl EdgePass {
     }
 
     fn make_pipelines(&mut self, sun: &SunShadows, rays: &RayScene, shape: Shape) -> Result<(), EdgeError> {
-        // What the WGSL does not depend on is the same for all.
+        // Resolution and fade do not change the WGSL, so the key contains fixed values for them.
         let of_all = ShadowMapDescriptor::default();
         let descriptor =
             ShadowMapDescriptor { resolution: of_all.resolution, fade: of_all.fade, ..*sun.map().descriptor() };
@@ -395,7 +401,7 @@ impl Pipelines {
         Self { classify, arguments, select, surfaces, trace, key: (*descriptor, shape), layout, trace_layout }
     }
 
-    /// Lists the pixels of a picture that the maps are not sure of, and counts their workgroups.
+    /// Lists the pixels whose texels disagree, and counts their workgroups.
     fn classify(&self, pass: &mut wgpu::ComputePass<'_>, target: &Target, groups: &Groups, size: [u32; 2]) {
         pass.set_pipeline(&self.classify);
         pass.set_bind_group(0, &groups.receiver, &[]);
@@ -407,7 +413,7 @@ impl Pipelines {
         pass.dispatch_workgroups(1, 1, 1);
     }
 
-    /// Keeps as many of them as the budget allows, and counts their workgroups.
+    /// Keeps listed pixels within the budget, and counts their workgroups.
     fn select(&self, pass: &mut wgpu::ComputePass<'_>, target: &Target, kept: &Kept) {
         pass.set_pipeline(&self.select);
         pass.set_bind_group(0, &kept.group, &[]);
@@ -417,7 +423,7 @@ impl Pipelines {
         pass.dispatch_workgroups(1, 1, 1);
     }
 
-    /// Finds the triangles of the pixels on the list, and traces their rays.
+    /// Finds the triangles of the listed pixels, and traces their rays.
     fn trace(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
@@ -441,7 +447,7 @@ impl Pipelines {
     }
 }
 
-/// What a device lacks for the passes.
+/// Returns the capability that the device lacks for the passes.
 fn unsupported(device: &wgpu::Device) -> Option<Unsupported> {
     let limits = device.limits();
     let has_buffers = limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS;
@@ -449,13 +455,13 @@ fn unsupported(device: &wgpu::Device) -> Option<Unsupported> {
     computes.err().or((!has_buffers).then_some(Unsupported::StorageBuffers))
 }
 
-/// A texture of one layer in the place of bounds that are not read.
+/// Returns a texture view to bind instead of bounds that are not read.
 fn no_bounds(any: &wgpu::TextureView) -> wgpu::TextureView {
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     any.texture().create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
 }
 
-/// Layout of a picture: its list is written, or read.
+/// Returns the layout of a frame's resources. The list is read-only, or writable.
 fn picture_layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu::BindGroupLayout {
     let factors = written_texture(wgpu::TextureFormat::R32Float);
     let depths = texture(wgpu::TextureSampleType::Depth, shape.samples > 1);
@@ -464,7 +470,7 @@ fn picture_layout(device: &wgpu::Device, shape: Shape, read_only: bool) -> wgpu:
     layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &types)
 }
 
-/// Refuses textures that cannot be bound, and a picture that does not lie in them.
+/// Refuses textures that cannot be bound, and a view's rectangle that lies outside them.
 fn check_textures(view: &EdgeView<'_>) -> Result<(), EdgeError> {
     let texture = view.depth.texture();
     check(texture, &[1, 4], view.part())?;

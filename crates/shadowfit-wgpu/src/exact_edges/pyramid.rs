@@ -1,5 +1,5 @@
-//! The bounds of maps' depths for suns with a radius: of blocks of texels, and of blocks of these, renewed where a map was
-//! drawn.
+//! Depth bounds of maps for suns with a radius: a pyramid with the bounds of blocks of texels, then of blocks
+//! of blocks. It is recomputed for maps that were drawn.
 
 use shadowfit_gpu::bindings::{UNIFORM, group, layout, texture_array, written_texture};
 use shadowfit_gpu::{catch_errors, compute_pipeline, wgsl_module};
@@ -9,33 +9,33 @@ use super::group::FLOATS;
 use super::shader::{BLOCK, pyramid};
 use crate::{MAX_MAPS, ShadowMapDescriptor, SunShadows};
 
-/// Name of the pyramids' resources, for debuggers.
+/// Label of the pyramids' resources, for graphics debuggers.
 const LABEL: &str = "shadowfit pyramid";
-/// Threads along a side of a workgroup.
+/// Width of a workgroup, in threads.
 const SQUARE: u32 = 8;
 /// Format of the bounds: nearest and farthest depth.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
-/// The bounds of maps.
+/// Binding of the bounds of maps.
 pub(super) const BOUNDS: wgpu::BindingType = texture_array(wgpu::TextureSampleType::Float { filterable: false });
-/// Blocks along the longer side of the coarsest level: a region of more is looked at in these.
+/// Blocks along the longer side of the coarsest level. A wider region is read in blocks of this level.
 const COARSEST: u32 = 4;
 
-/// The pyramids of all maps of a sun.
+/// Pyramids of all maps of a sun.
 #[derive(Debug)]
 pub(super) struct Pyramids {
     descriptor: ShadowMapDescriptor,
-    /// The maps that it was made for.
+    /// View of the maps that the pyramids belong to.
     maps: wgpu::TextureView,
-    /// All levels of all layers.
+    /// View of all levels of all layers.
     pub(super) view: wgpu::TextureView,
     layers: Vec<Layer>,
     blocks: wgpu::ComputePipeline,
     levels: wgpu::ComputePipeline,
-    /// How often each map had been drawn when its pyramid was made.
+    /// Draw count of each map when its pyramid was computed.
     made: [Option<u64>; 2 * MAX_MAPS],
 }
 
-/// The bind groups of a layer: of the finest level, and from each to the next.
+/// Bind groups of a layer: for the finest level, and from each level to the next.
 #[derive(Debug)]
 struct Layer {
     blocks: wgpu::BindGroup,
@@ -44,7 +44,7 @@ struct Layer {
 }
 
 impl Pyramids {
-    /// Those of a sun's maps: the present ones where they are still of the same maps.
+    /// Returns the pyramids of a sun's maps, and keeps the present ones if they belong to the same maps.
     pub(super) fn of(present: Option<Self>, device: &wgpu::Device, sun: &SunShadows) -> Result<Self, EdgeError> {
         let (map, key) = (sun.map(), wgsl_key(sun.map().descriptor()));
         if let Some(present) = present.filter(|present| present.maps == *map.view() && present.descriptor == key) {
@@ -80,7 +80,7 @@ impl Pyramids {
         }
     }
 
-    /// Makes those again whose maps were drawn. `receiver` is a bind group of the look-up.
+    /// Recomputes the pyramids of maps that were drawn since. `receiver` is a bind group of the look-up.
     pub(super) fn renew(&mut self, pass: &mut wgpu::ComputePass<'_>, sun: &SunShadows, receiver: &wgpu::BindGroup) {
         let first = sun.map().first_layer() as usize;
         let drawn = sun.cached().drawn();
@@ -109,7 +109,7 @@ fn dispatch(pass: &mut wgpu::ComputePass<'_>, size: [u32; 2]) {
     pass.dispatch_workgroups(x, y, 1);
 }
 
-/// What the WGSL and the size of the pyramids depend on.
+/// Returns the parts of the descriptor that the WGSL and the size of the pyramids depend on.
 fn wgsl_key(descriptor: &ShadowMapDescriptor) -> ShadowMapDescriptor {
     let ShadowMapDescriptor { resolution, maps, format, depth, cross_fades, first_binding, .. } = *descriptor;
     ShadowMapDescriptor { resolution, maps, format, depth, cross_fades, first_binding, ..Default::default() }
@@ -118,7 +118,8 @@ fn wgsl_key(descriptor: &ShadowMapDescriptor) -> ShadowMapDescriptor {
 fn texture(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Texture {
     let blocks = descriptor.resolution.map(|side| side.div_ceil(BLOCK));
     let coarser = blocks[0].max(blocks[1]).div_ceil(COARSEST).next_power_of_two().ilog2();
-    // Mip levels round down: the last blocks of a level would not be part of the next one.
+    // Mip levels round down. Without this padding, the last blocks of a level would be missing in the next
+    // one.
     let [width, height] = blocks.map(|side| side.next_multiple_of(1 << coarser));
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(LABEL),

@@ -1,4 +1,4 @@
-//! Pyramids against bounds that the CPU finds, in maps whose texels are written by hand.
+//! Compares pyramids with bounds that the CPU computes, in maps with hand-written texels.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{Edges, FilterKind, MapFormat};
@@ -9,7 +9,7 @@ use shadowfit_testing::{TestGpu, test_gpu};
 use super::*;
 use crate::{Casters, MapTexture, SunFrame, SunShadowsDescriptor};
 
-/// Maps that no caster is drawn into: their texels are written.
+/// Maps with hand-written texels. No caster is drawn into them.
 struct Bench {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -20,7 +20,7 @@ struct Bench {
     pyramids: Option<Pyramids>,
 }
 
-/// Depths of a layer, by row.
+/// Depths of a layer, in rows.
 type Texels = Vec<f32>;
 
 impl Bench {
@@ -43,7 +43,7 @@ impl Bench {
         Self { device, queue, sun, texture, size, is_reversed, pyramids: None }
     }
 
-    /// A frame of two boxes, near and far, that do not move.
+    /// Updates the sun with a frame of two static boxes, near and far.
     fn update(&mut self) {
         let near = Aabb::new(Vec3::new(-0.5, 0.0, -3.5), Vec3::new(0.5, 1.0, -2.5));
         let boxes = [near, Aabb::new(Vec3::new(-0.5, 0.0, -25.0), Vec3::new(0.5, 1.0, -24.0))];
@@ -62,7 +62,7 @@ impl Bench {
         self.sun.update(&self.queue, &frame.with_origin(DVec3::ZERO)).expect("a good frame");
     }
 
-    /// Writes other depths into all maps, and returns them.
+    /// Writes new depths into all maps, and returns them.
     fn write(&self, seed: u32) -> Vec<Texels> {
         let [width, height] = self.size;
         let noise = |index: u32| (index.wrapping_mul(0x9E37_79B9) ^ seed).wrapping_mul(0x85EB_CA6B) >> 8;
@@ -77,7 +77,7 @@ impl Bench {
         layers
     }
 
-    /// Gives all texels of all maps, whose format is one of depths, the same depth.
+    /// Clears all texels of all maps, which have a depth format, to the same depth.
     fn clear(&self, depth: f32) -> Vec<Texels> {
         let layers = 0..self.texture.depth_or_array_layers();
         let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -110,7 +110,7 @@ impl Bench {
         self.pyramids = Some(pyramids);
     }
 
-    /// The bounds of each block of a level of a layer, by row, and how many are in a row.
+    /// Returns the bounds of each block of a level of a layer, in rows, and the number of blocks per row.
     fn read(&self, layer: usize, level: usize) -> (Vec<[f32; 2]>, u32) {
         let pyramids = self.pyramids.as_ref().expect("made");
         let [width, height] = pyramids.layers[layer].sizes[level];
@@ -140,11 +140,11 @@ impl Bench {
         encoder.copy_buffer_to_buffer(&values, 0, &read, 0, bytes);
         self.queue.submit([encoder.finish()]);
         read.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("mapped"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
         (bytemuck::pod_collect_to_vec(&read.slice(..).get_mapped_range().expect("mapped")), width)
     }
 
-    /// The nearest and the farthest depth of the texels of a block.
+    /// Returns the nearest and the farthest depth of the texels of a block.
     fn bounds(&self, texels: &Texels, side: u32, [x, y]: [u32; 2]) -> [f32; 2] {
         let [width, height] = self.size;
         let rows = y * side..((y + 1) * side).min(height);
@@ -154,7 +154,8 @@ impl Bench {
         if self.is_reversed { [most, least] } else { [least, most] }
     }
 
-    /// All levels of a layer have the bounds of these texels, and each texel is part of each level.
+    /// Asserts that all levels of a layer contain the bounds of these texels, and that each level covers all
+    /// texels.
     fn assert_bounds(&self, layer: usize, texels: &Texels) {
         let levels = self.pyramids.as_ref().expect("made").layers[layer].sizes.len();
         for level in 0..levels {
@@ -183,7 +184,7 @@ const READ: &str = "
 #[test]
 fn each_level_has_the_nearest_and_the_farthest_depth_of_each_block_in_both_conventions() {
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
-        // The latter are not filled by blocks of any level, or of the coarser ones.
+        // The last two sizes are not multiples of the block size, at any level or at the coarser levels.
         for size in [[256, 256], [512, 256], [260, 301], [404, 404]] {
             let mut bench = Bench::new(size, depth, MapFormat::R32Float);
             bench.update();
@@ -204,7 +205,7 @@ fn the_pyramids_of_maps_that_were_drawn_are_renewed_and_no_others() {
     for frame in 1..5_u8 {
         let before = *bench.sun.cached().drawn();
         if frame == 3 {
-            // Something changed far from the eye, which not all maps hold.
+            // A change far from the eye, in an area that not all maps cover.
             bench.sun.invalidate(&Aabb::new(Vec3::new(-0.2, 0.0, -24.8), Vec3::new(0.2, 0.5, -24.2)), DVec3::ZERO);
         }
         bench.update();
@@ -220,6 +221,6 @@ fn the_pyramids_of_maps_that_were_drawn_are_renewed_and_no_others() {
             bench.assert_bounds(layer, &held[layer]);
         }
     }
-    // All are drawn in the first frame, none in the second and the last, and some in the third.
+    // All maps are drawn in the first frame, some in the third, and none in the second and the last.
     assert!((1..4).contains(&renewed) && renewed + kept == 12, "{renewed} renewed, {kept} kept");
 }

@@ -1,10 +1,11 @@
-// Between both, where a frame may trace some pixels only: those whose noise lies below the share that is allowed. It is
-// blue noise, so that pixels are left out evenly, and moves from frame to frame by the golden ratio, so that each has its
-// turn (void and cluster: R. Ulichney, "The void-and-cluster method for dither array generation", 1993).
+// Optional pass after the first two, if a frame has a budget: keeps the pixels whose noise lies below the
+// allowed share. The noise is blue, so that pixels are removed evenly. It moves from frame to frame by the
+// golden ratio, so that each pixel is traced in turn (void and cluster: R. Ulichney, "The void-and-cluster
+// method for dither array generation", 1993).
 
 @group(0) @binding(0) var<storage, read> all: List;
 @group(0) @binding(1) var<storage, read_write> kept: KeptList;
-// Ranks of a square of pixels, NOISE_SIDE a side: each number once.
+// Ranks of a square of NOISE_SIDE by NOISE_SIDE pixels: each number once.
 @group(0) @binding(2) var<storage, read> ranks: array<u32>;
 @group(0) @binding(3) var<uniform> budget: Budget;
 
@@ -17,14 +18,15 @@ struct KeptList {
 }
 
 struct Budget {
-    // Pixels that a frame may trace.
+    // Number of pixels to trace per frame.
     pixels: u32,
     frame: u32,
     padding_0: u32,
     padding_1: u32,
 }
 
-// Ranks count thousands of pixels: what is finer, a pixel's number decides.
+// Returns the noise of a pixel. The ranks have only thousands of steps, so a hash of the square's position
+// adds finer ones.
 fn noise(pixel: vec2<u32>) -> f32 {
     let at = pixel % NOISE_SIDE;
     let rank = f32(ranks[at.y * NOISE_SIDE + at.x]);

@@ -1,4 +1,4 @@
-//! The WGSL of the edge passes, and of what reads their result.
+//! WGSL of the edge passes, and of the shader that reads their result.
 
 use shadowfit::DepthConvention;
 use shadowfit::settings::FilterKind;
@@ -11,39 +11,41 @@ use super::view::NormalEncoding;
 use crate::wgsl::loads_wgsl;
 use crate::{ShadowMapDescriptor, WgslOptions, receiver_wgsl};
 
-/// Threads of a workgroup that traces, as many as a pixel may have rays.
+/// Threads per tracing workgroup, which is also the maximum number of rays per pixel.
 pub(super) const TRACE_THREADS: u32 = 64;
-/// Workgroups that WebGPU has along an axis.
+/// Maximum number of workgroups along an axis in WebGPU.
 const MAX_GROUPS: u32 = 65_535;
 /// Bind groups of the look-up and of the rays.
 const RECEIVER_GROUP: u32 = 0;
 const RAYS_GROUP: u32 = 2;
 
-/// Texels on each side of a point that have to agree, along each axis. What holds none of their centres, neither a caster
-/// nor a gap, is missed: with 1 in all maps there are 0.013% wrong pixels on the shared scenes and 1.7% take rays, with 2
-/// 0.0024% and 4.9%, with 3 0.0024% and 7.9%.
+/// Texels on each side of a point that must agree, along each axis. A caster or gap that covers none of their
+/// centres is missed. Measured on the shared scenes: 1 in all maps gives 0.013% wrong pixels and traces 1.7%
+/// of the pixels, 2 gives 0.0024% and 4.9%, and 3 gives 0.0024% and 7.9%.
 const FOOTPRINT: f32 = 2.0;
-/// The same in the coarsest map, where most casters that are thinner than a texel are read: in four generated towns there
-/// are 0.0077% wrong pixels with 2, and 0.0038% with 3, and 11.0% and 12.8% take rays.
+/// Texels that must agree in the coarsest map, where most casters thinner than a texel are read. In four
+/// generated towns, 2 gives 0.0077% wrong pixels and traces 11.0% of the pixels, and 3 gives 0.0038% and
+/// 12.8%.
 const COARSEST_FOOTPRINT: f32 = 3.0;
 
-/// Texels along a side of a block of the finest level of a pyramid.
+/// Width of a block of a pyramid's finest level, in texels.
 pub(super) const BLOCK: u32 = 4;
 
 const LIST: &str = include_str!("list.wgsl");
 
-/// What the WGSL of the passes depends on, beside the maps.
+/// Properties of a view that change the WGSL of the passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     /// Samples of the depth texture per pixel.
     pub(super) samples: u32,
-    /// How the texture of normals has them, if there is one.
+    /// Encoding of the texture of normals, if there is one.
     pub(super) normals: Option<NormalEncoding>,
 }
 
-/// Returns the WGSL of the passes that classify pixels, count workgroups, leave pixels out, look for triangles, trace rays, and
-/// bound the depths of maps for suns with a radius, without an engine's own test of hits. Their entry points are `classify`,
-/// `count_groups`, `select_pixels`, `find_surfaces`, `trace`, `gather_blocks` and `join_blocks`. `samples`: those of the depth texture per pixel.
+/// Returns the WGSL of the passes that classify pixels, count workgroups, apply the budget, find triangles,
+/// trace rays, and compute the depth bounds of maps for suns with a radius. It does not contain an engine's
+/// alpha test. The entry points are `classify`, `count_groups`, `select_pixels`, `find_surfaces`, `trace`,
+/// `gather_blocks` and `join_blocks`. `samples` is the number of samples of the depth texture per pixel.
 pub fn edges_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Option<NormalEncoding>) -> [String; 7] {
     let shape = Shape { samples, normals };
     let [blocks, levels] = pyramid(descriptor);
@@ -51,12 +53,13 @@ pub fn edges_wgsl(descriptor: &ShadowMapDescriptor, samples: u32, normals: Optio
     [classify(descriptor, shape), arguments(descriptor), select(), surfaces, trace, blocks, levels]
 }
 
-/// WGSL that reads what an [`EdgePass`](super::EdgePass) found, after that of [`receiver_wgsl`]:
-/// `shadowfit_exact_factor(position, normal, pixel) -> f32` is the share of the light that reaches a point that the depth
-/// buffer shows: the exact factor, and the filter's where it was not. The arguments are those of `shadowfit_factor_at`.
-/// `shadowfit_is_traced(pixel) -> bool` and `shadowfit_is_filtered(pixel) -> bool` say how it was found. They read one
-/// texture at a binding of the group: 0 for [`EdgePass::group`](super::EdgePass::group), any other one for a
-/// bind group of the engine's own with [`EdgePass::factors`](super::EdgePass::factors).
+/// Returns WGSL that reads the result of an [`EdgePass`](super::EdgePass). Put it after the WGSL of
+/// [`receiver_wgsl`]. `shadowfit_exact_factor(position, normal, pixel) -> f32` returns the share of the light
+/// that reaches a point of the depth buffer: the exact factor, or the filter's factor where edges were not
+/// traced. Its arguments are the same as for `shadowfit_factor_at`. `shadowfit_is_traced(pixel) -> bool` and
+/// `shadowfit_is_filtered(pixel) -> bool` return how the factor was found. The functions read one texture at
+/// `binding` of the group: 0 for [`EdgePass::group`](super::EdgePass::group), any other number for a bind
+/// group of the engine with [`EdgePass::factors`](super::EdgePass::factors).
 pub fn exact_factor_wgsl(options: &WgslOptions<'_>, binding: u32) -> String {
     options.fill(include_str!("exact_factor.wgsl"), binding)
 }
@@ -79,7 +82,8 @@ pub(super) fn classify(descriptor: &ShadowMapDescriptor, shape: Shape) -> String
     [&look_up(descriptor), four, &shared(shape), &list, &constants, &Verdict::wgsl(), &pass].concat()
 }
 
-/// The WGSL of the passes that bound a map's depths: entry points `gather_blocks` and `join_blocks`.
+/// Returns the WGSL of the passes that compute a map's depth bounds, with the entry points `gather_blocks`
+/// and `join_blocks`.
 pub(super) fn pyramid(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let is_reversed = descriptor.depth == DepthConvention::Reversed;
     let closer = if is_reversed { ">=" } else { "<=" };
@@ -106,21 +110,21 @@ pub(super) fn select() -> String {
     [&constants, &list, include_str!("select.wgsl")].concat()
 }
 
-/// `counts`: an engine's own test of hits.
+/// Returns the WGSL of the pass that finds triangles. `counts` is the engine's alpha test of ray hits.
 pub(super) fn surfaces(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let constants = format!("const TRACE_THREADS: u32 = {TRACE_THREADS}u;\n");
     let pass = include_str!("surfaces.wgsl");
     [&starts(descriptor, shape, counts), &constants, pass].concat()
 }
 
-/// The list, and where rays start. `descriptor`: that of the look-up.
+/// Returns the WGSL of the list and of the starts of rays. `descriptor` is the descriptor of the look-up.
 fn starts(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let rays = rays_wgsl(&RayWgslOptions { counts, ..RayWgslOptions::group(RAYS_GROUP) });
     let list = LIST.replace("LIST_COUNT", "u32");
     [&look_up(descriptor), &rays, &shared(shape), &list, include_str!("start.wgsl")].concat()
 }
 
-/// `counts`: an engine's own test of hits.
+/// Returns the WGSL of the pass that traces. `counts` is the engine's alpha test of ray hits.
 pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Option<&str>) -> String {
     let is_soft = descriptor.filter.is_soft();
     let points = descriptor.edges.samples().max(1);
@@ -128,7 +132,7 @@ pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Opti
         "const TRACE_THREADS: u32 = {TRACE_THREADS}u;\nconst POINTS: u32 = {points}u;\nconst PIXELS: u32 = {}u;\n",
         TRACE_THREADS / points
     );
-    // Whatever the filter, rays to a sun with a radius are compared with casters at their distance.
+    // With any soft filter, rays to a sun with a radius are compared with casters at their distance.
     let filter = if is_soft { FilterKind::Pcss } else { descriptor.filter };
     let starts = starts(&ShadowMapDescriptor { filter, ..*descriptor }, shape, counts);
     let estimate = if is_soft { include_str!("estimate_sun.wgsl") } else { include_str!("estimate_area.wgsl") };
@@ -136,8 +140,8 @@ pub(super) fn trace(descriptor: &ShadowMapDescriptor, shape: Shape, counts: Opti
     [&starts, &threads, estimate, pass].concat()
 }
 
-/// The look-up into the maps, for positions relative to the eye. No edges are traced while two sets of maps are mixed:
-/// the present one stands first in the uniform of both.
+/// Returns the WGSL of the look-up, for positions relative to the eye. While two sets of maps are blended no
+/// edges are traced, so that the first set in the uniform is enough.
 fn look_up(descriptor: &ShadowMapDescriptor) -> String {
     let one_set = ShadowMapDescriptor { cross_fades: false, ..*descriptor };
     receiver_wgsl(&one_set, &WgslOptions::group(RECEIVER_GROUP))

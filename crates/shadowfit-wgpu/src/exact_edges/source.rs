@@ -1,4 +1,5 @@
-//! What the passes read: the maps as the look-up reads them, and where they are not to be trusted.
+//! Inputs of the passes: the maps as the look-up reads them, and the regions where maps or rays are
+//! unreliable.
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
 use shadowfit::{Aabb, DepthConvention, FittedMap};
@@ -9,19 +10,19 @@ use super::view::EdgeView;
 use crate::pixels::{DepthBufferError, world_from_pixel};
 use crate::{MapView, SunShadows};
 
-/// Texels around the footprint of a filter by which the boxes of unknown casters are widened: the rasteriser rounds by
-/// less.
+/// Margin of the boxes of unknown casters in addition to the filter's footprint, in texels. The rasteriser's
+/// rounding is less.
 const AROUND: f32 = 2.0;
 
-/// The uniforms of a picture.
+/// Uniforms of a frame.
 pub(super) struct Source {
     pub(super) edges: EdgeUniform,
-    /// Of the look-up, for positions relative to the eye.
+    /// Uniform of the look-up, for positions relative to the eye.
     pub(super) receiver: Vec<u8>,
 }
 
 impl Source {
-    /// Of maps that are read from a view.
+    /// Computes the uniforms for maps that are read from a view.
     pub(super) fn new(
         sun: &SunShadows,
         map_view: &MapView,
@@ -61,16 +62,16 @@ impl Source {
     }
 }
 
-/// Rounding of a point of a drawn triangle as a share of the distance of its farthest vertex: ten roundings of 2⁻²⁴, as for
-/// the bias of maps.
+/// Rounding of a point on a drawn triangle as a share of the distance of its farthest vertex: ten roundings
+/// of 2⁻²⁴, as for the bias of maps.
 const VERTEX_ROUNDING: f32 = 10.0 / 16_777_216.0;
 
-/// Distance of the farthest vertex of receivers, in metres.
+/// Returns the distance of the farthest vertex of receivers, in metres.
 fn farthest_vertex(sun: &SunShadows) -> f32 {
     sun.maps().iter().map(|map| map.projection.vertex_distance).fold(0.0, f32::max)
 }
 
-/// Positions relative to the eye from pixels, refused where it makes no sense.
+/// Returns the matrix from pixels to positions relative to the eye, or an error if it is invalid.
 fn checked_matrix(view: &EdgeView<'_>, [_, _, width, height]: [u32; 4]) -> Result<DMat4, EdgeError> {
     if view.convention == DepthConvention::NegativeOneToOne {
         return Err(DepthBufferError::Depth(view.convention).into());
@@ -92,8 +93,8 @@ fn checked_matrix(view: &EdgeView<'_>, [_, _, width, height]: [u32; 4]) -> Resul
     Ok(to_world)
 }
 
-/// The ray through the middle of the picture, homogeneous. The far plane, and with it a part of the ray, may lie behind
-/// the eye where the near plane is tilted.
+/// Ray through the centre of the view, homogeneous. If the near plane is tilted, the far plane and with it a
+/// part of the ray may lie behind the eye.
 struct MiddleRay {
     at_near: DVec4,
     at_far: DVec4,
@@ -108,11 +109,11 @@ impl MiddleRay {
         Self { at_near, at_far, is_reversed: convention == DepthConvention::Reversed }
     }
 
-    /// Whether depth grows along the ray away from the eye, as a plain depth does.
+    /// Returns whether depth increases along the ray away from the eye, as plain depth does.
     fn depth_grows(&self) -> bool {
         let (near, far) = (self.at_near, self.at_far);
         let is_perspective = (near.w - far.w).abs() > PERSPECTIVE * near.w.abs().max(far.w.abs());
-        // In a perspective w is one over the view depth.
+        // In a perspective, w is one over the view depth.
         let is_farther = if is_perspective {
             far.w < near.w
         } else {
@@ -121,20 +122,22 @@ impl MiddleRay {
         is_farther != self.is_reversed
     }
 
-    /// Unit direction away from the eye.
+    /// Returns the unit direction away from the eye.
     fn forward(&self) -> Vec3 {
         let (near, far) = (self.at_near, self.at_far);
         (far.truncate() * near.w - near.truncate() * far.w).normalize_or_zero().as_vec3()
     }
 }
 
-/// Least share of w by which it changes along a ray of a perspective; the change in an orthographic picture is rounding.
+/// Least relative change of w along a ray of a perspective. A smaller change is rounding in an orthographic
+/// view.
 const PERSPECTIVE: f64 = 1e-4;
 
-/// What a depth may be rounded by: a share of it, and a number. A float is rounded when it is stored, and by more when it
-/// is interpolated: rasterisers do that with as many bits for small depths as for large ones, so that a reversed depth far
-/// away is less exact than its format. NVIDIA's rays from mountains start below them without it, and above with 2⁻³⁰.
-/// `Depth24Plus` may have 24 bits or be a float.
+/// Returns a relative and an absolute bound of a depth's rounding. A float is rounded when it is stored, and
+/// more when it is interpolated. Rasterisers interpolate small depths with the same absolute precision as
+/// large ones, so that a reversed depth far away is less precise than its format. Without the absolute bound
+/// of 2⁻³⁰, rays on NVIDIA start below the surface of distant mountains. `Depth24Plus` may have 24 bits or be
+/// a float.
 fn rounding(format: wgpu::TextureFormat) -> [f32; 2] {
     const BITS_17: f32 = 1.0 / 131_072.0;
     const BITS_23: f32 = 1.0 / 8_388_608.0;
@@ -147,11 +150,11 @@ fn rounding(format: wgpu::TextureFormat) -> [f32; 2] {
     }
 }
 
-/// Where maps, or rays, are not to be trusted.
+/// Regions where maps or rays are unreliable.
 struct Unknown {
     boxes: [UnknownUniform; MAX_UNKNOWN],
     count: usize,
-    /// Maps that are not sure anywhere, by the bits of their layers.
+    /// Bits of the layers of maps that are unreliable everywhere.
     maps: u32,
 }
 
@@ -162,7 +165,7 @@ impl Default for Unknown {
 }
 
 impl Unknown {
-    /// Casters that moved over maps that wait.
+    /// Adds casters that moved over maps that wait for a redraw.
     fn add_stale(&mut self, sun: &SunShadows, eye: DVec3) {
         for stale in sun.cached().stale() {
             let Some(map) = sun.maps().get(stale.map) else { continue };
@@ -180,7 +183,7 @@ impl Unknown {
         }
     }
 
-    /// Casters that the rays lack. The last box is one around all that are too many.
+    /// Adds casters that the rays lack. If there are too many, the last box encloses the rest.
     fn add_missing(&mut self, sun: &SunShadows, view: &EdgeView<'_>) {
         let Some(missing) = view.missing_from_rays else { return };
         let offset = (missing.origin - view.eye).as_vec3();
@@ -205,13 +208,13 @@ impl Unknown {
     }
 }
 
-/// A box of unknown casters, widened by a distance.
+/// Returns a box of unknown casters, widened by a distance.
 fn unknown(min: Vec3, max: Vec3, around: f32) -> UnknownUniform {
     let [least, most] = [min - around, max + around].map(|corner| corner.to_array());
     UnknownUniform { least, most, ..UnknownUniform::default() }
 }
 
-/// What a filter reads around a point of a map, in metres.
+/// Returns the radius of the filter's footprint in a map, in metres, including the normal offset.
 fn reach(map: &FittedMap, sun: &SunShadows) -> f32 {
     let descriptor = sun.map().descriptor();
     let texels = descriptor.softness.filter_radius(descriptor.filter) + AROUND;

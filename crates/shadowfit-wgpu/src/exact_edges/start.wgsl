@@ -1,45 +1,48 @@
-// Where the rays of a pixel start: what the passes that look for its triangle and trace its rays share.
+// Starts of a pixel's rays, shared by the passes that find its triangle and trace its rays.
 
-// The least that Vulkan and Direct3D allow: 16 steps in a pixel.
+// Greatest movement of corners that Vulkan and Direct3D allow: 16 steps per pixel.
 const MOST_SNAP: f32 = 0.03125;
-// Share of the way to another point of a pixel by which its depth may differ from that of the pixel's plane.
+// Relative deviation of the depth from the pixel's plane that is allowed on the way to another point of the
+// pixel.
 const BEND: f32 = 0.5;
 
 // A point of a pixel's surface.
 struct Start {
-    // Relative to the eye, in metres.
+    // Position relative to the eye, in metres.
     position: vec3<f32>,
-    // Unit geometric normal on the side of the eye.
+    // Unit geometric normal that faces the eye.
     normal: vec3<f32>,
     // Distance above the surface at which rays start, in metres.
     height: f32,
-    // Where it lies in the pixel, from its first sample, in pixels.
+    // Position in the pixel relative to its first sample, in pixels.
     place: vec2<f32>,
-    // Whether it lies on a triangle of the rays.
+    // Whether the point lies on a triangle of the rays.
     is_exact: bool,
 }
 
-// Relative to the eye, in metres. at: in pixels. depth: minus the far plane's.
+// Returns a position relative to the eye, in metres. at: position in pixels. depth: depth minus the far
+// plane's.
 fn position_at(at: vec2<f32>, depth: f32) -> vec3<f32> {
     let homogeneous = edges.world_from_pixel * vec4<f32>(at, depth, 1.0);
     return homogeneous.xyz / homogeneous.w;
 }
 
-// A part of a line of sight on which the surface lies.
+// A segment of a line of sight that contains the surface.
 struct Sight {
-    // By the depth buffer, relative to the eye, in metres.
+    // Middle by the depth buffer, relative to the eye, in metres.
     middle: vec3<f32>,
     // Unit direction away from the eye.
     direction: vec3<f32>,
-    // How far the surface may lie before and behind the middle, in metres.
+    // Greatest distance of the surface before and behind the middle, in metres.
     reach: f32,
-    // The same on rasterisers that move corners by SNAP at most.
+    // Greatest distance on rasterisers that move corners by SNAP at most.
     sure: f32,
 }
 
-// Of a place in a pixel, from its first sample, in pixels. Depths are rounded, and belong to triangles whose corners were moved.
+// Returns the segment for a place in a pixel, relative to its first sample, in pixels. It allows for the
+// rounding of depths, and for triangles whose corners were moved.
 fn sight_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Sight {
-    // Beyond half the depth there is the far plane.
+    // At more than half of the depth the segment could reach the far plane.
     let farthest = 0.5 * abs(surface.depth);
     let depth = surface.depth + clamp(dot(surface.steps, place), -farthest, farthest);
     let steps = surface.most_steps;
@@ -58,13 +61,14 @@ fn sight_at(pixel: vec2<i32>, surface: Surface, place: vec2<f32>) -> Sight {
     return Sight(middle, direction, reach + rounded, reach * (likely / off) + rounded);
 }
 
-// How far the ray from the eye may pass outside of the drawn triangle, since its corners were rounded, in metres.
+// Returns how far the ray from the eye may miss the drawn triangle, because its corners were rounded, in
+// metres.
 fn beside_of(surface: Surface) -> f32 {
     let m = edges.world_from_pixel;
     return SNAP * max(length(moved(m[0], surface)), length(moved(m[1], surface)));
 }
 
-// Where a line of sight begins, relative to the origin of the rays.
+// Returns the beginning of a segment, relative to the origin of the rays.
 fn begin_of(sight: Sight) -> vec3<f32> {
     return sight.middle - sight.direction * sight.reach + edges.eye;
 }

@@ -1,15 +1,16 @@
-// Third edge pass: the triangle of the point whose depth is known, for each pixel on the list. A short ray from the eye
-// finds it again.
+// Third edge pass: finds the triangle of each listed pixel's first sample again, with a short ray from the
+// eye.
 
 @group(1) @binding(4) var<storage, read_write> list: List;
 
-// The triangle that the ray from the eye meets.
+// Returns the triangle that the ray from the eye hits.
 fn met_by(sight: Sight) -> shadowfit_RaySurface {
     let sought = shadowfit_RaySought(2.0 * sight.reach, sight.sure, 0.0, vec3<f32>(0.0));
     return shadowfit_rays_surface(begin_of(sight), sight.direction, sought);
 }
 
-// The triangle with the pixel's normal that the ray meets, or passes by the rounding of its corners.
+// Returns the triangle with the pixel's normal that the ray hits, or misses by the rounding of the triangle's
+// corners.
 fn passed_by(sight: Sight, surface: Surface) -> shadowfit_RaySurface {
     let near = Sight(sight.middle, sight.direction, sight.sure, sight.sure);
     let normal = select(vec3<f32>(0.0), surface.normal, surface.is_stored);

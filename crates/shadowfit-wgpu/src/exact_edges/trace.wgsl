@@ -1,16 +1,17 @@
-// Fourth edge pass: the rays of the pixels on the list.
+// Fourth edge pass: traces the rays of the listed pixels.
 
 @group(1) @binding(4) var<storage, read> list: List;
 
-// The triangle of a pixel at its first sample.
+// Triangle of a pixel's first sample.
 struct Triangle {
-    // Its place among those of the rays; SHADOWFIT_RAYS_NONE where none was found.
+    // Slot among the rays' triangles; SHADOWFIT_RAYS_NONE if none was found.
     slot: u32,
     instance: u32,
 }
 
-// Whether a pixel lies so near to the plane of another one that rays which start on the plane between them start above the
-// surface: by half of their height, since points may lie aside along both axes. step: from the other one.
+// Returns whether a pixel lies close to the plane of another one: close enough that rays that start on this
+// plane, between both pixels, start above the surface. The tolerance is half of the starts' height, since
+// points may be offset along both axes. step: offset from the other pixel.
 fn is_on_plane(pixel: vec2<i32>, step: vec2<i32>, surface: Surface) -> bool {
     let found = depth_at(pixel + step);
     let off = found - surface.depth - dot(surface.steps, vec2<f32>(step));
@@ -18,15 +19,16 @@ fn is_on_plane(pixel: vec2<i32>, step: vec2<i32>, surface: Surface) -> bool {
     return found != 0.0 && beneath <= 0.5 * height_at(surface.position);
 }
 
-// Whether a surface goes on to a neighbour of its pixel as the pixel's plane does. Two pixels are on any plane that follows
-// from them, however the surface bends between them: it takes a third one in line.
+// Returns whether a surface continues to a neighbour on the pixel's plane. Two pixels alone always lie on a
+// common plane, however the surface bends between them, so a third pixel in line must lie on it, too.
 fn goes_on(pixel: vec2<i32>, axis: vec2<i32>, surface: Surface) -> bool {
     return is_on_plane(pixel, axis, surface)
         && (is_on_plane(pixel, -axis, surface) || is_on_plane(pixel, 2 * axis, surface));
 }
 
-// Whether the surface goes on to a place in its pixel, from the first sample, in pixels, as the triangle's plane does. beside: how
-// far that plane leaves the pixel's there, in metres.
+// Returns whether the surface continues on the triangle's plane to a place in its pixel, relative to the
+// first sample, in pixels. beside: distance between that plane and the pixel's plane at this place, in
+// metres.
 fn reaches(pixel: vec2<i32>, surface: Surface, place: vec2<f32>, beside: f32) -> bool {
     if beside > 0.5 * height_at(surface.position) {
         return false;
@@ -36,21 +38,22 @@ fn reaches(pixel: vec2<i32>, surface: Surface, place: vec2<f32>, beside: f32) ->
     return (place.x == 0.0 || goes_on(pixel, across, surface)) && (place.y == 0.0 || goes_on(pixel, down, surface));
 }
 
-// By the depth buffer, at the first sample.
+// Returns the start at the first sample from the depth buffer.
 fn start_by_depth(surface: Surface) -> Start {
     let height = max(height_at(surface.position), abs(dot(surface.off, surface.normal)));
     return Start(surface.position, surface.normal, height, vec2<f32>(0.0), false);
 }
 
-// Where rays from a triangle at the pixel's first sample start. Beside the triangle its plane may lie beneath the neighbour.
+// Returns the start of rays on a triangle at the pixel's first sample. If the ray misses the triangle, its
+// plane may lie beneath the neighbouring triangle, so rays start higher.
 fn start_on(met: shadowfit_rays_Met, position: vec3<f32>, surface: Surface) -> Start {
     let least = height_at(position);
     let height = select(max(least, beside_of(surface)), least, met.is_inside);
     return Start(position, met.normal, height, vec2<f32>(0.0), true);
 }
 
-// The point that the eye sees at a place in a pixel: on the triangle of the first sample, or on its plane where the surface goes
-// on as a plane, and else the first sample's.
+// Returns the visible point at a place in a pixel. It lies on the triangle of the first sample, or on its
+// plane if the surface continues on it. Otherwise it is the point of the first sample.
 fn start_at(pixel: vec2<i32>, surface: Surface, triangle: Triangle, place: vec2<f32>) -> Start {
     if triangle.slot == SHADOWFIT_RAYS_NONE {
         return start_by_depth(surface);
@@ -80,13 +83,14 @@ fn start_at_first(pixel: vec2<i32>, surface: Surface, triangle: Triangle) -> Sta
     return start_on(met, sight.middle + sight.direction * along, surface);
 }
 
-// Directions across the light, of unit length.
+// Unit directions perpendicular to the light.
 struct Across {
     x: vec3<f32>,
     y: vec3<f32>,
 }
 
-// Those of a pixel, turned about the light (T. Duff et al., "Building an orthonormal basis, revisited", 2017).
+// Returns the directions perpendicular to the light for a pixel, rotated about the light (T. Duff et al.,
+// "Building an orthonormal basis, revisited", 2017).
 fn across_light(pixel: vec2<i32>) -> Across {
     let n = shadowfit_receiver.to_light;
     let side = select(-1.0, 1.0, n.z >= 0.0);
@@ -98,9 +102,9 @@ fn across_light(pixel: vec2<i32>) -> Across {
     return Across(x * cos(turn) + y * sin(turn), y * cos(turn) - x * sin(turn));
 }
 
-// A factor with the bit that tells it from one that was not traced, still in 0..=1.
+// Returns a factor with the bit of traced pixels, still in 0..=1.
 fn traced(factor: f32) -> f32 {
-    // The least and the greatest with that bit that no device rounds: the lesser ones may be flushed to zero.
+    // Least and greatest value with this bit that devices do not round. Smaller ones may be flushed to zero.
     let least = bitcast<f32>(0x00800001u);
     let greatest = bitcast<f32>(0x3f7fffffu);
     return bitcast<f32>(bitcast<u32>(clamp(factor, least, greatest)) | TRACED_BIT);
@@ -121,7 +125,7 @@ fn unsure_at(index: u32) -> Unsure {
     return Unsure(pixel, surface, Triangle(listed.slot, listed.instance), across_light(pixel));
 }
 
-// Whether the light reaches a point of a pixel: 1 or 0.
+// Returns whether the light reaches a point of a pixel: 1 or 0.
 fn lit_at(unsure: Unsure, start: Start, in_sun: vec2<f32>) -> f32 {
     if start.is_exact && dot(start.normal, shadowfit_receiver.to_light) <= 0.0 {
         return 0.0;
@@ -130,18 +134,20 @@ fn lit_at(unsure: Unsure, start: Start, in_sun: vec2<f32>) -> f32 {
     let aside = in_sun * edges.sun_tangent;
     let beside = unsure.across.x * aside.x + unsure.across.y * aside.y;
     let ray = normalize(shadowfit_receiver.to_light + beside);
-    // Points of large triangles may lie deeper than their rays start above them.
+    // Positions on large triangles may be deeper than the height of the ray's start.
     let beneath = max(edges.vertex_rounding - start.height, 0.0);
     let reach = beneath / max(dot(start.normal, ray), SHADOWFIT_MIN_COSINE);
     return select(1.0, 0.0, shadowfit_rays_blocked_above(point, ray, start.normal, reach));
 }
 
-// What the threads of a workgroup find: of each pixel what the map has in the way, then of each ray whether light reaches its
-// point, what the map says of it, its part of what the map says of the whole pixel, and whether the point lies off the plane.
+// Results of a workgroup's threads. Per pixel: the casters that the map contains. Per ray: whether light
+// reaches its point, the map's estimate for the ray, the sum of the thread's look-ups over the whole pixel,
+// and whether the point is off the plane.
 var<workgroup> casters: array<vec2<f32>, PIXELS>;
 var<workgroup> found: array<vec4<f32>, TRACE_THREADS>;
 
-// Whether the map cannot be looked up where a ray starts: another point stands for it, or it lies off the pixel's plane.
+// Returns whether the map's estimate is invalid at the start of a ray: another point replaces it, or it lies
+// off the pixel's plane.
 fn is_off(surface: Surface, start: Start, place: vec2<f32>) -> bool {
     let above = abs(dot(start.position - surface.position, surface.normal));
     let is_other = any(start.place != place);
@@ -160,7 +166,7 @@ fn found_by(unsure: Unsure, at: u32, of_group: u32) -> vec4<f32> {
     return vec4<f32>(lit_at(unsure, start, ray.zw), expected, part, select(0.0, 1.0, is_off(unsure.surface, start, ray.xy)));
 }
 
-// A thread for each ray: those of a pixel are neighbours.
+// One thread per ray. Rays of the same pixel are neighbours.
 @compute @workgroup_size(TRACE_THREADS)
 fn trace(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -188,7 +194,7 @@ fn trace(
         for (var ray = 0u; ray < POINTS; ray += 1u) {
             sum += found[thread + ray];
         }
-        // Rays say what the map is wrong by where they are: by as much it is taken to be wrong as a whole.
+        // The mean error of the estimate at the rays' points corrects the estimate for the whole pixel.
         let by_map = sum.z / f32(LOOK_UPS) + (sum.x - sum.y) / f32(POINTS);
         let share = saturate(select(by_map, sum.x / f32(POINTS), sum.w > 0.0));
         let factor = traced(mix(share, 1.0, shadowfit_faded(unsure.surface.position)));

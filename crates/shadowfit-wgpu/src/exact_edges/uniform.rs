@@ -1,22 +1,23 @@
-//! The uniform of the edge passes, and the points of a pixel that rays start from.
+//! Uniform of the edge passes, and the start points of a pixel's rays.
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::settings::Edges;
 
 use crate::wgsl::in_disc;
 
-/// Most points of a pixel.
+/// Maximum number of points per pixel.
 pub(super) const MAX_POINTS: usize = Edges::MAX_SAMPLES as usize;
-/// Most boxes around casters of which too little is known.
+/// Maximum number of boxes around unknown casters.
 pub(super) const MAX_UNKNOWN: usize = 64;
 
-/// Where WebGPU's first sample of four lies, from the pixel's centre, in pixels.
+/// Position of WebGPU's first sample of four relative to the pixel's centre, in pixels.
 const FIRST_OF_FOUR: [f32; 2] = [-0.125, -0.375];
 
-/// Four points whose rows and columns all differ: each edge that crosses the pixel has steps of a quarter.
+/// Four points with different rows and columns, so that each edge that crosses the pixel has steps of a
+/// quarter.
 const ROTATED_GRID: [[f32; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]];
 
-/// The uniform of the passes: `Edges` in WGSL, where the fields are explained.
+/// Uniform of the passes: `Edges` in WGSL, where the fields are explained.
 #[allow(missing_docs)]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -39,7 +40,7 @@ pub struct EdgeUniform {
     pub unknown: [UnknownUniform; MAX_UNKNOWN],
 }
 
-/// A box around casters of which the maps, or the rays, know too little: `Unknown` in WGSL.
+/// Box around casters that the maps or the rays lack: `Unknown` in WGSL.
 #[allow(missing_docs)]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -50,14 +51,15 @@ pub struct UnknownUniform {
     pub is_filtered: u32,
 }
 
-/// Points of a pixel, from its first sample, in pixels, and the greatest distance of one across or down; all rays to a
-/// soft sun start from that sample. `samples`: those of the depth buffer per pixel.
+/// Returns the points of a pixel relative to its first sample, in pixels, and their greatest distance across
+/// or down. With a soft sun all rays start from that sample. `samples` is the number of samples of the depth
+/// buffer per pixel.
 pub(super) fn points(count: u32, samples: u32, is_soft: bool) -> ([[f32; 4]; MAX_POINTS], f32) {
     let mut points = [[0.0; 4]; MAX_POINTS];
     let first = if samples > 1 { FIRST_OF_FOUR } else { [0.0; 2] };
     let mut reach = 0.0_f32;
     for (index, point) in (0..count).zip(&mut points) {
-        // Penumbrae are smooth by themselves.
+        // Penumbrae need no antialiasing.
         let [x, y] = if is_soft { first } else { from_centre(index, count) };
         let [across, down] = if is_soft { in_disc(index, count) } else { [0.0; 2] };
         *point = [x - first[0], y - first[1], across, down];
@@ -66,9 +68,9 @@ pub(super) fn points(count: u32, samples: u32, is_soft: bool) -> ([[f32; 4]; MAX
     (points, reach)
 }
 
-/// One of several points of a pixel, from its centre, in pixels: the centre alone, a rotated grid of four, and else
-/// points of equal steps down whose columns are the bit-reversed rows (J. Hammersley, "Monte Carlo methods for solving
-/// multivariable problems", 1960).
+/// Returns one of several points of a pixel relative to its centre, in pixels. A single point is the centre,
+/// and four points form a rotated grid. Any other number of points has equal steps down, and the bit-reversed
+/// rows as columns (J. Hammersley, "Monte Carlo methods for solving multivariable problems", 1960).
 fn from_centre(index: u32, count: u32) -> [f32; 2] {
     match count {
         1 => [0.0; 2],

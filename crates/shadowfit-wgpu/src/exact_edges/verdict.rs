@@ -1,8 +1,9 @@
-//! The verdicts of the pass that classifies pixels, for Rust and for WGSL.
+//! Verdicts of the pass that classifies pixels, for Rust and for WGSL.
 
-/// The result of comparing a pixel, or the texels around a point, with the maps.
+/// Result of comparing a pixel, or the texels around a point, with the maps.
 ///
-/// The order matters: up to [`Self::Filtered`] a pixel faces the light within the distance of shadows.
+/// The order matters: pixels with a verdict up to [`Self::Filtered`] face the light within the shadow
+/// distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Verdict {
@@ -18,7 +19,7 @@ pub(crate) enum Verdict {
     TooWide,
     /// The surface faces away from the light.
     FacesAway,
-    /// The point lies beyond the distance of shadows.
+    /// The point lies beyond the shadow distance.
     Beyond,
     /// The depth buffer holds no surface.
     NoSurface,

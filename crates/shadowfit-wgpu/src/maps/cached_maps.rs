@@ -1,4 +1,4 @@
-//! Shadow maps that keep the parts where nothing moved: the drawing half of [`SunShadows`](crate::SunShadows).
+//! Shadow maps whose unchanged regions are kept: the drawing half of [`SunShadows`](crate::SunShadows).
 
 mod passes;
 
@@ -14,40 +14,41 @@ use shadowfit::cache::UpdatedRect;
 
 pub use passes::{DrawRegion, ShadowPass};
 
-/// The shadow maps of one light, and the parts of them that are kept from frame to frame.
+/// Shadow maps of one light, and the regions that are kept from frame to frame.
 #[derive(Debug)]
 pub(crate) struct CachedMaps {
-    /// Which maps may wait for another frame.
+    /// Maps that may wait for another frame.
     pub(crate) schedule: UpdateSchedule,
-    /// Whether static casters are kept; without that every map is redrawn in every frame. Pictures are the same either
-    /// way, up to rounding.
+    /// Whether static casters are kept. If not, every map is redrawn in every frame, with identical results
+    /// up to rounding.
     pub(crate) caching: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
-    /// Whether the look-up reads these maps first. Maps that are faded out, or not read yet, leave it as it is.
+    /// Whether the look-up reads these maps as its present set. If not, they fade out or are not read yet,
+    /// and do not change the present set's uniform.
     pub(crate) is_present: bool,
     device: wgpu::Device,
     map: ShadowMap,
     layers: Layers,
     cache: MapCache,
-    /// How often each map was drawn.
+    /// Number of times that each map was drawn.
     #[cfg(feature = "rays")]
     drawn: [u64; crate::MAX_MAPS],
-    /// From where the look-up reads them.
+    /// View of the look-ups.
     view: Option<MapView>,
-    /// What maps that wait show wrongly.
+    /// Casters whose movement is missing in maps that wait.
     #[cfg(feature = "rays")]
     stale: Vec<StaleMap>,
-    /// Whether the light gives nothing.
+    /// Whether the light is off.
     is_off: bool,
 }
 
 impl CachedMaps {
-    /// Makes the maps: in a texture of the engine's, if there is one.
+    /// Creates the maps, in the engine's texture if there is one.
     ///
     /// # Errors
     ///
-    /// As [`ShadowMap::in_texture`].
+    /// The errors of [`ShadowMap::in_texture`].
     pub(crate) fn new(
         device: &wgpu::Device,
         descriptor: &ShadowMapDescriptor,
@@ -60,7 +61,8 @@ impl CachedMaps {
         Ok(Self::of(device, map))
     }
 
-    /// The second set of maps of a descriptor that cross-fades, drawn by the same rules. The look-up does not read it.
+    /// Creates the second set of maps for a descriptor that cross-fades, with the same settings. The look-up
+    /// does not read it yet.
     pub(crate) fn second(&self) -> Self {
         let (schedule, caching, culling) = (self.schedule, self.caching, self.culling);
         Self { schedule, caching, culling, is_present: false, ..Self::of(&self.device, self.map.second(&self.device)) }
@@ -85,40 +87,41 @@ impl CachedMaps {
         }
     }
 
-    /// Moves the view depths between which shadows fade, in metres.
+    /// Changes the view depths between which shadows fade, in metres.
     pub(crate) fn set_fade(&mut self, fade: [f32; 2]) {
         self.map.set_fade(fade);
     }
 
-    /// The maps on the GPU: layouts and states for the engine's pipelines.
+    /// Returns the maps on the GPU, with layouts and states for the engine's pipelines.
     pub(crate) fn map(&self) -> &ShadowMap {
         &self.map
     }
 
-    /// The maps that are read in this frame. A map that waits is the one that was drawn last.
+    /// Returns the maps that shaders read in this frame. For a map that waits, this is the map that was drawn
+    /// last.
     pub(crate) fn maps(&self) -> &[FittedMap] {
         &self.cache.plan().maps
     }
 
-    /// From where the look-up reads them; `None` before the first frame, and while the light gives nothing.
+    /// Returns the view of the look-ups; `None` before the first frame, and while the light is off.
     pub(crate) fn view(&self) -> Option<&MapView> {
         self.view.as_ref()
     }
 
-    /// How often each map was drawn: a number that changes with what it holds.
+    /// Returns the number of times that each map was drawn. It changes whenever the map's content changes.
     #[cfg(feature = "rays")]
     pub(crate) fn drawn(&self) -> &[u64; crate::MAX_MAPS] {
         &self.drawn
     }
 
-    /// What maps that wait for another frame show wrongly.
+    /// Returns the casters whose movement is missing in maps that wait for another frame.
     #[cfg(feature = "rays")]
     pub(crate) fn stale(&self) -> &[StaleMap] {
         &self.stale
     }
 
-    /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
-    /// metres, relative to an origin in world space.
+    /// Redraws the static casters in a box in the next frame. Call it if a caster changed its shape but not
+    /// its bounding box. The box is in metres, relative to `origin` in world space.
     pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         self.cache.invalidate(aabb, origin);
     }
@@ -128,12 +131,12 @@ impl CachedMaps {
         self.cache.invalidate_all();
     }
 
-    /// Whether the light gives nothing.
+    /// Returns whether the light is off.
     pub(crate) fn is_off(&self) -> bool {
         self.is_off
     }
 
-    /// Makes all factors 0 until the next [`Self::update`]. What the layers hold stays.
+    /// Makes all factors 0 until the next [`Self::update`]. The content of the layers is kept.
     pub(crate) fn turn_off(&mut self, queue: &wgpu::Queue) {
         self.cache.turn_off();
         self.view = None;
@@ -141,10 +144,11 @@ impl CachedMaps {
         self.is_off = true;
     }
 
-    /// Finds which parts of a frame's maps must be drawn, and writes the uniforms for shaders that read them from `view`.
-    /// [`Self::pass`] then returns the passes of this frame. They count as drawn from the next call on.
+    /// Finds the regions of a frame's maps that must be drawn, and writes the uniforms for shaders that read
+    /// the maps from `view`. Afterwards [`Self::pass`] returns the passes of this frame. They count as drawn
+    /// from the next call on.
     ///
-    /// Maps with a [grid position](FittedMap::grid_position) can be kept; others are redrawn in each frame.
+    /// Maps with a [grid position](FittedMap::grid_position) can be kept. Others are redrawn in each frame.
     pub(crate) fn update(
         &mut self,
         queue: &wgpu::Queue,
@@ -153,7 +157,7 @@ impl CachedMaps {
     ) -> Result<(), ShadowMapError> {
         self.skip();
         super::view::check(self.map.descriptor(), view, frame.maps)?;
-        // 1. The passes.
+        // 1. Plan the passes.
         self.cache.settings = self.cache_settings();
         self.cache.update(frame).map_err(ShadowMapError::View)?;
         if self.cache.has_static_layers() && self.layers.split(&self.device, &self.map).is_err() {
@@ -165,7 +169,7 @@ impl CachedMaps {
         self.cache.find_stale(&frame.casters, &mut self.stale);
         #[cfg(feature = "rays")]
         self.cache.plan().passes.iter().for_each(|pass| self.drawn[pass.map] += 1);
-        // 2. The uniforms of the shaders.
+        // 2. Write the uniforms of the shaders.
         self.write_uniforms(queue, view)?;
         self.is_off = false;
         self.layers.prepare(&self.device, queue, self.cache.plan());
@@ -178,33 +182,35 @@ impl CachedMaps {
         if self.is_present { self.map.prepare(queue, view, maps) } else { self.map.prepare_casters(queue, view, maps) }
     }
 
-    /// Lets the look-up mix another set of maps into these, after [`Self::update`] of both. `share`: that of these.
+    /// Lets the look-up blend another set of maps into this one, after [`Self::update`] of both. `share` is
+    /// the share of this set.
     pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, view: &MapView, share: f32) {
         self.map.fade_from(queue, &before.map, before.maps(), view, share);
     }
 
-    /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
+    /// Returns the rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
     pub(crate) fn updates(&self) -> Vec<UpdatedRect> {
         self.cache.updates()
     }
 
-    /// Whether the static casters of a map, by its number, are kept for later frames.
+    /// Returns whether the static casters of a map are kept for later frames. `map` is its index.
     pub(crate) fn is_cached(&self, map: usize) -> bool {
         self.cache.is_kept(map)
     }
 
-    /// Which maps hold each caster, by its number; see [`MapCache::maps_by_caster`].
+    /// Returns the maps that contain each caster, by its number; see [`MapCache::maps_by_caster`].
     pub(crate) fn maps_by_caster(&self, casters: &Casters<'_>) -> Vec<u8> {
         self.cache.maps_by_caster(casters)
     }
 
-    /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
-    /// whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be drawn
-    /// after this. A light that is off gives nothing from anywhere.
+    /// Writes the uniforms for another image with the same maps, relative to another origin or with view
+    /// depths from another eye. The maps stay as they were drawn. Do not draw their passes after this call.
+    /// It does nothing while the light is off.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
+    /// [`ShadowMapError::Forward`] for a direction that is not of unit length. On an error, no uniform is
+    /// written.
     pub(crate) fn set_view(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
         if self.is_off { Ok(()) } else { self.write_uniforms(queue, view) }
     }
@@ -212,7 +218,7 @@ impl CachedMaps {
     fn cache_settings(&self) -> CacheSettings {
         let descriptor = self.map.descriptor();
         CacheSettings {
-            // Colours are drawn with a depth buffer that is not stored.
+            // Colour formats are drawn with a depth buffer that is not stored, so that they cannot be kept.
             caching: self.caching && descriptor.format.is_depth(),
             culling: self.culling,
             schedule: self.schedule,

@@ -1,4 +1,5 @@
-// Sets rectangles of a depth map to the far value: a triangle over all of it, cut by the scissor rectangle.
+// Sets rectangles of a depth map to the far value: a triangle over the whole map, clipped by the scissor
+// rectangle.
 
 @vertex
 fn vs_clear(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {

@@ -1,18 +1,18 @@
-// Takes the static casters' depths back into the shown layer, where something that moves was drawn over them. Comes
-// after the caster's WGSL and after clear.wgsl, whose triangle mends rectangles.
+// Restores the static casters' depths in the shown layer where moving casters were drawn over them. Follows
+// the caster's WGSL and clear.wgsl, whose triangle restores rectangles.
 
 @group(0) @binding(0) var static_depth: texture_2d<f32>;
-// Takes the nearest texel: OpenGL's shaders cannot load from depth textures.
+// Reads the nearest texel: OpenGL's shaders cannot load from depth textures.
 @group(0) @binding(1) var nearest: sampler;
 
-// The sides of a box: its corners' bits, two triangles a side, counter-clockwise from outside.
+// Sides of a box: bits of the corners, two triangles per side, counter-clockwise from outside.
 const CORNERS: array<u32, 36> = array<u32, 36>(
     0u, 4u, 6u, 0u, 6u, 2u, 1u, 3u, 7u, 1u, 7u, 5u,
     0u, 1u, 5u, 0u, 5u, 4u, 2u, 6u, 7u, 2u, 7u, 3u,
     0u, 2u, 3u, 0u, 3u, 1u, 4u, 5u, 7u, 4u, 7u, 6u,
 );
 
-// The outline of a box as seen by the light, flat within the range of depths.
+// Outline of a box as the light sees it, flattened into the range of depths.
 @vertex
 fn vs_mend_box(
     @builtin(vertex_index) index: u32, @location(0) box_min: vec3<f32>, @location(1) box_max: vec3<f32>,

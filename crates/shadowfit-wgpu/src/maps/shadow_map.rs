@@ -1,4 +1,4 @@
-//! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
+//! Shadow maps as a GPU resource: textures, clears, bind groups, and one pass per map.
 
 use core::mem::offset_of;
 
@@ -16,7 +16,7 @@ use super::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
 use super::view::check;
 use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
 
-/// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
+/// Shadow maps of one light: layers of equal size in one texture array, with their passes and bind groups.
 #[derive(Debug)]
 pub struct ShadowMap {
     descriptor: ShadowMapDescriptor,
@@ -31,42 +31,43 @@ pub struct ShadowMap {
     receiver_group: wgpu::BindGroup,
     receiver_uniform: wgpu::Buffer,
     volumes: Vec<CasterVolume>,
-    /// The engine's texture, where the maps lie in one.
+    /// Texture of the engine that contains the maps, if there is one.
     texture: Option<MapTexture>,
 }
 
 /// One map of the array.
 #[derive(Debug)]
 struct Layer {
-    /// Depth attachment: the map itself, or the depth buffer beside a colour map.
+    /// Depth attachment: the map itself, or the depth buffer that belongs to a colour map.
     depth: wgpu::TextureView,
     /// Colour attachment of colour formats.
     color: Option<wgpu::TextureView>,
     caster_uniform: wgpu::Buffer,
     caster_group: wgpu::BindGroup,
-    /// Width and height of the corner that the present map uses, and where its first texel is stored, in texels.
+    /// Width and height of the corner that the current map uses, and the position of its first texel, in
+    /// texels.
     used: UVec2,
     texel_offset: UVec2,
 }
 
 impl ShadowMap {
-    /// Makes the textures and bind groups.
+    /// Creates the textures and bind groups.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError`] if the descriptor is not possible, or not on this device.
+    /// [`ShadowMapError`] if the descriptor is invalid, or not supported by this device.
     pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
         descriptor.check(device)?;
         Self::made(device, descriptor, &Textures::new(device, descriptor, None)?)
     }
 
-    /// As [`Self::new`], with maps that lie in a texture that the engine made and owns, which
-    /// [`ShadowMapDescriptor::texture`] describes. Nothing but the layers from [`MapTexture::base_layer`] on is cleared,
-    /// written or read, one for each map. Colour formats have a depth buffer beside them, which is made here.
+    /// Creates the maps in a texture that the engine owns. [`ShadowMapDescriptor::texture`] describes the
+    /// required texture. Only the layers from [`MapTexture::base_layer`] on are cleared, written and read,
+    /// one per map. For colour formats, a depth buffer is created in addition.
     ///
     /// # Errors
     ///
-    /// As [`Self::new`], and [`ShadowMapError::Texture`] if the texture cannot hold the maps.
+    /// The errors of [`Self::new`], and [`ShadowMapError::Texture`] if the texture cannot hold the maps.
     pub fn in_texture(
         device: &wgpu::Device,
         descriptor: &ShadowMapDescriptor,
@@ -118,8 +119,8 @@ impl ShadowMap {
         }
     }
 
-    /// The second set of maps of a descriptor that [cross-fades](ShadowMapDescriptor::cross_fades), with the textures and
-    /// the look-up of the first one.
+    /// Creates the second set of maps for a descriptor that [cross-fades](ShadowMapDescriptor::cross_fades),
+    /// with the textures and the look-up of the first set.
     pub(crate) fn second(&self, device: &wgpu::Device) -> Self {
         let Layer { depth, color, .. } = &self.layers[0];
         let texture = |view: &wgpu::TextureView, base_layer| MapTexture { texture: view.texture().clone(), base_layer };
@@ -146,57 +147,58 @@ impl ShadowMap {
         }
     }
 
-    /// The descriptor of the maps.
+    /// Returns the descriptor of the maps.
     pub fn descriptor(&self) -> &ShadowMapDescriptor {
         &self.descriptor
     }
 
-    /// The engine's texture that the maps lie in, if it [handed one in](Self::in_texture).
+    /// Returns the engine's texture that contains the maps, if it [passed one in](Self::in_texture).
     pub fn texture(&self) -> Option<&MapTexture> {
         self.texture.as_ref()
     }
 
-    /// View of all maps as an array, for tools that show them.
+    /// Returns a view of all maps as an array, for debug views.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.view
     }
 
-    /// Layout of the bind group that [`crate::caster_wgsl`] reads.
+    /// Returns the layout of the bind group that [`crate::caster_wgsl`] reads.
     pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
         &self.caster_layout
     }
 
-    /// Layout of the bind group that [`crate::receiver_wgsl`] reads: in vertex, fragment and compute shaders.
+    /// Returns the layout of the bind group that [`crate::receiver_wgsl`] reads, for vertex, fragment and
+    /// compute shaders.
     pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
         &self.receiver_layout
     }
 
-    /// The bind group that [`crate::receiver_wgsl`] reads.
+    /// Returns the bind group that [`crate::receiver_wgsl`] reads.
     pub fn receiver_group(&self) -> &wgpu::BindGroup {
         &self.receiver_group
     }
 
-    /// The entries of [`Self::receiver_layout`], for a layout of the engine's own that has more than these: another
-    /// sun's, the camera, materials. They begin at [`ShadowMapDescriptor::first_binding`].
+    /// Returns the entries of [`Self::receiver_layout`], for a layout of the engine with further entries,
+    /// such as another sun, the camera or materials. They begin at [`ShadowMapDescriptor::first_binding`].
     ///
-    /// | binding | holds | as |
+    /// | binding | content | type |
     /// |---|---|---|
-    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes; [`FadingUniform`] where the look-up [cross-fades](ShadowMapDescriptor::cross_fades) | uniform buffer |
+    /// | first | [`ReceiverUniform`], which [`Self::prepare`] writes; [`FadingUniform`] if the look-up [cross-fades](ShadowMapDescriptor::cross_fades) | uniform buffer |
     /// | first + 1 | the maps, one layer each | array of depth textures, or of unfilterable float textures for colour formats |
-    /// | first + 2 | how depths are compared; only for depth formats | comparison sampler |
+    /// | first + 2 | comparison of depths, only for depth formats | comparison sampler |
     pub fn receiver_layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
         layout_entries(self.descriptor.first_binding, RECEIVER_STAGES, receiver_types(&self.descriptor))
     }
 
-    /// The resources for [`Self::receiver_layout_entries`], for a bind group of the engine's own. They are the same in
-    /// every frame, until the maps are recreated.
+    /// Returns the resources for [`Self::receiver_layout_entries`], for a bind group of the engine. They do
+    /// not change until the maps are recreated.
     pub fn receiver_entries(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
         let resources = receiver_resources(&self.receiver_uniform, &self.view, &self.sampler);
         group_entries(self.descriptor.first_binding, &resources[..receiver_types(&self.descriptor).len()])
     }
 
-    /// Depth state of the engine's caster pipelines. No hardware bias: biases are applied in texels
-    /// where the map is read, in the same way for every format.
+    /// Returns the depth state of the engine's caster pipelines. It has no hardware bias, because biases are
+    /// applied when the map is read, in the same way for every format.
     pub fn depth_stencil_state(&self) -> wgpu::DepthStencilState {
         wgpu::DepthStencilState {
             format: self.descriptor.depth_format(),
@@ -210,39 +212,41 @@ impl ShadowMap {
         }
     }
 
-    /// Primitive state of the engine's caster pipelines, of triangle lists: both sides are drawn, and
-    /// depth is clamped where the descriptor says so and the device can.
+    /// Returns the primitive state of the engine's caster pipelines, for triangle lists. Both sides are
+    /// drawn. Depth is clamped if the descriptor requires it and the device supports it.
     pub fn primitive_state(&self) -> wgpu::PrimitiveState {
         let unclipped_depth = self.descriptor.depth_clamp && !self.clamps_in_fragment;
         wgpu::PrimitiveState { unclipped_depth, ..Default::default() }
     }
 
-    /// Colour target of the engine's caster pipelines, if the format has one. Their fragment shader then writes
-    /// `shadowfit_caster_color` of z of `@builtin(position)` to location 0, or, where it [clamps
-    /// depth](Self::clamps_in_fragment), of the clamped depth.
+    /// Returns the colour target of the engine's caster pipelines, if the format has one. Their fragment
+    /// shader then writes `shadowfit_caster_color` of z of `@builtin(position)` to location 0. If it [clamps
+    /// depth](Self::clamps_in_fragment), it passes the clamped depth instead.
     pub fn color_target(&self) -> Option<wgpu::ColorTargetState> {
         (!self.descriptor.format.is_depth()).then(|| self.descriptor.texture_format().into())
     }
 
-    /// Whether the engine's caster pipelines have to clamp depth, since the device has no
-    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`]. Their vertex shader then passes on `shadowfit_caster_depth(position)` as
-    /// a varying, and their fragment shader writes `shadowfit_clamped_depth` of it to `@builtin(frag_depth)`:
-    /// `shadowfit_caster_position` gives a meaningless depth there, which is never clipped.
+    /// Returns whether the engine's caster pipelines must clamp depth, because the device lacks
+    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`]. Their vertex shader then passes
+    /// `shadowfit_caster_depth(position)` on as a varying, and their fragment shader writes
+    /// `shadowfit_clamped_depth` of it to `@builtin(frag_depth)`. `shadowfit_caster_position` returns a
+    /// meaningless depth in this case, which is never clipped.
     pub fn clamps_in_fragment(&self) -> bool {
         self.clamps_in_fragment
     }
 
-    /// Volumes of the prepared maps' casters, relative to the origin of [`Self::prepare`].
+    /// Returns the caster volumes of the prepared maps, relative to the origin of [`Self::prepare`].
     pub fn volumes(&self) -> &[CasterVolume] {
         &self.volumes
     }
 
-    /// Depth of the far plane, to which the maps are cleared.
+    /// Returns the depth of the far plane, to which the maps are cleared.
     pub fn far_depth(&self) -> f32 {
         if self.descriptor.depth == DepthConvention::Reversed { 0.0 } else { 1.0 }
     }
 
-    /// Bind group of a map's matrix, which [`crate::caster_wgsl`] reads: for engines whose passes bind it themselves.
+    /// Returns the bind group of a map's matrix, which [`crate::caster_wgsl`] reads, for engines that bind it
+    /// themselves.
     ///
     /// # Panics
     ///
@@ -251,29 +255,34 @@ impl ShadowMap {
         &self.layers[index].caster_group
     }
 
-    /// Views of a map that its depths are drawn into.
+    /// Returns the depth attachment of a map.
     pub(crate) fn depth_attachment(&self, index: usize) -> &wgpu::TextureView {
         &self.layers[index].depth
     }
 
-    /// Writes the uniforms for this frame's maps; maps that are read by view depth are in order of their `far`. Map i
-    /// is drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than
-    /// a layer uses its corner. A layer without a map is neither drawn nor read.
+    /// Writes the uniforms for this frame's maps. Map i is drawn into layer i. Maps that are selected by view
+    /// depth must be sorted by their `far`. Positions in the shaders are relative to the view's origin. A fit
+    /// with fewer texels than a layer uses a corner of it. A layer without a map is neither drawn nor read.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::TooManyFits`] for more fits than layers; [`ShadowMapError::Fit`] if a fit has
-    /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the
-    /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::TexelOffset`] if a map wraps around
-    /// beyond its layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
-    /// are not finite and for a direction that is not of unit length. Nothing is written then.
+    /// - [`ShadowMapError::TooManyFits`] for more fits than layers
+    /// - [`ShadowMapError::Fit`] if a fit has more texels than a layer or another depth convention
+    /// - [`ShadowMapError::Order`] if the ends of maps that are selected by view depth do not ascend
+    /// - [`ShadowMapError::TexelOffset`] if a map that wraps around does not fill its layer, or begins
+    ///   outside it
+    /// - [`ShadowMapError::Bias`] for biases that are not finite
+    /// - [`ShadowMapError::Forward`] for a direction that is not of unit length
+    ///
+    /// On an error, no uniform is written.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[FittedMap]) -> Result<(), ShadowMapError> {
         self.prepare_casters(queue, view, maps)?;
         self.write_receiver(queue, &ReceiverUniform::new(maps, view, &self.descriptor));
         Ok(())
     }
 
-    /// The same for maps that the look-up does not read yet, or fades out: it stays as it is.
+    /// Prepares maps that the look-up does not read yet, or that fade out. The look-up's present set stays
+    /// unchanged.
     pub(crate) fn prepare_casters(
         &mut self,
         queue: &wgpu::Queue,
@@ -294,12 +303,12 @@ impl ShadowMap {
         Ok(())
     }
 
-    /// Writes what the look-up reads: this set of maps alone.
+    /// Writes the uniform for a look-up into this set of maps alone.
     fn write_receiver(&self, queue: &wgpu::Queue, now: &ReceiverUniform) {
         queue.write_buffer(&self.receiver_uniform, 0, &self.of_set(now));
     }
 
-    /// The uniform of a look-up into this set of maps alone.
+    /// Returns the uniform of a look-up into this set of maps alone.
     fn of_set(&self, now: &ReceiverUniform) -> Vec<u8> {
         let (now, first_layer) = (now.in_layers(self.first_layer), self.first_layer);
         let fading = FadingUniform { now, share: 1.0, first_layer, ..FadingUniform::default() };
@@ -310,19 +319,19 @@ impl ShadowMap {
         }
     }
 
-    /// Layer of its first map in the texture.
+    /// Returns the layer of the first map in the texture.
     #[cfg(feature = "rays")]
     pub(crate) fn first_layer(&self) -> u32 {
         self.first_layer
     }
 
-    /// What the look-up reads of maps from elsewhere than in the picture: this set of maps alone.
+    /// Returns the uniform for a look-up into this set of maps alone, from a view other than the main pass.
     #[cfg(feature = "rays")]
     pub(crate) fn receiver_bytes(&self, view: &MapView, maps: &[FittedMap]) -> Vec<u8> {
         self.of_set(&ReceiverUniform::on_planes(maps, view, &self.descriptor))
     }
 
-    /// A bind group with another uniform for the look-up.
+    /// Creates a bind group with another uniform for the look-up.
     #[cfg(feature = "rays")]
     pub(crate) fn receiver_group_with(&self, device: &wgpu::Device, uniform: &wgpu::Buffer) -> wgpu::BindGroup {
         let resources = receiver_resources(uniform, &self.view, &self.sampler);
@@ -330,7 +339,8 @@ impl ShadowMap {
         group_from(device, "shadowfit edges", self.descriptor.first_binding, &self.receiver_layout, resources)
     }
 
-    /// Mixes another set, and its maps, into the look-up, after [`Self::prepare`]. `share`: the share of this set.
+    /// Blends another set of maps into the look-up, after [`Self::prepare`]. `share` is the share of this
+    /// set.
     pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, maps: &[FittedMap], view: &MapView, share: f32) {
         let uniform = ReceiverUniform::new(maps, view, &before.descriptor).in_layers(before.first_layer);
         let write = |offset: usize, bytes: &[u8]| queue.write_buffer(&self.receiver_uniform, offset as u64, bytes);
@@ -338,22 +348,22 @@ impl ShadowMap {
         write(offset_of!(FadingUniform, share), bytemuck::bytes_of(&share));
     }
 
-    /// Moves the view depths between which shadows fade, in metres, from the next frame on.
+    /// Changes the view depths between which shadows fade, in metres, from the next frame on.
     pub(crate) fn set_fade(&mut self, fade: [f32; 2]) {
         self.descriptor.fade = fade;
     }
 
-    /// Makes all factors 0, until maps are [prepared](Self::prepare) again: for a light that gives nothing. There is
-    /// nothing to draw.
+    /// Turns the light off: all factors are 0 until maps are [prepared](Self::prepare) again, and
+    /// [`Self::render`] draws no map.
     pub fn turn_off(&mut self, queue: &wgpu::Queue) {
         self.write_receiver(queue, &ReceiverUniform::off());
         self.volumes.clear();
     }
 
-    /// Records one pass a prepared map: cleared to the far value, the map's [`Self::caster_group`]
-    /// bound at `group`, then `draw(pass, map index, volume)`, which draws every caster that the
-    /// volume (relative to the origin) keeps. For a map that [wraps around](FittedMap::texel_offset) it is called for
-    /// each of its [`Self::parts`].
+    /// Records one pass per prepared map. It clears the layer to the far value, binds the map's
+    /// [`Self::caster_group`] at `group`, and calls `draw(pass, map index, volume)`, which must draw every
+    /// caster that intersects the volume (relative to the origin). For a map that [wraps
+    /// around](FittedMap::texel_offset), `draw` is called for each of its [`Self::parts`].
     pub fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -370,7 +380,8 @@ impl ShadowMap {
         }
     }
 
-    /// Parts in which a map is drawn: one, or up to four for a map that [wraps around](FittedMap::texel_offset).
+    /// Returns the parts of a map that are drawn separately: one, or up to four for a map that [wraps
+    /// around](FittedMap::texel_offset).
     ///
     /// # Panics
     ///
@@ -380,10 +391,11 @@ impl ShadowMap {
         TexelRect::all(layer.used).stored(layer.texel_offset, layer.used)
     }
 
-    /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with the
-    /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that
-    /// [wraps around](FittedMap::texel_offset) has to be drawn once for each of its [`Self::parts`]: with a viewport of
-    /// the map's size that begins at [`StoredRect::viewport`], within the scissor rectangle [`StoredRect::stored`].
+    /// Opens the pass of one map, for engines that schedule passes themselves. The layer is cleared, the
+    /// map's [`Self::caster_group`] is bound at `group`, and the viewport is set. A map that [wraps
+    /// around](FittedMap::texel_offset) must be drawn once for each of its [`Self::parts`], with a viewport
+    /// of the map's size that begins at [`StoredRect::viewport`], and the scissor rectangle
+    /// [`StoredRect::stored`].
     ///
     /// # Panics
     ///
@@ -429,19 +441,19 @@ impl ShadowMap {
     }
 }
 
-/// Sets viewport and scissor rectangle of a part of a map of the given size.
+/// Sets viewport and scissor rectangle of a part of a map of this size.
 pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, part: &StoredRect, size: UVec2) {
     let (first, size, rect) = (part.viewport().as_vec2(), size.as_vec2(), part.stored);
     pass.set_viewport(first.x, first.y, size.x, size.y, 0.0, 1.0);
     pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
 }
 
-/// The casters that a map can store.
+/// Returns the volume of the casters that a map can store.
 pub(crate) fn stored_casters(fit: &LightProjection, depth_clamp: bool) -> CasterVolume {
     CasterVolume::of_map(fit, if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None })
 }
 
-/// The layers of a set of maps, from one of the array on.
+/// Creates the layers of a set of maps, from layer `first` of the array on.
 fn layers(
     device: &wgpu::Device,
     descriptor: &ShadowMapDescriptor,
@@ -465,7 +477,7 @@ impl Layer {
         let resources = [caster_uniform.as_entire_binding()];
         let first = descriptor.first_binding;
         let caster_group = group_from(device, "shadowfit caster", first, layout, &resources);
-        // Depth buffers beside colours are not stored: both sets of maps draw with the same.
+        // The depth buffers of colour maps are not stored, so that both sets of maps can share them.
         let beside = textures.beside.as_ref().map(|texture| view(texture, index % descriptor.maps));
         let read = view(&textures.read, index);
         let (depth, color) = beside.map_or_else(|| (read.clone(), None), |beside| (beside, Some(read.clone())));
@@ -482,16 +494,16 @@ impl Layer {
 
 /// Textures of the maps.
 struct Textures {
-    /// The one that shaders read.
+    /// Texture that shaders read.
     read: MapTexture,
-    /// The depth buffers beside the colours of a colour format.
+    /// Depth buffers that belong to the colour maps of a colour format.
     beside: Option<MapTexture>,
-    /// Whether the engine made what shaders read.
+    /// Whether the engine created the texture that shaders read.
     is_handed_in: bool,
 }
 
 impl Textures {
-    /// Makes those that are not handed in.
+    /// Creates the textures that the engine did not pass in.
     fn new(
         device: &wgpu::Device,
         descriptor: &ShadowMapDescriptor,
@@ -505,7 +517,7 @@ impl Textures {
             return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
         }
         let made = |format, layers| MapTexture { texture: texture(device, descriptor, format, layers), base_layer: 0 };
-        // Shaders read an array; one more layer makes it one where it would not be.
+        // Shaders read an array. One more layer makes it an array where the backend would not.
         let layers = descriptor.layers();
         let layers = layers + u32::from(!is_array(resolution, layers, device.adapter_info().backend));
         // Devices below WebGPU's level may lack more than these flags say.
@@ -523,10 +535,10 @@ impl Textures {
     }
 }
 
-/// Usages of the textures that are made here; copies are for tools.
+/// Usages of the textures that are created here. Copies are for debug tools.
 const USAGES: wgpu::TextureUsages = ShadowMapDescriptor::USAGES.union(wgpu::TextureUsages::COPY_SRC);
 
-/// A texture of so many layers.
+/// Creates a texture with this number of layers.
 pub(crate) fn texture(
     device: &wgpu::Device,
     descriptor: &ShadowMapDescriptor,
@@ -547,7 +559,7 @@ fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -
         label: Some("shadowfit comparison"),
         mag_filter: filter,
         min_filter: filter,
-        // Maps may wrap around; look-ups in others stay half a texel inside.
+        // Maps may wrap around. Look-ups in other maps stay half a texel inside.
         address_mode_u: wgpu::AddressMode::Repeat,
         address_mode_v: wgpu::AddressMode::Repeat,
         compare: Some(match descriptor.depth {
@@ -563,10 +575,10 @@ fn caster_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgp
     layout_from(device, "shadowfit caster", descriptor.first_binding, stages, &[UNIFORM])
 }
 
-/// Stages of the engine's pipelines that may look points up.
+/// Shader stages of the engine that may use the look-up.
 const RECEIVER_STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
-/// What the look-up's bindings are.
+/// Returns the types of the look-up's bindings.
 fn receiver_types(descriptor: &ShadowMapDescriptor) -> &'static [wgpu::BindingType] {
     const COLORS: wgpu::BindingType = texture_array(wgpu::TextureSampleType::Float { filterable: false });
     const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
@@ -575,7 +587,7 @@ fn receiver_types(descriptor: &ShadowMapDescriptor) -> &'static [wgpu::BindingTy
     if descriptor.format.is_depth() { &OF_DEPTH } else { &OF_COLOR }
 }
 
-/// What the look-up's bindings hold; colour formats have no sampler.
+/// Returns the resources of the look-up's bindings. Colour formats have no sampler.
 fn receiver_resources<'a>(
     uniform: &'a wgpu::Buffer,
     view: &'a wgpu::TextureView,

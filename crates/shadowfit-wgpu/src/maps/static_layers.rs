@@ -1,7 +1,7 @@
-//! The layers of static casters, and how the shown ones are restored from them.
+//! Separate layers for static casters. Passes restore parts of the shown layers from them.
 //!
-//! WebGPU copies depth textures as a whole only, so parts are cleared and restored by drawing: a triangle within a
-//! scissor rectangle, or the outlines of boxes.
+//! WebGPU copies depth textures only as a whole. Parts are therefore cleared and restored by drawing a
+//! triangle within a scissor rectangle, or the outlines of boxes.
 
 use shadowfit::cache::{FramePlan, Layer, PassPlan};
 use shadowfit::scroll::TexelRect;
@@ -11,39 +11,39 @@ use shadowfit_gpu::{catch_errors, wgsl_module};
 
 use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
 
-/// Draws into parts of depth maps.
+/// Pipelines and layers that clear and restore parts of depth maps.
 #[derive(Debug)]
 pub(crate) struct Layers {
     clear: wgpu::RenderPipeline,
     fixed: Option<StaticLayers>,
 }
 
-/// Layers of the static casters alone, as many as the shadow map has.
+/// Layers that contain only static casters, one per map.
 #[derive(Debug)]
 struct StaticLayers {
-    /// Views of each layer, to draw into and to read from.
+    /// View and bind group of each layer, for drawing and reading.
     layers: Vec<(wgpu::TextureView, wgpu::BindGroup)>,
     mend: wgpu::RenderPipeline,
     mend_boxes: wgpu::RenderPipeline,
     boxes: wgpu::Buffer,
 }
 
-/// The arguments that open a pass of the plan.
+/// Arguments for opening a pass of the plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening<'a> {
     pub(crate) map: &'a ShadowMap,
     pub(crate) plan: &'a FramePlan,
-    /// Bind group that the engine's casters take the map's matrix from.
+    /// Index of the bind group that contains the map's matrix for the engine's casters.
     pub(crate) group: u32,
 }
 
-/// Vertices of a box.
+/// Vertices per box.
 const BOX_VERTICES: u32 = 36;
 
-/// Name of the static casters' resources, for debuggers.
+/// Label of the static casters' resources, for graphics debuggers.
 const LABEL: &str = "shadowfit static casters";
 
-/// How shaders read the depths of static casters.
+/// Bindings of the depths of static casters.
 const READ: [wgpu::BindingType; 2] = [
     texture(wgpu::TextureSampleType::Float { filterable: false }, false),
     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
@@ -56,7 +56,7 @@ impl Layers {
         Self { clear: pipeline(device, map, &Shape::new("shadowfit clear", &module, "vs_clear")), fixed: None }
     }
 
-    /// Makes the layers of static casters, unless they exist.
+    /// Creates the layers of static casters, unless they exist.
     pub(crate) fn split(&mut self, device: &wgpu::Device, map: &ShadowMap) -> Result<(), wgpu::Error> {
         if self.fixed.is_none() {
             self.fixed = Some(catch_errors(device, || StaticLayers::new(device, map))?);
@@ -64,7 +64,7 @@ impl Layers {
         Ok(())
     }
 
-    /// Uploads the rectangles and boxes of a frame's passes.
+    /// Uploads the boxes of a frame's passes.
     pub(crate) fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, plan: &FramePlan) {
         let Some(fixed) = &mut self.fixed else { return };
         let boxes: &[Aabb] = &plan.boxes;
@@ -79,7 +79,7 @@ impl Layers {
         queue.write_buffer(&fixed.boxes, 0, bytemuck::cast_slice(&floats));
     }
 
-    /// Opens a pass, and clears and restores the parts that it begins with.
+    /// Opens a pass, then clears and restores its parts.
     pub(crate) fn begin<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
@@ -133,7 +133,7 @@ impl StaticLayers {
         let format = map.depth_stencil_state().format;
         let layout = layout(device, LABEL, wgpu::ShaderStages::FRAGMENT, &READ);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some(LABEL), ..Default::default() });
-        // A texture each: OpenGL's shaders read arrays as a whole alone.
+        // Each layer is a separate texture, because OpenGL's shaders can read only whole arrays.
         let layer = || {
             let view = super::shadow_map::texture(device, descriptor, format, 1).create_view(&Default::default());
             let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&sampler)];
@@ -154,7 +154,7 @@ impl StaticLayers {
         }
     }
 
-    /// Takes rectangles and boxes of the shown layer from the static casters' layer.
+    /// Restores rectangles and boxes of the shown layer from the static casters' layer.
     fn mend(&self, opened: &mut wgpu::RenderPass<'_>, map: &ShadowMap, plan: &FramePlan, pass: &PassPlan) {
         if pass.mended.is_empty() && pass.mended_boxes.is_empty() {
             return;
@@ -179,7 +179,7 @@ impl StaticLayers {
     }
 }
 
-/// The differences between the pipelines.
+/// Differences between the pipelines.
 #[derive(Clone, Copy, Debug)]
 struct Shape<'a> {
     label: &'a str,
@@ -196,7 +196,8 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// The WGSL that clears parts of depth maps, and that takes parts of them from the static casters' layers.
+/// Returns the WGSL that clears parts of depth maps, and the WGSL that restores parts from the static
+/// casters' layers.
 fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
     let far = if descriptor.depth == DepthConvention::Reversed { "0.0" } else { "1.0" };
     let clear = include_str!("clear.wgsl").replace("FAR", far);
@@ -226,7 +227,7 @@ fn pipeline(device: &wgpu::Device, map: &ShadowMap, shape: &Shape<'_>) -> wgpu::
             compilation_options: Default::default(),
             buffers: if shape.is_boxes { &boxes } else { &[] },
         },
-        // The front sides of a box are its whole outline.
+        // The front sides of a box cover its whole outline.
         primitive: wgpu::PrimitiveState { cull_mode: shape.is_boxes.then_some(wgpu::Face::Back), ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             depth_compare: Some(wgpu::CompareFunction::Always),

@@ -1,8 +1,8 @@
-//! Textures that the engine made and owns, in which maps lie: a frame graph's, or one that two suns share.
+//! Textures of the engine that contain maps, such as a frame graph's texture or one that two suns share.
 
 use crate::{MapTextureError, ShadowMapDescriptor, ShadowMapError};
 
-/// Layers of a texture that hold shadow maps: as many as there are maps, from one on.
+/// Layers of a texture that hold shadow maps, one per map, from [`Self::base_layer`] on.
 ///
 /// ```no_run
 /// # fn demo(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), shadowfit_wgpu::SunShadowsError> {
@@ -23,14 +23,14 @@ use crate::{MapTextureError, ShadowMapDescriptor, ShadowMapError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapTexture {
-    /// The texture, as [`ShadowMapDescriptor::texture`] describes it.
+    /// Texture that [`ShadowMapDescriptor::texture`] describes.
     pub texture: wgpu::Texture,
-    /// Layer of the first map. OpenGL has none but 0. Layers of another sun are not to overlap.
+    /// Layer of the first map. It must be 0 on OpenGL. The layers must not overlap with another sun's layers.
     pub base_layer: u32,
 }
 
 impl MapTexture {
-    /// A view of the first mip level of some maps.
+    /// Creates a view of the first mip level of some maps.
     pub(crate) fn view(&self, dimension: wgpu::TextureViewDimension, first: u32, count: u32) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
             label: Some("shadowfit map"),
@@ -82,13 +82,13 @@ impl MapTexture {
     }
 }
 
-/// Whether a texture of some layers is one that shaders read as an array. wgpu's OpenGL makes a plain texture of a single
-/// layer, and cubes of square ones in sixes.
+/// Returns whether shaders can read a texture of this size as an array. With wgpu's OpenGL backend, a single
+/// layer becomes a plain texture, and square layers whose number is divisible by six become a cube.
 pub(crate) fn is_array([width, height]: [u32; 2], layers: u32, backend: wgpu::Backend) -> bool {
     backend != wgpu::Backend::Gl || (layers > 1 && !(layers.is_multiple_of(6) && width == height))
 }
 
-/// Refuses layers that shaders cannot read.
+/// Refuses a base layer that shaders cannot read.
 fn check_base_layer(base_layer: u32, backend: wgpu::Backend) -> Result<(), MapTextureError> {
     if backend == wgpu::Backend::Gl && base_layer > 0 { Err(MapTextureError::BaseLayer(base_layer)) } else { Ok(()) }
 }

@@ -1,5 +1,4 @@
-//! The uniforms that the WGSL reads. Their layout is compared with naga's reflection of the
-//! shaders in the tests, so that the two cannot drift apart.
+//! Uniforms that the WGSL reads. Tests compare their layout with naga's reflection of the shaders.
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::glam::{DVec3, Vec2, Vec3};
@@ -9,18 +8,18 @@ use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
 use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
-/// Pixels by which the pattern that turns discs moves from frame to frame, and frames after which it begins again
-/// (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
+/// Shift of the rotation pattern of discs from frame to frame, in pixels, and period of the pattern, in
+/// frames (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
 const FRAME_SHIFT: f32 = 5.588_238;
 const FRAMES: u32 = 64;
 
-/// The uniform of the shadow pass's vertex shader: `shadowfit_Caster` in WGSL.
+/// Uniform of the shadow pass's vertex shader: `shadowfit_Caster` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct CasterUniform {
-    /// Clip space of the map from world positions relative to the origin.
+    /// Matrix from world positions relative to the origin to the map's clip space.
     pub clip_from_world: [[f32; 4]; 4],
-    /// 1 where fragment shaders clamp depth, since the device does not.
+    /// 1 if fragment shaders clamp depth because the device cannot.
     pub clamps_in_fragment: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding_0: u32,
@@ -34,41 +33,44 @@ pub struct CasterUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MapUniform {
-    /// Texture coordinates (x right, y down, z the stored depth) from world positions relative to
-    /// the origin.
+    /// Matrix from world positions relative to the origin to texture coordinates (x right, y down, z the
+    /// stored depth).
     pub uv_from_world: [[f32; 4]; 4],
-    /// The depth of a plane changes by `dot(this, normal) / cos θ` over one texel along u, for its
-    /// unit normal; zero without receiver-plane bias.
+    /// Vector whose dot product with a plane's unit normal, divided by cos θ, is the change of the plane's
+    /// depth over one texel along u. θ is the angle between the normal and the direction to the light. Zero
+    /// without receiver-plane bias.
     pub depth_per_texel_u: [f32; 3],
-    /// Depth bias that does not depend on the slope, signed so that adding it moves the receiver
-    /// toward the light.
+    /// Depth bias that does not depend on the slope, in units of the stored depth. Its sign moves the
+    /// receiver toward the light when it is added.
     pub constant_depth: f32,
     /// As `depth_per_texel_u`, along v.
     pub depth_per_texel_v: [f32; 3],
-    /// Depth bias times tan θ, signed likewise.
+    /// Depth bias to be multiplied by tan θ, with the same sign convention.
     pub slope_depth: f32,
-    /// Width and height in use, from the corner of the layer, in texels.
+    /// Width and height of the used corner of the layer, in texels.
     pub size: [f32; 2],
-    /// Offset along the normal times sin θ, in metres.
+    /// Offset along the normal to be multiplied by sin θ, in metres.
     pub normal_offset: f32,
-    /// Depth bias to be multiplied by the plane's depth change over a texel, in texels, signed
-    /// likewise.
+    /// Receiver-plane bias in texels, with the same sign convention. It is multiplied by the plane's depth
+    /// change over a texel.
     pub receiver_plane: f32,
-    /// View depth at which the map ends, in metres: by view depth, points from there on do not read it.
+    /// View depth at which the map ends, in metres. With selection by view depth, points from there on do not
+    /// read it.
     pub far: f32,
-    /// View depth from which points of the map in front are blended into this one, in metres; by view depth.
+    /// View depth where the blend from the previous map into this one begins, in metres. Used with selection
+    /// by view depth.
     pub blend_near: f32,
-    /// Layer that the map is stored in: its index.
+    /// Index of the layer that contains the map.
     pub layer: u32,
-    /// Puts the next field at a multiple of 8 bytes.
+    /// Aligns the next field to 8 bytes.
     pub padding_0: u32,
-    /// Where the map's first texel lies in its layer, in texels: the rest follows it, and wraps around.
+    /// Position of the map's first texel in its layer, in texels. The map wraps around from there.
     pub texel_offset: [f32; 2],
-    /// Radii along u and v of the disc that look-ups are spread over, in texels: the greatest where it follows the
-    /// caster.
+    /// Radii along u and v of the disc of look-ups, in texels. If the disc depends on the caster's distance,
+    /// these are the greatest radii.
     pub disc: [f32; 2],
-    /// Radii of the penumbra in texels, for each unit of stored depth from the caster to its shadow; negative with
-    /// reversed depth.
+    /// Radii of the penumbra, in texels per unit of stored depth between the caster and its shadow. Negative
+    /// with reversed depth.
     pub penumbra: [f32; 2],
     /// Keeps the struct a multiple of 16 bytes.
     pub padding_1: u32,
@@ -76,47 +78,48 @@ pub struct MapUniform {
     pub padding_2: u32,
 }
 
-/// The uniform of the look-up: `shadowfit_Receiver` in WGSL.
+/// Uniform of the look-up: `shadowfit_Receiver` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ReceiverUniform {
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// Number of `maps` that are in use.
+    /// Number of used `maps`.
     pub map_count: u32,
-    /// View depth of a position relative to the origin, in metres, is `dot(xyz, position) + w`.
+    /// Coefficients of the view depth: for a position relative to the origin it is `dot(xyz, position) + w`,
+    /// in metres.
     pub view: [f32; 4],
-    /// View depth from which on shadows fade, in metres.
+    /// View depth where shadows begin to fade, in metres.
     pub fade_near: f32,
-    /// Metres over which they fade.
+    /// Width of the fade, in metres.
     pub fade_width: f32,
-    /// Radius that discs have at least, in texels.
+    /// Least radius of discs, in texels.
     pub least_disc: f32,
-    /// Radius that discs have at most, in texels.
+    /// Greatest radius of discs, in texels.
     pub greatest_disc: f32,
-    /// Pixels by which the pattern that turns discs is moved in this frame.
+    /// Shift of the rotation pattern of discs in this frame, in pixels.
     pub frame_shift: f32,
-    /// 1 for a light that gives nothing: all factors are 0.
+    /// 1 if the light is off: all factors are 0.
     pub is_off: u32,
-    /// Keeps the maps at a multiple of 16 bytes.
+    /// Aligns the maps to 16 bytes.
     pub padding_0: u32,
     /// As above.
     pub padding_1: u32,
-    /// The maps, in the order in which points try them: that of [`shadowfit::selection::MapOrder`].
+    /// Maps in selection order; see [`shadowfit::selection::MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
 }
 
-/// The uniform of a look-up that [cross-fades](ShadowMapDescriptor::cross_fades): `shadowfit_Fading` in WGSL.
+/// Uniform of a look-up that [cross-fades](ShadowMapDescriptor::cross_fades): `shadowfit_Fading` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FadingUniform {
-    /// The maps of the sun's present direction.
+    /// Maps of the present direction.
     pub now: ReceiverUniform,
-    /// Those of the direction before, while they are faded out; none otherwise.
+    /// Maps of the previous direction while they fade out; otherwise none.
     pub before: ReceiverUniform,
-    /// Share of the former in the factor, 0 to 1.
+    /// Share of `now` in the factor, 0 to 1.
     pub share: f32,
-    /// Layer of the first of the present maps.
+    /// Layer of the first present map.
     pub first_layer: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding_0: u32,
@@ -125,15 +128,15 @@ pub struct FadingUniform {
 }
 
 impl CasterUniform {
-    /// The uniform for a fit, with positions relative to `origin` (world space, metres).
+    /// Returns the uniform for a fit, with positions relative to `origin` (world space, metres).
     pub fn new(fit: &LightProjection, origin: DVec3) -> Self {
         Self { clip_from_world: fit.relative_to(origin).clip_from_world.to_cols_array_2d(), ..Self::default() }
     }
 }
 
 impl MapUniform {
-    /// The uniform for a map in layer 0, with positions relative to `origin` (world space, metres), read as `descriptor`
-    /// says.
+    /// Returns the uniform for a map in layer 0, with positions relative to `origin` (world space, metres)
+    /// and the settings of `descriptor`.
     pub fn new(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let made = Self::on_plane(map, origin, descriptor);
         if map.bias.receiver_plane == 0.0 {
@@ -143,7 +146,8 @@ impl MapUniform {
         }
     }
 
-    /// The same, with the change of a plane's depth whatever the bias.
+    /// Returns the same uniform, with `depth_per_texel_u` and `depth_per_texel_v` even without receiver-plane
+    /// bias.
     fn on_plane(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let ShadowMapDescriptor { filter, softness, .. } = descriptor;
         let FittedMap { projection: fit, bias, .. } = map.relative_to(origin);
@@ -168,9 +172,9 @@ impl MapUniform {
     }
 }
 
-/// Vectors whose dot product with a plane's unit normal n gives the change of its depth over one texel along u and
-/// v: the plane's height falls by n·x / n·z along the map's x, and v runs against its y. It is
-/// [`shadowfit::bias::depth_gradient`] without the division by n·z, the cosine.
+/// Returns vectors whose dot product with a plane's unit normal n, divided by n·z, is the change of the
+/// plane's depth over one texel along u and v. The plane's height falls by n·x / n·z along the map's x, and v
+/// runs against its y. This is [`shadowfit::bias::depth_gradient`] without the division by n·z, the cosine.
 fn depth_per_texel(fit: &LightProjection) -> [Vec3; 2] {
     let away_from_light = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
     let scale = fit.texel_size * (away_from_light / fit.depth_range);
@@ -179,18 +183,19 @@ fn depth_per_texel(fit: &LightProjection) -> [Vec3; 2] {
 }
 
 impl ReceiverUniform {
-    /// The uniform for a light that gives nothing.
+    /// Returns the uniform for a light that is off.
     pub fn off() -> Self {
         Self { is_off: 1, ..Self::default() }
     }
 
-    /// The same with maps that are stored from a layer on.
+    /// Returns this uniform for maps that are stored from layer `first` on.
     pub(crate) fn in_layers(mut self, first: u32) -> Self {
         self.maps.iter_mut().for_each(|map| map.layer += first);
         self
     }
 
-    /// As [`Self::new`], with the change of a plane's depth in each map, whatever the bias.
+    /// Returns the uniform of [`Self::new`], with the depth change per texel in each map even without
+    /// receiver-plane bias.
     #[cfg(feature = "rays")]
     pub(crate) fn on_planes(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {
         let mut uniform = Self::new(maps, view, descriptor);
@@ -201,8 +206,9 @@ impl ReceiverUniform {
         uniform
     }
 
-    /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by
-    /// the descriptor's choice ([`MapOrder`]), and maps past [`MAX_MAPS`], are left out; without any, everything is lit.
+    /// Returns the uniform for maps of one light, with positions relative to the view's origin. Maps that no
+    /// point selects ([`MapOrder`]) and maps past [`MAX_MAPS`] are left out. Without any map, all points are
+    /// lit.
     pub fn new(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {
         let [fade_near, fade_far] = descriptor.fade;
         let Softness { floor, ceiling, .. } = descriptor.softness;

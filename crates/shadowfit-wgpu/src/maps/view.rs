@@ -1,4 +1,4 @@
-//! From where the maps are read, and checks of the maps that are to be drawn.
+//! The view of the look-ups, and checks of the maps to draw.
 
 use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
@@ -6,31 +6,33 @@ use shadowfit::{DepthConvention, FittedMap, LightProjection};
 
 use crate::{ShadowMapDescriptor, ShadowMapError};
 
-/// From where the maps are looked up.
+/// The view of the look-ups: the origin of positions, and the eye for view depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapView {
-    /// World position to which all positions in the shaders are relative, in metres.
+    /// World position that all positions in the shaders are relative to, in metres.
     pub origin: DVec3,
-    /// World position of the eye that view depths are counted from, in metres.
+    /// World position of the eye for view depths, in metres.
     pub eye: DVec3,
-    /// Unit direction in which that eye looks, world axes.
+    /// Unit viewing direction of this eye, in world axes.
     pub forward: Vec3,
-    /// Number of the frame, by which the pattern of [soft filters](shadowfit::settings::FilterKind::is_soft) moves, for
-    /// temporal antialiasing that averages over frames; 0 in each frame keeps the same pattern.
+    /// Number of the frame. It moves the pattern of [soft filters](shadowfit::settings::FilterKind::is_soft),
+    /// for temporal anti-aliasing that averages over frames. With 0 in every frame the pattern does not
+    /// change.
     pub frame: u32,
 }
 
-/// How far the length of [`MapView::forward`] may be from 1: the rounding of a direction that was normalised in f32 and
-/// turned by a few matrices.
+/// Tolerance of the length of [`MapView::forward`]: the rounding of a direction that was normalised in f32
+/// and rotated by a few matrices.
 const UNIT_TOLERANCE: f32 = 1e-3;
 
 impl MapView {
-    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
+    /// Returns a view with positions and view depths relative to an eye that looks along `forward` (unit,
+    /// world axes).
     pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
         Self { origin: eye, eye, forward, frame: 0 }
     }
 
-    /// Origin and eye.
+    /// Returns the origin and the eye for the core.
     pub(crate) fn reader(&self) -> Reader {
         let Self { origin, eye, forward, .. } = *self;
         Reader { origin, eye, forward }

@@ -1,4 +1,4 @@
-//! How a sun's shadows are made, and made again for another technique, size, format or texture.
+//! Creation of a sun's shadows, and their recreation for another technique, size, format or texture.
 
 use shadowfit::{ShadowFitter, Technique};
 
@@ -7,7 +7,7 @@ use super::{Demand, SunShadows};
 use crate::maps::cached_maps::CachedMaps;
 use crate::{MapTexture, ShadowMapDescriptor, ShadowMapError};
 
-/// The description of a sun's shadows, for [`SunShadows::new`].
+/// Description of a sun's shadows, for [`SunShadows::new`].
 ///
 /// ```
 /// use shadowfit::Technique;
@@ -18,48 +18,49 @@ use crate::{MapTexture, ShadowMapDescriptor, ShadowMapError};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SunShadowsDescriptor {
-    /// Look of the shadows: [`Technique::default`] or one of [`PRESETS`](shadowfit::PRESETS), changed as the engine likes.
+    /// Technique of the shadows: [`Technique::default`] or one of [`PRESETS`](shadowfit::PRESETS), with any
+    /// changes.
     pub technique: Technique,
-    /// First binding of the caster's and the receiver's bind group. Another number than 0 is for a bind group that the
-    /// look-up shares with another sun's or with the engine's own resources
+    /// First binding of the caster's and the receiver's bind group. Use a number other than 0 if the look-up
+    /// shares its bind group with another sun or with the engine's own resources
     /// ([`ShadowMap::receiver_entries`](crate::ShadowMap::receiver_entries)).
     pub first_binding: u32,
-    /// Texture of the engine's that holds the maps, so that a frame graph counts their memory, or two suns share an array.
-    /// `None` makes textures. [`ShadowMapDescriptor::texture`] describes the texture that is needed.
+    /// Texture of the engine that holds the maps, such as a frame graph's texture or an array that two suns
+    /// share. `None` creates textures. [`ShadowMapDescriptor::texture`] describes the required texture.
     ///
-    /// Only the layers from [`MapTexture::base_layer`] on are cleared, written and read: one for each map, and two for each
-    /// map where [light steps](SunShadows::set_light_steps) fade. Maps are kept from frame to frame. If something else
-    /// writes these layers in between, turn [caching](SunShadows::set_caching) off.
+    /// Only the layers from [`MapTexture::base_layer`] on are cleared, written and read: one per map, or two
+    /// per map if [light steps](SunShadows::set_light_steps) fade. Maps are kept from frame to frame. If
+    /// other code writes these layers in between, turn [caching](SunShadows::set_caching) off.
     pub texture: Option<MapTexture>,
-    /// Size, number, format and filter of maps that other code fits ([`SunShadows::prepare`]). `None` takes those of the
-    /// technique. Its `first_binding` and `cross_fades` are replaced: the first by the field of that name above, the second
-    /// by the light steps.
+    /// Size, number, format and filter of maps that other code fits ([`SunShadows::prepare`]). `None` takes
+    /// the values of the technique. Two of its fields are ignored: `first_binding`, in favour of the field
+    /// above, and `cross_fades`, which the light steps decide.
     pub maps: Option<ShadowMapDescriptor>,
 }
 
 impl SunShadowsDescriptor {
-    /// The description of the maps, by whether they fade.
+    /// Returns the description of the maps.
     fn maps(&self, cross_fades: bool) -> ShadowMapDescriptor {
         let maps = self.maps.unwrap_or_else(|| ShadowMapDescriptor::from(&self.technique));
         ShadowMapDescriptor { first_binding: self.first_binding, cross_fades, ..maps }
     }
 }
 
-/// Maps of a technique in textures of their own, with bindings from 0 on.
+/// Describes maps of a technique in new textures, with bindings from 0 on.
 impl From<Technique> for SunShadowsDescriptor {
     fn from(technique: Technique) -> Self {
         Self { technique, ..Self::default() }
     }
 }
 
-/// # Making and changing the maps
+/// # Creating and changing the maps
 impl SunShadows {
-    /// Makes the shadows of a sun.
+    /// Creates the shadows of a sun.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError`] if the maps cannot be made on this device: their size, number, format or filter, too little
-    /// memory, or a texture that cannot hold them.
+    /// [`ShadowMapError`] if the device does not support the size, number, format or filter of the maps, is
+    /// out of memory, or if the given texture cannot hold the maps.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -80,12 +81,13 @@ impl SunShadows {
         })
     }
 
-    /// Goes on with another technique, with the same texture and bindings. Returns whether the maps were recreated: the
-    /// engine must then recreate its pipelines, its WGSL and bind groups of its own. On an error everything stays as it is.
+    /// Changes the technique, with the same texture and bindings. Returns whether the maps were recreated.
+    /// The engine must then recreate its pipelines, its WGSL and its own bind groups. On an error nothing
+    /// changes.
     ///
     /// # Errors
     ///
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn set_technique(&mut self, technique: &Technique) -> Result<bool, ShadowMapError> {
         self.set_descriptor(&SunShadowsDescriptor {
             technique: *technique,
@@ -95,12 +97,13 @@ impl SunShadows {
         })
     }
 
-    /// Goes on with another description, and keeps what earlier frames showed. Returns whether the maps were recreated, as
-    /// [`Self::set_technique`] does. Another texture always recreates them. On an error everything stays as it is.
+    /// Changes the description, and keeps the visible demand of earlier frames. Returns whether the maps were
+    /// recreated, as [`Self::set_technique`] does. Another texture always recreates them. On an error nothing
+    /// changes.
     ///
     /// # Errors
     ///
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn set_descriptor(&mut self, descriptor: &SunShadowsDescriptor) -> Result<bool, ShadowMapError> {
         let maps = descriptor.maps(self.map().descriptor().cross_fades);
         let is_new = if descriptor.texture.as_ref() == self.map().texture() {
@@ -115,14 +118,14 @@ impl SunShadows {
         Ok(is_new)
     }
 
-    /// Makes maps of another descriptor, unless it is that of the present ones.
+    /// Recreates the maps if their descriptor changes. Returns whether it did.
     pub(super) fn replace_maps(&mut self, descriptor: &ShadowMapDescriptor) -> Result<bool, ShadowMapError> {
         let now = *self.map().descriptor();
         if *descriptor == now {
             return Ok(false);
         }
         descriptor.check(&self.device)?;
-        // Shaders read the end of shadows from a uniform that is written in each frame.
+        // The fade is in a uniform that is written in each frame, so that it needs no new maps.
         if (ShadowMapDescriptor { fade: now.fade, ..*descriptor }) == now {
             self.each_set(|maps| maps.set_fade(descriptor.fade));
             return Ok(false);
@@ -132,7 +135,7 @@ impl SunShadows {
         Ok(true)
     }
 
-    /// Makes the maps again.
+    /// Recreates the maps.
     fn recreate(
         &mut self,
         descriptor: &ShadowMapDescriptor,

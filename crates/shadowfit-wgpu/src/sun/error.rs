@@ -1,4 +1,4 @@
-//! Why a sun's shadows cannot be made or fitted.
+//! Errors of a sun's shadows.
 
 use core::fmt;
 
@@ -7,16 +7,16 @@ use shadowfit::FitError;
 use crate::ShadowMapError;
 use crate::demand::DemandPassError;
 
-/// Why a call of [`SunShadows`](crate::SunShadows) failed.
+/// The reason why a call of [`SunShadows`](crate::SunShadows) failed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SunShadowsError {
-    /// Views, light, boxes or technique make no sense.
+    /// Views, light, boxes or technique are invalid.
     Fit(FitError),
-    /// The maps cannot be made, or cannot hold the fits.
+    /// The maps cannot be created, or cannot hold the fits.
     Map(ShadowMapError),
     /// The depth buffer cannot be read.
     Demand(DemandPassError),
-    /// No frame was fitted yet.
+    /// No frame has been fitted yet.
     NoFrame,
 }
 
@@ -25,7 +25,7 @@ impl fmt::Display for SunShadowsError {
         match self {
             Self::Fit(error) => write!(f, "the sun's shadows cannot be fitted: {error}"),
             Self::Map(error) => write!(f, "the sun's shadow maps: {error}"),
-            Self::Demand(error) => write!(f, "what the picture shows cannot be counted: {error}"),
+            Self::Demand(error) => write!(f, "visible points cannot be counted: {error}"),
             Self::NoFrame => f.write_str("the sun's shadows have no frame yet: call update first"),
         }
     }

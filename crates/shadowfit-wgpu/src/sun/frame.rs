@@ -1,4 +1,4 @@
-//! What an engine tells about a frame: views, light, boxes and casters.
+//! Input of a frame: views, light, boxes and casters.
 
 use shadowfit::NormalCone;
 use shadowfit::cache::{CacheFrame, InView};
@@ -7,32 +7,34 @@ use shadowfit::{Boxes, FitError, FitInput, FittedMap, StaticBoxes, ViewFrustum};
 
 use crate::{Casters, MapView};
 
-/// A frame, as [`SunShadows::update`](crate::SunShadows::update) takes it.
+/// Input of a frame, for [`SunShadows::update`](crate::SunShadows::update).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunFrame<'a> {
-    /// The views that show the shadows: one, or several that share the maps (both eyes of a headset, split screen).
+    /// Views that show the shadows: one, or several that share the maps (both eyes of a headset, split
+    /// screen).
     pub views: &'a [ViewFrustum],
-    /// World position of the eye from which view depths are counted, in metres: where maps are read by view depth, and
-    /// where shadows fade.
+    /// World position of the eye for view depths, in metres. It is used for the selection by view depth and
+    /// for the fade.
     pub eye: DVec3,
-    /// Unit direction in which that eye looks, world axes.
+    /// Unit viewing direction of this eye, in world axes.
     pub forward: Vec3,
-    /// World position that all positions in the shaders are relative to, in metres. The first view's eye is most exact;
-    /// zero suits engines whose shaders take world space.
+    /// World position that all positions in the shaders are relative to, in metres. The first view's eye is
+    /// most precise. Use zero if the shaders take world space.
     pub origin: DVec3,
-    /// **Direction of travel** of the sun's light in world axes, of any length: the true one, also where [light
-    /// steps](crate::SunShadows::set_light_steps) hold the maps.
+    /// **Direction of travel** of the sunlight in world axes, of any length. Pass the true direction, even if
+    /// [light steps](crate::SunShadows::set_light_steps) hold the maps.
     pub direction: Vec3,
-    /// Boxes around everything that receives shadows; `None` if they are not known.
+    /// Boxes around all receivers; `None` if they are not known.
     pub receivers: Option<Boxes<'a>>,
-    /// Cones around the normals of each receiver's surfaces, or empty, as [`FitInput::receiver_cones`].
+    /// Cones around the surface normals of each receiver, or empty; see [`FitInput::receiver_cones`].
     pub receiver_cones: &'a [NormalCone],
-    /// Everything that casts shadows, but for what is in [`Self::static_boxes`].
+    /// All casters except for [`Self::static_boxes`].
     pub casters: Casters<'a>,
-    /// What stands, receives and casts shadows beside the two lists, handed over once and told its changes: a frame then
-    /// costs what changed and what is drawn, and not what there is. Static casters belong here from some thousand on;
-    /// what moves in each frame belongs in the list. For another shape in the same box call
-    /// [`invalidate`](crate::SunShadows::invalidate). Keep one `StaticBoxes`: another one, or none, redraws all maps.
+    /// A hierarchy of static boxes, whose objects receive and cast shadows in addition to the two lists. The
+    /// per-frame cost depends on the boxes that changed or are drawn, not on their total number. Use it from
+    /// some thousand static casters on. Objects that move in every frame belong in the list. If an object
+    /// changes its shape but not its box, call [`invalidate`](crate::SunShadows::invalidate). Keep one
+    /// `StaticBoxes`: replacing or removing it redraws all maps.
     ///
     /// ```
     /// # use shadowfit::glam::{DVec3, Vec3};
@@ -43,7 +45,7 @@ pub struct SunFrame<'a> {
     /// # };
     /// # let (views, aabb) = ([camera.frustum()?], Aabb::new(Vec3::ZERO, Vec3::ONE));
     /// let mut world = StaticBoxes::new(DVec3::ZERO);
-    /// let number = world.insert(aabb)?; // once: later `set` and `remove`
+    /// let number = world.insert(aabb)?; // once; later call `set` and `remove`
     ///
     /// let moving = [aabb];
     /// let boxes = Boxes::world(&moving);
@@ -54,13 +56,13 @@ pub struct SunFrame<'a> {
     /// # Ok::<(), shadowfit::FitError>(())
     /// ```
     pub static_boxes: Option<&'a StaticBoxes>,
-    /// Number of the frame. Soft filters turn their pattern by it, for temporal anti-aliasing; 0 in every frame keeps
-    /// the same pattern.
+    /// Number of the frame. Soft filters rotate their pattern by it, for temporal anti-aliasing. With 0 in
+    /// every frame the pattern does not change.
     pub number: u32,
 }
 
 impl<'a> SunFrame<'a> {
-    /// A frame whose shaders take positions relative to the first view's eye.
+    /// Returns a frame whose shaders take positions relative to the first view's eye.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3, receivers: Boxes<'a>, casters: Casters<'a>) -> Self {
         let (eye, forward) = views.first().map_or((DVec3::ZERO, Vec3::NEG_Z), |view| (view.origin, view.forward));
         Self {
@@ -77,14 +79,14 @@ impl<'a> SunFrame<'a> {
         }
     }
 
-    /// This frame with positions in the shaders relative to another origin, in world space, in metres.
+    /// Returns this frame with another origin of the positions in the shaders, in world space, in metres.
     #[must_use]
     pub const fn with_origin(mut self, origin: DVec3) -> Self {
         self.origin = origin;
         self
     }
 
-    /// Refuses values that go to shaders and that neither the fits nor the maps check.
+    /// Refuses values that go to shaders and are checked neither by the fits nor by the maps.
     pub(crate) fn check(&self) -> Result<(), FitError> {
         for (input, point) in [("the frame's eye", self.eye), ("the frame's origin", self.origin)] {
             if let Some(value) = point.to_array().into_iter().find(|value| !value.is_finite()) {
@@ -94,7 +96,7 @@ impl<'a> SunFrame<'a> {
         Ok(())
     }
 
-    /// The input of the fits.
+    /// Returns the input of the fits.
     pub(crate) fn input(&self) -> FitInput<'a> {
         FitInput {
             receivers: self.receivers,
@@ -105,7 +107,7 @@ impl<'a> SunFrame<'a> {
         }
     }
 
-    /// The input of the cache, with the maps to draw.
+    /// Returns the input of the cache, with the maps to draw.
     pub(crate) fn cache_frame(&self, maps: &'a [FittedMap]) -> CacheFrame<'a> {
         CacheFrame {
             maps,
@@ -117,7 +119,7 @@ impl<'a> SunFrame<'a> {
         }
     }
 
-    /// The view from which the maps are read.
+    /// Returns the view of the look-ups.
     pub(crate) fn map_view(&self) -> MapView {
         let Self { origin, eye, forward, number, .. } = *self;
         MapView { origin, eye, forward, frame: number }

@@ -1,4 +1,5 @@
-//! The second set of maps of a sun that steps: drawn for its next direction, then read, while the first one fades out.
+//! Second set of maps for a sun with cross-fading light steps. It is drawn for the next direction, then read
+//! while the first set fades out.
 
 use shadowfit::{FittedMap, ShadowFitter};
 
@@ -7,7 +8,7 @@ use super::{SunShadows, SunShadowsError};
 use crate::maps::cached_maps::CachedMaps;
 use crate::{ShadowPass, SunFrame};
 
-/// A set of maps with the fitter that places them.
+/// A set of maps with the fitter that places it.
 #[derive(Debug)]
 pub(super) struct OtherSet {
     pub(super) fitter: ShadowFitter,
@@ -15,7 +16,7 @@ pub(super) struct OtherSet {
 }
 
 impl OtherSet {
-    /// The second set of maps, if they have one.
+    /// Creates the second set if the maps cross-fade.
     pub(super) fn of(maps: &CachedMaps) -> Option<Self> {
         let cross_fades = maps.map().descriptor().cross_fades;
         cross_fades.then(|| Self { fitter: ShadowFitter::default(), maps: maps.second() })
@@ -23,7 +24,7 @@ impl OtherSet {
 }
 
 impl SunShadows {
-    /// The light of a frame: that of its steps, and the sets of maps put in their places for it.
+    /// Returns the light directions of a frame, and swaps the two sets of maps if the step requires it.
     pub(super) fn step(&mut self, frame: &SunFrame<'_>) -> Result<Step, SunShadowsError> {
         let [width, height] = self.map().descriptor().resolution;
         let count = self.maps().len();
@@ -34,7 +35,8 @@ impl SunShadows {
         let step = steps.next(frame.direction, width.max(height), kept)?;
         if let Some(other) = &mut self.other {
             if step.begins {
-                // It goes on from where these maps are: windows keep their sizes and about their places.
+                // The new set starts from the present maps, so that windows keep their sizes and roughly
+                // their places.
                 other.fitter.clone_from(&self.fitter);
                 other.maps.invalidate_all();
             }
@@ -61,7 +63,7 @@ impl SunShadows {
         let fitted = *other.fitter.fit(&frame.input())?;
         match steps.stage() {
             Stage::Drawing { drawn, .. } => {
-                // A map more than in the frame before; the others are kept.
+                // One more map than in the previous frame; the others are kept.
                 let drawn: &[FittedMap] = &fitted[..drawn.min(fitted.len())];
                 other.maps.update(queue, &frame.cache_frame(drawn), &frame.map_view())?;
             }
@@ -74,14 +76,14 @@ impl SunShadows {
         Ok(())
     }
 
-    /// The other set, while it is read.
+    /// Returns the other set and the present set's share while the look-up mixes both.
     pub(super) fn faded(&self) -> Option<(&OtherSet, f32)> {
         let stage = self.steps.as_ref()?.stage();
         let Stage::Fading { share, .. } = stage else { return None };
         self.other.as_ref().map(|other| (other, share))
     }
 
-    /// The passes of both sets.
+    /// Returns the passes of both sets.
     pub(super) fn all_passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
         let (present, other) = (self.maps.pass_count(), self.other.as_ref().map(|other| &other.maps));
         let all = present + other.map_or(0, CachedMaps::pass_count);

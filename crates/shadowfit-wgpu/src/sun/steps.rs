@@ -1,5 +1,5 @@
-//! Light steps of a sun: which direction its maps are made for in each frame, and when one set of maps goes over into
-//! the next. Decided without a GPU.
+//! Light steps of a sun: the direction that its maps are fitted to in each frame, and the fade from one set
+//! of maps to the next. These decisions need no GPU.
 //!
 //! ```text
 //!   held ──▶ drawing: a map of the new direction in each frame; the old maps are read
@@ -11,16 +11,17 @@ use shadowfit::FitError;
 use shadowfit::glam::Vec3;
 use shadowfit::light_steps::{self, LightStepState};
 
-/// How the maps of a moving sun are held still: its **light steps**. See
+/// **Light steps** of a moving sun, which hold its maps still in between. See
 /// [`SunShadows::set_light_steps`](crate::SunShadows::set_light_steps).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSteps {
-    /// Greatest movement of a map's edge for which the direction is held, in texels, as
-    /// [`light_steps::LightSteps::texels`]: the sun steps when it has turned by 2 · texels / side of the map. 0 follows
-    /// every change. Default: 1, which is 0.056° with maps of 2048² texels.
+    /// Greatest movement of a map's edge in one step, in texels, as in [`light_steps::LightSteps::texels`].
+    /// The sun steps when it has turned by 2 · texels / width of the map in texels, in radians. 0 follows
+    /// every change. Default: 1, which is 0.056° for maps of 2048² texels.
     pub texels: f32,
-    /// Frames of the cross-fade from the old maps to the new ones. 0 steps at once, and needs no second set of maps; 1
-    /// changes from one frame to the next, to maps that were drawn one by one in the frames before. Default: 0.
+    /// Number of frames of the cross-fade from the old maps to the new ones. 0 steps at once, without a
+    /// second set of maps. 1 switches within one frame to maps that were drawn one by one in the frames
+    /// before. Default: 0.
     pub fade: u32,
 }
 
@@ -31,68 +32,72 @@ impl Default for LightSteps {
 }
 
 impl LightSteps {
-    /// These steps with another [`texels`](Self::texels).
+    /// Returns these steps with another [`texels`](Self::texels).
     #[must_use]
     pub const fn with_texels(mut self, texels: f32) -> Self {
         self.texels = texels;
         self
     }
 
-    /// These steps with another [`fade`](Self::fade).
+    /// Returns these steps with another [`fade`](Self::fade).
     #[must_use]
     pub const fn with_fade(mut self, frames: u32) -> Self {
         self.fade = frames;
         self
     }
 
-    /// The settings of the core, for maps of a width in texels. Fades are counted here.
+    /// Returns the settings of the core, for maps of this width in texels. The core does not fade: this
+    /// module counts the frames.
     fn core(self, side: u32) -> light_steps::LightSteps {
         light_steps::LightSteps::default().with_texels(self.texels).with_extent(side as f32)
     }
 
-    /// Refuses numbers that make no sense.
+    /// Refuses invalid numbers.
     pub(super) fn check(self) -> Result<(), FitError> {
         self.core(1).angle().map(|_| ())
     }
 }
 
-/// Length of the difference of two unit directions that no step bridges, 2°: a sun that is so far from its maps was set
-/// elsewhere, and both shadows would be seen side by side. What a frame showed under one light hardly serves the other.
+/// Greatest distance between two unit directions that a step bridges: 2°. A sun farther from its maps was
+/// moved elsewhere. A fade would show both shadows side by side, and the visible demand under one light
+/// hardly helps the other.
 const JUMP: f32 = 0.035;
 
-/// The state of a sun that steps.
+/// State of a sun with light steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepState {
     pub(super) settings: LightSteps,
-    /// The newest direction that is held.
+    /// Newest held direction.
     light: LightStepState,
     stage: Stage,
-    /// Whether the next frame takes what is new at once.
+    /// Whether the next frame takes the newest direction at once.
     is_cut: bool,
 }
 
-/// The sets of maps that there are.
+/// Stage of a light step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Stage {
-    /// One set.
+    /// One set of maps.
     #[default]
     Held,
-    /// The maps of the next direction are drawn, this many by now; `now` is that of the maps that are read.
+    /// The maps of the next direction are drawn, `drawn` of them so far. `now` is the direction of the maps
+    /// that shaders read.
     Drawing { now: Vec3, drawn: usize },
-    /// The maps of the direction `before` are faded out; the others have this share.
+    /// The maps of the direction `before` fade out. The others have this share.
     Fading { before: Vec3, frame: u32, share: f32 },
 }
 
-/// A frame's light.
+/// Light directions of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Step {
-    /// The direction of the maps that are read, a unit vector: of those that are faded in, where two sets are.
+    /// Direction of the maps that shaders read, a unit vector. During a fade, the direction of the set that
+    /// fades in.
     pub(super) now: Vec3,
-    /// That of the other set, if there is one: the next direction, or the one before.
+    /// Direction of the other set, if there is one: the next direction or the previous one.
     pub(super) other: Option<Vec3>,
-    /// Whether another set is begun in this frame.
+    /// Whether another set begins in this frame.
     pub(super) begins: bool,
-    /// Whether the two change places in this frame.
+    /// Whether the two sets are swapped in this frame.
     pub(super) swaps: bool,
 }
 
@@ -101,27 +106,27 @@ impl StepState {
         Self { settings, light: LightStepState::default(), stage: Stage::Held, is_cut: false }
     }
 
-    /// The state with other settings.
+    /// Returns this state with other settings.
     pub(super) fn with_settings(self, settings: LightSteps) -> Self {
         Self { settings, ..self }
     }
 
-    /// The sets of maps that there are.
+    /// Returns the stage.
     pub(super) fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// Whether the maps of the newest direction are drawn and not read yet.
+    /// Returns whether the maps of the newest direction are being drawn and not read yet.
     pub(super) fn is_drawing(&self) -> bool {
         matches!(self.stage, Stage::Drawing { .. })
     }
 
-    /// The newest direction of maps, a unit vector.
+    /// Returns the newest direction of maps, a unit vector.
     pub(super) fn newest(&self) -> Option<Vec3> {
         self.light.held
     }
 
-    /// Ends a step: the next frame has one set of maps, for what is the newest direction then.
+    /// Ends a step: the next frame has one set of maps, for the direction that is newest then.
     pub(super) fn cut(&mut self) {
         (self.stage, self.is_cut) = (Stage::Held, true);
     }
@@ -131,12 +136,14 @@ impl StepState {
         *self = Self::new(self.settings);
     }
 
-    /// Goes on to a frame whose light travels in `direction`, of any length. `side`: that of the maps, in texels.
-    /// `kept`: how many maps are drawn one by one, since they can be kept; 0 where all are redrawn in each frame anyway.
+    /// Advances to a frame whose light travels in `direction`, of any length. `side` is the width of the
+    /// maps, in texels. `kept` is the number of maps that are drawn one by one because they can be kept. It
+    /// is 0 if all maps are redrawn in each frame.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the direction; the state stays as it was.
+    /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the direction. The state does not change
+    /// then.
     pub(super) fn next(&mut self, direction: Vec3, side: u32, kept: usize) -> Result<Step, FitError> {
         let core = self.settings.core(side);
         let new = LightStepState::default().update(direction, &core, 0.0)?.direction;
@@ -160,7 +167,8 @@ impl StepState {
         })
     }
 
-    /// The next frame of a sun that is held. `fading`: if the next step fades, the number of maps that are drawn one by one.
+    /// Computes the next frame of a held sun. If the next step fades, `fading` is the number of maps that are
+    /// drawn one by one.
     fn hold(&mut self, new: Vec3, core: &light_steps::LightSteps, fading: Option<usize>) -> Result<Step, FitError> {
         let held = self.light.held;
         let next = self.light.update(new, core, 0.0)?.direction;
@@ -174,14 +182,15 @@ impl StepState {
         })
     }
 
-    /// A frame of the fade from a direction to the newest one. In the last one there is only the latter.
+    /// Computes a frame of the fade from a direction to the newest one. The last frame has only the newest
+    /// one.
     fn fade(&mut self, before: Vec3, frame: u32) -> Step {
         let share = frame as f32 / self.settings.fade as f32;
         self.stage = if share < 1.0 { Stage::Fading { before, frame, share } } else { Stage::Held };
         Step { swaps: true, ..self.step(self.light.held.unwrap_or(before), false) }
     }
 
-    /// The light of a frame whose maps are read by `now`.
+    /// Returns the light of a frame whose shaders read the maps of `now`.
     fn step(&self, now: Vec3, begins: bool) -> Step {
         let other = match self.stage {
             Stage::Held => None,

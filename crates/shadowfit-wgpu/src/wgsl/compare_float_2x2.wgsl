@@ -1,6 +1,6 @@
 
-// One look-up at a position in the layer, in texels: the four nearest texels, each compared, then weighted bilinearly, as a
-// linear comparison sampler does.
+// Does one look-up at a position in the layer, in texels: compares the four nearest texels, then weights them
+// bilinearly, as a linear comparison sampler does.
 fn shadowfit_look_up_at(at: vec2<f32>, depth: f32, projected: shadowfit_Projected) -> f32 {
     let corner = floor(at - vec2<f32>(0.5));
     let weight = at - vec2<f32>(0.5) - corner;

@@ -1,32 +1,32 @@
-//! What shaders cull casters by: a record for each region of a frame's passes, for engines that keep their casters on the
-//! GPU.
+//! Culling records for shaders: one for each region of a frame's passes, for engines that keep their casters
+//! on the GPU.
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::CasterVolume;
 use shadowfit::glam::{DVec3, Vec4};
 
-/// A region of a pass for shaders that cull casters: `shadowfit_CullingRegion` of [`culling_wgsl`](crate::culling_wgsl),
-/// an element of its storage buffer.
+/// A region of a pass, for shaders that cull casters: `shadowfit_CullingRegion` of
+/// [`culling_wgsl`](crate::culling_wgsl), an element of its storage buffer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CullingRegion {
-    /// Planes (n, d) with unit normals that point inward: a point p, in metres relative to the origin of the frame, is
-    /// inside where n·p + d >= 0. Everything is inside unused ones.
+    /// Planes (n, d) with unit normals that point inward: a point p, in metres relative to the origin of the
+    /// frame, is inside if n·p + d >= 0. Every point is inside an unused plane.
     pub planes: [[f32; 4]; CullingRegion::MAX_PLANES],
     /// [`DrawRegion::viewport`](crate::DrawRegion::viewport).
     pub viewport: [f32; 4],
     /// [`DrawRegion::scissor`](crate::DrawRegion::scissor).
     pub scissor: [u32; 4],
-    /// Number of the map.
+    /// Index of the map.
     pub map: u32,
-    /// 1 where casters that stand still belong into the region, or else 0.
+    /// 1 if static casters belong in the region, 0 otherwise.
     pub fixed: u32,
-    /// 1 where casters that move belong into it, or else 0.
+    /// 1 if moving casters belong in the region, 0 otherwise.
     pub moving: u32,
-    /// Number of planes, from the first one on, that casters which stand still are culled by: those that lie wholly
-    /// behind one of them are not drawn.
+    /// Number of leading planes that static casters are culled by. A caster that lies wholly behind one of
+    /// them is not drawn.
     pub fixed_planes: u32,
-    /// The same of casters that move.
+    /// Number of leading planes that moving casters are culled by.
     pub moving_planes: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding_0: u32,
@@ -37,12 +37,13 @@ pub struct CullingRegion {
 }
 
 impl CullingRegion {
-    /// Most planes of a region: those of what can shadow something in view, and the six of its rectangle.
+    /// Maximum number of planes per region: the caster volume's planes, and six for the region's rectangle.
     pub const MAX_PLANES: usize = CasterVolume::MAX_PLANES + 6;
 
-    /// A region that takes all casters in each of some volumes, with shapes relative to `origin` (world space, metres):
-    /// for maps that are drawn without [`SunShadows`](crate::SunShadows). It names map 0, and no viewport. Planes past
-    /// [`Self::MAX_PLANES`] are left out, which only keeps more casters.
+    /// Returns a region that draws all casters in the intersection of some volumes, for maps that are drawn
+    /// without [`SunShadows`](crate::SunShadows). Shapes are relative to `origin` (world space, metres). The
+    /// map is 0, and the viewport is empty. Planes past [`Self::MAX_PLANES`] are left out, which only keeps
+    /// more casters.
     pub fn new(volumes: impl IntoIterator<Item = CasterVolume>, origin: DVec3) -> Self {
         let mut region = Self { planes: [Vec4::W.to_array(); Self::MAX_PLANES], fixed: 1, moving: 1, ..Self::zeroed() };
         let mut count = 0;

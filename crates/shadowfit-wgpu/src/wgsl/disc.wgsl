@@ -1,14 +1,15 @@
-// Look-ups spread evenly over a disc: each turned from the last by the golden angle, at radii that give each the same
-// area (H. Vogel, "A better way to construct the sunflower head", Mathematical Biosciences 44, 1979).
-// SHADOWFIT_TAPS is their number.
+// Look-ups spread evenly over a disc. Each is rotated from the previous one by the golden angle, at radii
+// that give each the same area (H. Vogel, "A better way to construct the sunflower head", Mathematical
+// Biosciences 44, 1979). SHADOWFIT_TAPS is their number.
 
-// A direction turned by the golden angle, pi (3 - sqrt 5): its cosine and sine.
+// Returns a direction rotated by the golden angle, pi (3 - sqrt 5), whose cosine and sine are `turn`.
 fn shadowfit_golden(direction: vec2<f32>) -> vec2<f32> {
     let turn = vec2<f32>(-0.7373688781, 0.6754902943);
     return vec2<f32>(direction.x * turn.x - direction.y * turn.y, direction.x * turn.y + direction.y * turn.x);
 }
 
-// A disc that lies inside its map: where its middle is stored, its axes, and what the plane's depth changes by along them.
+// A disc that lies inside its map: stored position of its centre, its axes, and the plane's depth change
+// along them.
 struct shadowfit_Disc {
     at: vec2<f32>,
     a: vec2<f32>,
@@ -16,13 +17,14 @@ struct shadowfit_Disc {
     rise: vec2<f32>,
 }
 
-// A look-up at a place in the unit disc.
+// Does a look-up at a position in the unit disc.
 fn shadowfit_disc_tap(disc: shadowfit_Disc, place: vec2<f32>, projected: shadowfit_Projected) -> f32 {
     return shadowfit_look_up_at(
         disc.at + disc.a * place.x + disc.b * place.y, projected.depth + dot(disc.rise, place), projected);
 }
 
-// Mean of the look-ups over an ellipse around the point. radii: along u and v, in texels. turn: in radians.
+// Returns the mean of the look-ups over an ellipse around the point. radii: along u and v, in texels. turn:
+// rotation in radians.
 fn shadowfit_disc(radii: vec2<f32>, projected: shadowfit_Projected, turn: f32) -> f32 {
     var direction = vec2<f32>(cos(turn), sin(turn));
     var sum = 0.0;

@@ -1,9 +1,10 @@
-//! The look-up that goes over from one set of maps to another: the same text, of which a part stands twice.
+//! WGSL of the look-up that fades from one set of maps to another. It contains the functions that read a set
+//! twice.
 
-/// Functions that read what a set of maps has for itself.
+/// Functions that depend on the set of maps.
 const OF_SET: [&str; 6] = ["project", "free", "select", "entry", "read", "turned"];
 
-/// The look-up into two sets of maps, from that into one.
+/// Converts a look-up into one set of maps to a look-up into two sets.
 pub(super) fn two_sets(look_up: &str) -> String {
     let before = OF_SET.iter().map(|name| function(look_up, name)).collect::<String>();
     let before = OF_SET.iter().fold(before.replace("shadowfit_receiver", "shadowfit_fading.before"), |text, name| {
@@ -16,18 +17,18 @@ pub(super) fn two_sets(look_up: &str) -> String {
     [&of_now(&now), include_str!("fading.wgsl"), "\n", &before].concat()
 }
 
-/// Views of the present maps, from those of the only ones.
+/// Converts the WGSL for debug views of one set of maps to WGSL for the present set of two.
 pub(super) fn stored(stored: &str) -> String {
     let now = stored.replace("fn shadowfit_stored(", "fn shadowfit_stored_now(");
     [&of_now(&now), include_str!("fading_stored.wgsl")].concat()
 }
 
-/// A text that reads the present maps.
+/// Makes a text read the present maps.
 fn of_now(text: &str) -> String {
     text.replace("shadowfit_receiver", "shadowfit_fading.now")
 }
 
-/// A function of a text, up to the brace that closes it.
+/// Returns a function of a text, up to its closing brace.
 fn function<'a>(text: &'a str, name: &str) -> &'a str {
     let begin = text.find(&format!("fn shadowfit_{name}(")).unwrap_or(text.len());
     let length = text[begin..].find("\n}\n").map_or(0, |end| end + 3);

@@ -1,11 +1,12 @@
-// Tent of 3x3 look-ups, weights 1 2 1 each way, one texel apart. Neighbouring look-ups share texels, so that two between
-// pairs of them give the same sum (after I. Castano, "Shadow mapping summary", 2013).
+// Tent filter of 3x3 look-ups, weights 1 2 1 along each axis, one texel apart. Neighbouring look-ups share
+// texels, so that two look-ups between pairs of texels give the same sum (after I. Castano, "Shadow mapping
+// summary", 2013).
 //
 //   texel weights, u right of the pair's left centre:   1-u   2-u | 1+u    u     (over 4)
 fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     let base = floor(projected.texel - vec2<f32>(0.5));
     let t = projected.texel - vec2<f32>(0.5) - base;
-    // Centre of a pair's left texel, and the weights of the pairs.
+    // Centre of a pair's left texel, and weights of the pairs.
     let centre = base + vec2<f32>(0.5);
     let w0 = 3.0 - 2.0 * t;
     let w1 = 1.0 + 2.0 * t;

@@ -1,5 +1,6 @@
-// Tent of 5x5 look-ups, weights 1 2 3 2 1 each way, one texel apart. Neighbouring look-ups share texels, so that three
-// between pairs of them give the same sum (after I. Castano, "Shadow mapping summary", 2013).
+// Tent filter of 5x5 look-ups, weights 1 2 3 2 1 along each axis, one texel apart. Neighbouring look-ups
+// share texels, so that three look-ups between pairs of texels give the same sum (after I. Castano, "Shadow
+// mapping summary", 2013).
 //
 //   texel weights, u right of the middle pair's left centre:   1-u   2-u | 3-u   2+u | 1+u    u     (over 9)
 struct shadowfit_Columns {
@@ -19,7 +20,7 @@ fn shadowfit_tent_row(columns: shadowfit_Columns, y: f32, projected: shadowfit_P
 fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     let base = floor(projected.texel - vec2<f32>(0.5));
     let t = projected.texel - vec2<f32>(0.5) - base;
-    // Centre of the middle pair's left texel, and the weights of the pairs.
+    // Centre of the middle pair's left texel, and weights of the pairs.
     let centre = base + vec2<f32>(0.5);
     let w0 = 3.0 - 2.0 * t;
     let w2 = 1.0 + 2.0 * t;

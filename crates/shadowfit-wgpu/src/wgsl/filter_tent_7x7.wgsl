@@ -1,5 +1,6 @@
-// Tent of 7x7 look-ups, weights 1 2 3 4 3 2 1 each way, one texel apart. Neighbouring look-ups share texels, so that four
-// between pairs of them give the same sum (after I. Castano, "Shadow mapping summary", 2013).
+// Tent filter of 7x7 look-ups, weights 1 2 3 4 3 2 1 along each axis, one texel apart. Neighbouring look-ups
+// share texels, so that four look-ups between pairs of texels give the same sum (after I. Castano, "Shadow
+// mapping summary", 2013).
 //
 //   texel weights, u right of the second pair's right centre:   1-u   2-u | 3-u   4-u | 3+u   2+u | 1+u    u     (over 16)
 struct shadowfit_Columns {
@@ -21,7 +22,7 @@ fn shadowfit_tent_row(columns: shadowfit_Columns, y: f32, projected: shadowfit_P
 fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     let base = floor(projected.texel - vec2<f32>(0.5));
     let t = projected.texel - vec2<f32>(0.5) - base;
-    // Centre of the second pair's right texel, and the weights of the pairs.
+    // Centre of the second pair's right texel, and weights of the pairs.
     let centre = base + vec2<f32>(0.5);
     let w0 = 3.0 - 2.0 * t;
     let w1 = 7.0 - 2.0 * t;

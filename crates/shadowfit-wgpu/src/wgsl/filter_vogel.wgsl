@@ -1,4 +1,4 @@
-// A disc that is as wide everywhere.
+// A disc of constant width.
 fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     return shadowfit_disc(projected.disc, projected, turn);
 }

@@ -1,6 +1,7 @@
 
-// A coordinate of a look-up as it is stored, and by how much the plane's depth differs there from the point's. at: in the
-// map, in texels, not nearer to the border of what is in use than half a texel: the sampler would read beyond it.
+// Returns a stored look-up coordinate, and the difference of the plane's depth there from the point's depth.
+// at: position in the map, in texels. It is clamped to half a texel inside the used part, because the sampler
+// would read beyond it.
 fn shadowfit_along(at: f32, point: f32, gradient: f32, size: f32, texel_offset: f32, unit: f32) -> vec2<f32> {
     let inside = clamp(at, 0.5, size - 0.5);
     let shifted = inside + texel_offset;
@@ -15,12 +16,12 @@ fn shadowfit_along_v(at: f32, p: shadowfit_Projected) -> vec2<f32> {
     return shadowfit_along(at, p.texel.y, p.gradient.y, p.size.y, p.texel_offset.y, p.unit.y);
 }
 
-// One look-up where a column and a row meet.
+// Does one look-up at a column and a row.
 fn shadowfit_tap(u: vec2<f32>, v: vec2<f32>, projected: shadowfit_Projected) -> f32 {
     return shadowfit_look_up_at(vec2<f32>(u.x, v.x), projected.depth + u.y + v.y, projected);
 }
 
-// One look-up at a position in the map, in texels, with the depth of the point's plane there.
+// Does one look-up at a position in the map, in texels, with the depth of the point's plane there.
 fn shadowfit_look_up(texel: vec2<f32>, projected: shadowfit_Projected) -> f32 {
     return shadowfit_tap(shadowfit_along_u(texel.x, projected), shadowfit_along_v(texel.y, projected), projected);
 }

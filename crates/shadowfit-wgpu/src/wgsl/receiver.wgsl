@@ -2,27 +2,30 @@
 
 struct shadowfit_Map {
     uv_from_world: mat4x4<f32>,
-    // Depth of a plane changes by dot(this, its normal) / cosine over one texel along u; zero without receiver-plane bias.
+    // Over one texel along u, the depth of a plane changes by dot(this, normal) / dot(normal, to_light), for
+    // its unit normal. Zero without receiver-plane bias.
     depth_per_texel_u: vec3<f32>,
     constant_depth: f32,
-    // The same along v.
+    // Likewise over one texel along v.
     depth_per_texel_v: vec3<f32>,
     slope_depth: f32,
-    // Texels in use, from the corner of the layer.
+    // Used texels, from the corner of the layer.
     size: vec2<f32>,
     normal_offset: f32,
     receiver_plane: f32,
-    // View depth at which the map ends, and from which the map in front is blended into it; by view depth.
+    // View depth where the map ends, and view depth where the blend from the previous map begins. Used with
+    // selection by view depth.
     far: f32,
     blend_near: f32,
-    // Layer that it is stored in.
+    // Layer that contains the map.
     layer: u32,
     padding_0: u32,
-    // Where the map's first texel lies in its layer, in texels: the rest follows it, and wraps around.
+    // Position of the map's first texel in its layer, in texels. The map wraps around from there.
     texel_offset: vec2<f32>,
-    // Radii along u and v of the disc that look-ups are spread over, in texels: the greatest where it follows the caster.
+    // Radii along u and v of the disc of look-ups, in texels. If the disc depends on the caster's distance,
+    // these are the greatest radii.
     disc: vec2<f32>,
-    // Radii of the penumbra in texels, for each unit of stored depth from the caster to its shadow.
+    // Radii of the penumbra in texels, per unit of stored depth between the caster and its shadow.
     penumbra: vec2<f32>,
     padding_1: u32,
     padding_2: u32,
@@ -31,56 +34,57 @@ struct shadowfit_Map {
 struct shadowfit_Receiver {
     to_light: vec3<f32>,
     map_count: u32,
-    // View depth is dot(xyz, position) + w.
+    // Coefficients of the view depth, dot(xyz, position) + w.
     view: vec4<f32>,
-    // View depth from which on shadows fade, in metres, and over how many they do; they end there where that is 0.
+    // View depth where shadows begin to fade, and width of the fade, in metres. A width of 0 makes a hard
+    // end.
     fade_near: f32,
     fade_width: f32,
-    // Radii that discs have at least and at most, in texels.
+    // Least and greatest radius of discs, in texels.
     least_disc: f32,
     greatest_disc: f32,
-    // Pixels by which the pattern that turns discs is moved in this frame.
+    // Shift of the rotation pattern of discs in this frame, in pixels.
     frame_shift: f32,
-    // 1 for a light that gives nothing.
+    // 1 if the light is off.
     is_off: u32,
     padding_0: u32,
     padding_1: u32,
-    // In the order in which points try them.
+    // Maps in selection order.
     maps: array<shadowfit_Map, MAX_MAPS>,
 }
 
 @group(GROUP) @binding(BINDING_0) var<uniform> shadowfit_receiver: shadowfit_Receiver;
 
-// Below this cosine (89.7 degrees from the light) the slope's tangent is held, so that a grazing
-// surface gets a finite bias; it receives next to no light anyway.
+// Below this cosine (89.7 degrees from the light) the slope's tangent is clamped, so that grazing surfaces
+// have a finite bias. They receive almost no light.
 const SHADOWFIT_MIN_COSINE: f32 = 0.005;
 
-// Where a point is looked up in a map, and what the look-up needs of the map.
+// Position of a point in a map, and the map's values that the look-up needs.
 struct shadowfit_Projected {
     // Texels from the map's left and top.
     texel: vec2<f32>,
     // Depth, and biased depth.
     surface: f32,
     depth: f32,
-    // Change of the depth of the point's plane over one texel along u and v.
+    // Depth change of the point's plane over one texel along u and v.
     gradient: vec2<f32>,
-    // As in the map.
+    // Fields of the map.
     layer: u32,
     size: vec2<f32>,
     texel_offset: vec2<f32>,
     disc: vec2<f32>,
     penumbra: vec2<f32>,
-    // What a texel is in the coordinates of look-ups.
+    // Size of a texel in look-up coordinates.
     unit: vec2<f32>,
 }
 
-// Whether texture coordinates and depth lie inside the map.
+// Returns whether texture coordinates and depth lie inside the map.
 fn shadowfit_inside(uv: vec3<f32>) -> bool {
     return all(uv >= vec3<f32>(0.0)) && all(uv <= vec3<f32>(1.0));
 }
 
-// Where a point is looked up in one map.
-// position: world space relative to the origin, metres. normal: unit, geometric.
+// Returns the position of a point in one map. position: world space relative to the origin, metres. normal:
+// unit, geometric.
 fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> shadowfit_Projected {
     let cosine = clamp(dot(normal, shadowfit_receiver.to_light), SHADOWFIT_MIN_COSINE, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
@@ -93,14 +97,14 @@ fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>)
         uv.xy * map.size, uv.z, depth, gradient, map.layer, map.size, map.texel_offset, map.disc, map.penumbra, shadowfit_unit());
 }
 
-// View depth of a point: its distance from the eye along the view's forward direction, in metres. Negative behind it.
-// position: world space relative to the origin, metres.
+// Returns the view depth of a point: its distance from the eye along the view's forward direction, in metres.
+// It is negative behind the eye. position: world space relative to the origin, metres.
 fn shadowfit_view_depth(position: vec3<f32>) -> f32 {
     return dot(shadowfit_receiver.view.xyz, position) + shadowfit_receiver.view.w;
 }
 
-// Texels between a point and the nearest side of a map; -1 where the map is not in use, or does not hold the point.
-// entry: its place in the order.
+// Returns the texels between a point and the nearest side of a map; -1 if the map is not used or does not
+// contain the point. entry: index of the map in the order.
 fn shadowfit_free(entry: u32, map: shadowfit_Map, position: vec3<f32>) -> f32 {
     let uv = (map.uv_from_world * vec4<f32>(position, 1.0)).xyz;
     let free = min(uv.xy, vec2<f32>(1.0) - uv.xy) * map.size;
@@ -108,15 +112,15 @@ fn shadowfit_free(entry: u32, map: shadowfit_Map, position: vec3<f32>) -> f32 {
     return select(-1.0, min(free.x, free.y), is_held);
 }
 
-// Which maps a point reads, by their places in the order; -1 for none.
+// Maps that a point reads, by their index in the order; -1 for none.
 struct shadowfit_Selection {
     first: i32,
-    // What the first one is blended into.
+    // Map that the first one is blended into.
     second: i32,
-    // Share of the first one.
+    // Share of the first map.
     weight: f32,
-    // By coverage: the first map that holds the point without what the filter reads around it.
+    // By coverage: the first map that contains the point, but not the filter's footprint around it.
     clamped: i32,
-    // By view depth: where the first map ends.
+    // By view depth: end of the first map.
     far: f32,
 }

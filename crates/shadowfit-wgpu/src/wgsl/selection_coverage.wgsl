@@ -1,13 +1,14 @@
-// A point reads the finest map that holds it with the filter's reach, blended into the next such map toward its border;
-// where there is none, the finest that holds it at all. The maps are tried one after the other, the finest first.
-// SHADOWFIT_REACH and SHADOWFIT_BLEND are texels: what the filter reads around a point, and the width of the blend.
+// A point reads the finest map that covers it, blended into the next such map toward the border. If no map
+// covers the point and the filter's footprint, it reads the finest map that contains the point. Maps are
+// tried one after the other, the finest first. SHADOWFIT_REACH is the radius of the filter's footprint, and
+// SHADOWFIT_BLEND the width of the blend, both in texels.
 
-// Whether the selection may still change by a map. far, blend_near: its view depths.
+// Returns whether a map may still change the selection. far, blend_near: its view depths.
 fn shadowfit_is_open(selection: shadowfit_Selection, entry: i32, view_depth: f32, far: f32, blend_near: f32) -> bool {
     return selection.first < 0 || (selection.second < 0 && selection.weight < 1.0);
 }
 
-// The selection with one more map, of which `free` texels lie around the point.
+// Returns the selection with one more map. free: texels between the point and the map's nearest side.
 fn shadowfit_try(
     selection: shadowfit_Selection, entry: i32, view_depth: f32, far: f32, blend_near: f32, free: f32,
 ) -> shadowfit_Selection {

@@ -1,7 +1,7 @@
-// A point reads the first map that ends beyond its view depth and holds it, blended into the map behind where the two
-// overlap. The maps are tried in order of their ends.
+// A point reads the first map that ends beyond its view depth and contains it, blended into the next map
+// where the two overlap. Maps are tried in the order of their ends.
 
-// Whether the selection may still change by a map. far, blend_near: its view depths.
+// Returns whether a map may still change the selection. far, blend_near: its view depths.
 fn shadowfit_is_open(selection: shadowfit_Selection, entry: i32, view_depth: f32, far: f32, blend_near: f32) -> bool {
     if selection.first < 0 {
         return view_depth < far;
@@ -9,7 +9,7 @@ fn shadowfit_is_open(selection: shadowfit_Selection, entry: i32, view_depth: f32
     return selection.first + 1 == entry && view_depth > blend_near && blend_near < selection.far;
 }
 
-// The selection with one more map, which holds the point if `free` is not negative.
+// Returns the selection with one more map, which contains the point if `free` is not negative.
 fn shadowfit_try(
     selection: shadowfit_Selection, entry: i32, view_depth: f32, far: f32, blend_near: f32, free: f32,
 ) -> shadowfit_Selection {

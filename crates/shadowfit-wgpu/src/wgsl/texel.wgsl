@@ -1,5 +1,6 @@
 
-// The depth at a texel of the layer; up to a map's size beside it, where the map wraps around.
+// Returns the depth at a texel of the layer. The texel may lie up to a map's size outside, where the map
+// wraps around.
 fn shadowfit_stored_texel(texel: vec2<f32>, projected: shadowfit_Projected) -> f32 {
     let ended = select(texel, texel - projected.size, texel >= projected.size);
     let stored = select(ended, ended + projected.size, texel < vec2<f32>(0.0));

@@ -1,9 +1,10 @@
 
-// The depth at a texel of a layer of a depth texture, as it is stored, where shaders can only compare: bit by bit, the
-// greatest depth that is not behind it, or with reversed depth the one after the greatest that is.
+// Returns the stored depth at a texel of a depth texture, for shaders that can only compare. It searches bit
+// by bit for the greatest depth that passes the comparison. With reversed depth, it searches for the greatest
+// depth that fails, and returns the next one.
 fn shadowfit_load(layer: u32, texel: vec2<i32>) -> f32 {
     let at = (vec2<f32>(texel) + 0.5) * shadowfit_unit();
-    // Floats of 0 to 1 are in the order of their bits.
+    // Floats of 0 to 1 are ordered like their bits.
     var bits = 0u;
     for (var bit = 29; bit >= 0; bit -= 1) {
         let tried = min(bits | (1u << u32(bit)), SHADOWFIT_ONE);
@@ -15,5 +16,5 @@ fn shadowfit_load(layer: u32, texel: vec2<i32>) -> f32 {
     return bitcast<f32>(select(bits, bits + 1u, IS_REVERSED && !is_far));
 }
 
-// The bits of 1.
+// Bits of the float 1.
 const SHADOWFIT_ONE: u32 = 0x3f800000u;

@@ -1,5 +1,5 @@
 
-// The depth at a texel of a layer of a colour texture, as it is stored: the first channel.
+// Returns the stored depth at a texel of a colour texture: the first channel.
 fn shadowfit_load(layer: u32, texel: vec2<i32>) -> f32 {
     return textureLoad(shadowfit_texture, texel, i32(layer), 0).x;
 }

@@ -1,6 +1,6 @@
-//! Slanted planes do not shadow themselves with the automatic bias, whatever the filter and the format.
+//! Slanted planes do not shadow themselves with the automatic bias, with any filter and format.
 //!
-//! Patches of planes of many slopes stand in one map, far enough apart that no filter reads two of them.
+//! One map contains patches of planes with many slopes, far enough apart that no filter reads two of them.
 
 use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, Vec3};
@@ -17,10 +17,10 @@ use super::harness::{Harness, ROW};
 const HALF: f32 = 0.6;
 /// Slopes of the patches, in degrees from level.
 const TILTS: [f32; 5] = [0.0, 20.0, 45.0, 65.0, 74.0];
-/// Directions in which they slope, in degrees.
+/// Azimuths of the slopes, in degrees.
 const AZIMUTHS: [f32; 5] = [0.0, 26.0, 45.0, 160.0, 290.0];
 
-/// A patch: its middle and its unit normal.
+/// Returns the centre and unit normal of each patch.
 fn patches() -> Vec<(Vec3, Vec3)> {
     let places = [-6.0, -3.0, 0.0, 3.0, 6.0];
     let patch = |row: usize, column: usize| {
@@ -31,7 +31,7 @@ fn patches() -> Vec<(Vec3, Vec3)> {
     (0..5).flat_map(|row| (0..5).map(move |column| patch(row, column))).collect()
 }
 
-/// The point of a patch's plane at a place across the light, relative to its middle.
+/// Returns the point of a patch's plane at a position across the light, relative to its centre.
 fn on_plane((middle, normal): (Vec3, Vec3), x: f32, z: f32) -> Vec3 {
     middle + Vec3::new(x, -(normal.x * x + normal.z * z) / normal.y, z)
 }
@@ -54,7 +54,7 @@ fn points() -> Vec<Point> {
     patches().into_iter().flat_map(of_patch).collect()
 }
 
-/// Numbers of formats, filters and depths.
+/// Number of formats, filters and depth conventions.
 const COUNTS: [usize; 3] = [MapFormat::ALL.len(), FilterKind::ALL.len(), 2];
 
 #[test]
@@ -68,10 +68,10 @@ fn slanted_planes_are_lit_in_the_full_product_of_formats_filters_and_depths() {
     assert_lit(&full_product(&COUNTS));
 }
 
-/// Least factor of a point that no sample finds in shadow: the mean of samples is a division, exact to 2.5 ULP.
+/// Least factor of a fully lit point: the mean of samples is a division, exact to 2.5 ULP.
 const LIT: f32 = 1.0 - 2.5 * f32::EPSILON;
 
-/// Asserts that slanted planes are lit in maps of formats, filters and depths by their indices.
+/// Asserts that slanted planes are lit in maps of the given formats, filters and depth conventions, by index.
 fn assert_lit(rows: &[Vec<usize>]) {
     let gpu = Engine::shared();
     let (points, casters) = (points(), casters());

@@ -1,5 +1,5 @@
-//! Cached maps equal maps that are drawn from nothing, frame after frame, while the camera walks and turns, casters move,
-//! start, stop and vanish, and the light steps.
+//! Cached maps equal maps that are drawn from scratch, frame after frame, while the camera walks and turns,
+//! casters move, start, stop and vanish, and the light steps.
 
 #[path = "cached_maps/readers.rs"]
 mod readers;
@@ -16,29 +16,30 @@ use crate::differences::Compared;
 use readers::Readers;
 use town::{Block, Pair, Town, Walk, lit_otherwise};
 
-/// Maps of this many texels a side: the software adapter draws them hundreds of times.
+/// Width of the maps in texels. They are small because the software adapter draws them hundreds of times.
 const SIDE: u32 = 256;
 
 fn technique(name: &str) -> Technique {
     Technique::preset(name).expect("a preset").with_resolution(SIDE, SIDE).with_max_distance(60.0)
 }
 
-/// What a run found.
+/// Results of a run.
 #[derive(Debug, Default)]
 struct Found {
     texels: u64,
     unequal: u64,
-    /// Texels that differ in maps that are not kept, and that nothing in view can read.
+    /// Texels that differ in maps that are not kept, and that no visible point can read.
     unread: u64,
-    /// Texels of static casters that each drew.
+    /// Texels of static casters that each variant drew.
     kept_drawn: u64,
     anew_drawn: u64,
     /// Frames in which a map was cleared as a whole.
     cleared: usize,
 }
 
-/// Draws each frame twice, with what is kept and anew, and compares the maps. Those that could not be kept in many frames
-/// in a row hold the casters of what is in view alone: they are compared where it reads them.
+/// Draws each frame twice, with caching and from scratch, and compares the maps. A map that could not be kept
+/// for many frames in a row contains only casters for the visible points. It is compared only where visible
+/// points read it.
 fn run(technique: &Technique, frames: u32, mut step: impl FnMut(u32, &mut Town, &mut Walk, &mut SunShadows)) -> Found {
     let mut pair = Pair::new(technique);
     let (mut town, mut walk, mut found) = (Town::new(), Walk::new(), Found::default());
@@ -108,7 +109,7 @@ fn gpu_casters_that_change_are_drawn_where_they_were_and_where_they_are() {
         town.bob(frame);
         let last = town.blocks.len() - 1;
         match frame % 12 {
-            // One is set elsewhere, one starts to move or stops, one vanishes or comes back, two change numbers.
+            // One caster is moved, one starts to move or stops, one vanishes or comes back, two swap numbers.
             3 => town.blocks[frame as usize * 7 % last].centre += DVec3::new(1.5, 0.3, -0.7),
             5 => {
                 let moves = &mut town.moves[frame as usize * 5 % last];
@@ -121,14 +122,14 @@ fn gpu_casters_that_change_are_drawn_where_they_were_and_where_they_are() {
     });
 }
 
-/// Lets blocks come, go and change their order, each frame in another way.
+/// Makes blocks appear, vanish and change their order, in a different way each frame.
 fn stream(frame: u32, town: &mut Town) {
     let number = frame as usize * 7 % town.blocks.len();
     match frame % 8 {
         0 => drop(town.blocks.splice(number..town.blocks.len().min(number + 3), [])),
         1 => town.blocks.reverse(),
         2 => {
-            // Streets come in at the front: copies of others, set elsewhere.
+            // Streets appear at the front of the list: moved copies of other blocks.
             for i in 0..5 {
                 let mut block = town.blocks[(number + i * 31) % town.blocks.len()];
                 block.id = 1000 + u64::from(frame) * 10 + i as u64;
@@ -157,7 +158,8 @@ fn gpu_streams_in_any_order_hold_what_maps_drawn_anew_hold() {
 
 #[test]
 fn gpu_streams_of_casters_with_keys_that_move_and_change_their_shapes_are_kept_too() {
-    // What moves is always the same, or whatever has a number, so that others start and stop in each frame.
+    // In the first case the same casters always move. In the second the moving ones are chosen by number, so
+    // that others start and stop in each frame.
     let ways: [fn(usize, &Block) -> bool; 2] = [|_, block| block.id % 9 == 3, |number, _| number % 9 == 3];
     for moves in ways {
         run(&technique("windows-4"), 96, |frame, town, walk, _| {
@@ -165,7 +167,7 @@ fn gpu_streams_of_casters_with_keys_that_move_and_change_their_shapes_are_kept_t
             stream(frame, town);
             let numbered = town.blocks.iter().enumerate();
             town.moves = numbered.map(|(number, block)| frame > 20 && moves(number, block)).collect();
-            // Shapes change in the same box, which the key tells; without keys they stay.
+            // Shapes change within the same box, and the key changes with them. Without keys, shapes stay.
             town.has_keys = frame % 40 < 30;
             if town.has_keys && frame % 40 > 0 {
                 for number in [frame as usize * 5, frame as usize * 11] {
@@ -181,7 +183,8 @@ fn gpu_streams_of_casters_with_keys_that_move_and_change_their_shapes_are_kept_t
 fn gpu_maps_that_cannot_be_kept_lack_only_casters_that_nothing_in_view_tells_apart() {
     let found = run(&technique("windows-4"), 40, |frame, town, walk, _| {
         walk.go_on(frame);
-        // All change in most frames, so that the third redraw in a row draws what is in view alone.
+        // All casters change in most frames, so that the third redraw in a row draws only casters for the
+        // visible points.
         if frame % 8 < 6 {
             town.blocks.iter_mut().for_each(|block| block.centre.x += 0.3);
         }
@@ -218,7 +221,7 @@ fn gpu_what_is_removed_in_view_is_gone_at_once_whatever_the_schedule() {
         for _ in 0..60 {
             pair.draw(&town, &walk);
         }
-        // All but the ground, some of it at a time.
+        // Remove all blocks except the ground, a few at a time.
         for left in [200, 120, 60, 30, 1] {
             town.blocks.truncate(left);
             pair.anew.invalidate_all();
@@ -272,7 +275,7 @@ fn gpu_what_stands_still_is_not_drawn_again() {
     let [first, _] = pair.draw(&town, &walk);
     assert_eq!(first.passes, 4);
     let frames: Vec<usize> = (0..40).map(|_| pair.draw(&town, &walk)[0].passes).collect();
-    // Windows are sought anew for some frames, then they are settled.
+    // Windows move for some frames, then they settle.
     assert_eq!(frames[30..], [0; 10], "{frames:?}");
 }
 

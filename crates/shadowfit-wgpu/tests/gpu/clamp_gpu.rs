@@ -1,4 +1,5 @@
-//! Depth clamp on devices without it: the maps of the fragment shaders are equal to the maps of devices that have it.
+//! Depth clamp on devices without it: maps clamped by fragment shaders equal the maps of devices with depth
+//! clamp.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::MapFormat;
@@ -13,7 +14,7 @@ fn descriptor(format: MapFormat, depth: DepthConvention) -> ShadowMapDescriptor 
     ShadowMapDescriptor { resolution: [ROW; 2], maps: 1, format, depth, depth_clamp: true, ..Default::default() }
 }
 
-/// Triangles all over the map, many of them through the near plane or the far one.
+/// Returns triangles all over the map. Many of them cross the near plane or the far plane.
 fn casters(fit: &LightProjection) -> Vec<Vec3> {
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
@@ -37,8 +38,8 @@ fn clamped_maps_are_the_same_texel_for_texel_in_every_format_and_depth() {
                 Harness::with_maps(gpu, &map, &view, &maps, &[casters(&fit)]).stored(0)
             });
             let (near, far) = if depth == DepthConvention::Reversed { (1.0, 0.0) } else { (0.0, 1.0) };
-            // Where shaders find a stored depth by comparisons, drivers may round the compared number to the format, and take
-            // the least numbers for zero.
+            // Where shaders find a stored depth by comparisons, drivers may round the compared number to the
+            // format, and may treat the smallest numbers as zero.
             let is_at = |depth: f32, plane: f32| (depth - plane).abs() < step;
             let at_near = clamped.iter().filter(|depth| is_at(**depth, near)).count();
             let between = clamped.iter().filter(|depth| !is_at(**depth, near) && !is_at(**depth, far)).count();

@@ -1,5 +1,5 @@
-//! Culling in WGSL against its twin in Rust: the same masks for boxes, and the same answers for spheres and oriented
-//! boxes, but where a shape lies within rounding of a plane.
+//! Culling in WGSL equals culling in Rust: the same masks for boxes, spheres and oriented boxes, except where
+//! a shape lies within rounding of a plane.
 
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
@@ -9,14 +9,14 @@ use shadowfit_wgpu::{CullingRegion, WgslOptions, culling_wgsl};
 
 use super::engine::{Engine, dispatch};
 
-/// Shapes that are compared; a multiple of the workgroup's size.
+/// Number of compared shapes; a multiple of the workgroup's size.
 const SHAPES: usize = 4096;
 
-/// Share of a shape's coordinates within which it may be on either side of a plane: the order of f32 operations is
-/// not prescribed in WGSL. Both sides count a shape as touching from 1e-6 of them on.
+/// Relative rounding within which a shape may be on either side of a plane: WGSL does not prescribe the order
+/// of f32 operations. Both implementations count a shape as touching from 1e-6 on.
 const ROUNDING: f32 = 2e-6;
 
-/// A shape as the shader gets it: an oriented box, whose first half axis also gives the sphere's radius.
+/// A shape for the shader: an oriented box, whose first half axis also contains the sphere's radius.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Shape {
@@ -52,10 +52,10 @@ struct Shape {
 }
 ";
 
-/// Where the eye stands; shapes are relative to another place.
+/// Position of the eye. Shapes are relative to another position.
 const EYE: DVec3 = DVec3::new(1000.0, 20.0, -3000.0);
 
-/// Swept and whole volumes of two cascades.
+/// Returns the swept and the whole caster volumes of two cascades.
 fn volumes() -> Vec<CasterVolume> {
     let camera = PerspectiveCamera {
         eye: EYE,
@@ -81,12 +81,12 @@ fn volumes() -> Vec<CasterVolume> {
     swept.chain(maps.iter().map(|map| map.projection.caster_volume())).collect()
 }
 
-/// Numbers in 0..1 that fill the cube evenly.
+/// Returns numbers in 0..1 that fill the cube evenly.
 fn evenly(index: usize, axis: i32) -> f32 {
     (0.5 + (index as f64 + 1.0) * 1.167_303_978_261_418_7_f64.powi(-axis)).fract() as f32
 }
 
-/// Shapes in and around the view, small and large, and some empty boxes.
+/// Returns shapes in and around the view, small and large, and some empty boxes.
 fn shapes() -> Vec<Shape> {
     (0..SHAPES)
         .map(|i| {
@@ -105,7 +105,7 @@ fn shapes() -> Vec<Shape> {
         .collect()
 }
 
-/// The three masks of each shape, as the shader finds them.
+/// Returns the three masks of each shape from the shader.
 fn ask(gpu: &Engine, regions: &[CullingRegion], shapes: &[Shape]) -> Vec<[u32; 4]> {
     let pipeline = gpu.compute_pipeline(None, &(culling_wgsl(&WgslOptions::group(0)) + SHADER), "main");
     let regions = gpu.buffer(regions, wgpu::BufferUsages::STORAGE);
@@ -121,7 +121,7 @@ fn ask(gpu: &Engine, regions: &[CullingRegion], shapes: &[Shape]) -> Vec<[u32; 4
     gpu.values(encoder, &masks)
 }
 
-/// The shape enlarged (or made smaller) by a length, as a sphere and as boxes.
+/// Returns the shape enlarged or reduced by a length, as a box, a sphere and an oriented box.
 fn resized(shape: &Shape, by: f32) -> (Aabb, Sphere, OrientedBox) {
     let vector = |v: [f32; 4]| Vec3::new(v[0], v[1], v[2]);
     let half_axes = shape.half_axes.map(|axis| {

@@ -1,4 +1,4 @@
-//! The compute pass over a depth buffer against its reference in Rust, and what it leaves out.
+//! The compute pass over a depth buffer equals its reference in Rust, and skips the same points.
 
 use shadowfit::demand::DemandSpace;
 use shadowfit::demand::{CLASSES, DEPTHS};
@@ -11,14 +11,14 @@ use shadowfit_wgpu::demand::{DemandPassError, DemandView, DepthBufferError, coun
 use super::demand_picture::{Counts, Drawing, cuboid, demand_pass, draw, infinite, quad, read, record, seen};
 use super::engine::Engine;
 
-/// Width and height of the pictures, in pixels.
+/// Width and height of the views, in pixels.
 const SIZE: [u32; 2] = [160, 90];
 
-/// The light's direction of travel.
+/// Direction of travel of the light.
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.25);
 
-/// Share of the points that rounding may move into a neighbouring cell or bin: the shader computes in f32, the reference
-/// in f64, and depths are those of the same picture.
+/// Share of the points that rounding may move into a neighbouring cell or bin. The shader computes in f32,
+/// the reference in f64, from the same depths.
 const ROUNDING: f64 = 0.001;
 
 fn camera() -> PerspectiveCamera {
@@ -37,7 +37,7 @@ fn view(depth: DepthConvention, size: [u32; 2]) -> DemandView {
     DemandView::from_camera(&camera(), depth, DIRECTION, &MapSettings::default(), size).expect("a good camera")
 }
 
-/// Ground, slopes, boxes and a wall, relative to the eye; the sky is above.
+/// Returns ground, slopes, boxes and a wall, relative to the eye, with the sky above.
 fn scene() -> Vec<Vec3> {
     let mut triangles = ground();
     triangles.extend(quad([
@@ -64,34 +64,34 @@ fn ground() -> Vec<Vec3> {
     quad(corners.map(|(x, z)| Vec3::new(x, y, z))).to_vec()
 }
 
-/// Sum of the differences, and sum of the second.
+/// Returns the sum of the differences, and the sum of `b`.
 fn difference(a: &[u32], b: &[u32]) -> (u64, u64) {
     let differences = a.iter().zip(b).map(|(a, b)| u64::from(a.abs_diff(*b)));
     (differences.sum(), b.iter().map(|count| u64::from(*count)).sum())
 }
 
-/// Asserts that no more than a share of the points is counted elsewhere.
+/// Asserts that at most a share of the points is counted in a different place.
 fn assert_close(name: &str, counts: &Counts, expected: &Counts, share: f64) {
     for (what, a, b) in [("cells", &counts.cells, &expected.cells), ("bins", &counts.bins, &expected.bins)] {
         let (difference, points) = difference(a, b);
-        // A point that is counted elsewhere is missed in one place and too many in the other.
+        // A misplaced point is missing in one place and extra in another.
         let limit = 2.0 * share * points as f64;
         assert!(difference as f64 <= limit, "{name}, {what}: the difference is {difference}, of {points} points");
     }
 }
 
-/// Compares the pass with the reference, and returns what it counted.
+/// Compares the pass with the reference, and returns its counts.
 fn compared(gpu: &Engine, name: &str, view: &DemandView, drawing: &Drawing) -> Counts {
     let texture = draw(gpu, view, &scene(), drawing);
     let counts = Counts::from(&seen(gpu, view, &texture));
     let expected = Counts::from(&count_on_cpu(view, &read(gpu, &texture)).expect("a good view"));
-    assert!(expected.cells.iter().sum::<u32>() > 5000, "{name}: nothing to compare");
+    assert!(expected.cells.iter().sum::<u32>() > 5000, "{name}: too few points to compare");
     assert_eq!(expected.bins.iter().sum::<u32>() > 5000, view.frustum.near > 0.0, "{name}");
     assert_close(name, &counts, &expected, ROUNDING);
     counts
 }
 
-/// An orthographic view from above, at a slant, that begins at a view depth, in metres.
+/// Returns a slanted orthographic view from above that begins at this view depth, in metres.
 fn orthographic(near: f32) -> DemandView {
     let depth = DepthConvention::Reversed;
     let range = 65.0;
@@ -107,13 +107,13 @@ fn orthographic(near: f32) -> DemandView {
     DemandView { frustum: frustum.expect("a good matrix"), clip_from_world, ..view(depth, SIZE) }
 }
 
-/// A view through a portal that leans to a side and hides the lower part of the picture: its near plane is the portal (E.
-/// Lengyel, "Oblique view frustum depth projection and clipping", 2005).
+/// Returns a view through a tilted portal that hides the lower part of the image. Its near plane is the
+/// portal (E. Lengyel, "Oblique view frustum depth projection and clipping", 2005).
 fn portal(depth: DepthConvention) -> DemandView {
     behind_plane(depth, DVec3::new(0.3, 0.5, -1.0), 2.0)
 }
 
-/// A view whose near plane lies at a distance from the eye, in metres, along a normal.
+/// Returns a view whose near plane lies at a distance from the eye, in metres, along a normal.
 fn behind_plane(depth: DepthConvention, normal: DVec3, distance: f64) -> DemandView {
     let view = view(depth, SIZE);
     let matrix = view.clip_from_world.as_dmat4();
@@ -137,7 +137,7 @@ fn counts_are_those_of_the_reference_for_every_kind_of_projection() {
     let camera = camera();
     let clip_from_view = infinite(camera.clip_from_view(DepthConvention::Reversed), camera.near);
     let endless = DemandView { clip_from_world: clip_from_view * camera.view_from_world(), ..reversed };
-    // Mirrored and off its axis: the middle of the picture is at its lower left quarter.
+    // Mirrored and off-axis: the centre of projection is in the lower left quarter.
     let skewed = Mat4::from_cols_array_2d(&[
         [-1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, 0.0],
@@ -231,7 +231,7 @@ fn only_the_first_sample_of_multisampled_depth_is_read() {
     let [first, others, all] = [1, !1, !0].map(|mask| counted(4, mask));
     assert!(others.cells.iter().chain(&others.bins).all(|count| *count == 0), "other samples were read");
     assert_eq!(first, all);
-    // It lies beside the pixel's centre, so that points near the borders of cells move.
+    // The sample is off the pixel's centre, so that points near the borders of cells move.
     for (a, b) in shares(&first).iter().zip(shares(&counted(1, !0))) {
         assert!((a - b).abs() < 0.02, "{a} of the points, and {b} at the centres");
     }
@@ -244,7 +244,7 @@ fn silhouettes_do_not_mix_surfaces() {
     let settings = MapSettings::default();
     let view = DemandView::from_camera(&camera, DepthConvention::Reversed, Vec3::new(0.0, -0.1, -1.0), &settings, SIZE)
         .expect("a good camera");
-    // A wall that fills the picture, and tiles before it.
+    // A wall that fills the view, and tiles in front of it.
     let wall = |x: f32, y: f32, z: f32, side: f32| {
         quad([(-side, side), (side, side), (side, -side), (-side, -side)].map(|(i, j)| Vec3::new(x + i, y + j, z)))
     };
@@ -256,7 +256,7 @@ fn silhouettes_do_not_mix_surfaces() {
     assert!(depths.len() == 2 && depths[1] < DEPTHS, "a wall and tiles, both facing the eye: {depths:?}");
 }
 
-/// Shares of the points in each octave of texels, and in each class and eighth of the depths.
+/// Returns the shares of the points in each octave of texels, and in each class and eighth of the depths.
 fn shares(counts: &Counts) -> Vec<f64> {
     let share = |counts: &[u32], run: usize| -> Vec<f64> {
         let total: u32 = counts.iter().sum();
@@ -270,8 +270,8 @@ fn shares(counts: &Counts) -> Vec<f64> {
 #[test]
 fn shares_of_points_do_not_depend_on_the_resolution() {
     let gpu = Engine::shared();
-    // 1% for the points of pixels that edges cross. An adapter's rounding of corners moves all edges, as long as twice the
-    // picture's border in the coarse picture, by a step.
+    // 1% allows for points of pixels that edges cross. The adapter's rounding of corners moves all edges by
+    // one step. Their total length is twice the border of the coarse image.
     let border = 4.0 * f64::from(SIZE[0] + SIZE[1]);
     let step_share = f64::from(subpixel_step(&gpu.adapter.get_info())) * border / f64::from(SIZE[0] * SIZE[1]);
     let coarse = compared(&gpu, "coarse", &view(DepthConvention::Reversed, SIZE), &Drawing::new(SIZE));
@@ -295,12 +295,12 @@ fn counts_carry_the_stamp_of_their_picture_and_only_the_newest_is_given_once() {
         for view in &views {
             record(&gpu, &mut pass, view, &texture);
         }
-        let seen = pass.wait().expect("the device answers").expect("pictures were recorded");
+        let seen = pass.wait().expect("the device works").expect("frames were recorded");
         let space = DemandSpace::new(&newest.frustum, newest.direction, newest.up, newest.max_distance);
         assert_eq!(Ok(seen.demand().space), space);
         assert_eq!((seen.histogram().near, seen.histogram().far), (0.1, far));
         assert_eq!(Counts::from(&seen), demand_counts(&gpu, &newest, &texture));
-        assert_eq!(pass.take(), Ok(None), "given already");
+        assert_eq!(pass.take(), Ok(None), "already taken");
     }
     record(&gpu, &mut pass, &first, &texture);
     pass.reset();

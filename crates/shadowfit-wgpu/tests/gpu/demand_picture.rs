@@ -7,37 +7,37 @@ use shadowfit_wgpu::demand::{DemandPass, DemandView, Depths};
 use super::engine::Engine;
 use super::engine::picture::{DepthPicture, SeenCorner};
 
-/// How a depth buffer is made.
+/// Settings for drawing a depth buffer.
 #[derive(Clone, Copy)]
 pub(super) struct Drawing {
     /// Width and height of the texture, in pixels.
     pub(super) size: [u32; 2],
     pub(super) samples: u32,
-    /// Which samples are drawn.
+    /// Mask of the drawn samples.
     pub(super) mask: u64,
 }
 
 impl Drawing {
-    /// A texture of one sample a pixel.
+    /// Returns settings for a texture with one sample per pixel.
     pub(super) fn new(size: [u32; 2]) -> Self {
         Self { size, samples: 1, mask: !0 }
     }
 }
 
-/// Corners of the triangles of a quad, around.
+/// Returns the triangles of a quad, whose corners are in order.
 pub(super) fn quad(corners: [Vec3; 4]) -> [Vec3; 6] {
     let [a, b, c, d] = corners;
     [a, b, c, a, c, d]
 }
 
-/// The counts of a picture.
+/// Counts of a view.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
     pub(super) cells: Vec<u32>,
     pub(super) bins: Vec<u32>,
 }
 
-/// Triangles of a box.
+/// Returns the triangles of a box.
 pub(super) fn cuboid(low: Vec3, high: Vec3) -> Vec<Vec3> {
     let at = |bits: usize| {
         Vec3::from_array([0, 1, 2].map(|axis| if bits >> axis & 1 == 1 { high[axis] } else { low[axis] }))
@@ -56,12 +56,12 @@ pub(super) fn draw(gpu: &Engine, view: &DemandView, triangles: &[Vec3], drawing:
     gpu.draw_depths(&DepthPicture { part: view.rectangle, samples, mask, ..whole }, &corners)
 }
 
-/// Reads a texture of one sample a pixel back.
+/// Reads back a texture with one sample per pixel.
 pub(super) fn read(gpu: &Engine, depth: &wgpu::TextureView) -> Depths {
     Depths { width: depth.texture().width(), values: gpu.texels(depth.texture()) }
 }
 
-/// Makes the pass for depth textures of a number of samples.
+/// Creates the pass for depth textures with this number of samples.
 pub(super) fn demand_pass(gpu: &Engine, samples: u32) -> DemandPass {
     gpu.require_depth_loads();
     DemandPass::new(&gpu.device, &gpu.queue, samples).expect("a device that computes")
@@ -71,10 +71,10 @@ pub(super) fn demand_pass(gpu: &Engine, samples: u32) -> DemandPass {
 pub(super) fn seen(gpu: &Engine, view: &DemandView, depth: &wgpu::TextureView) -> VisibleDemand {
     let mut pass = demand_pass(gpu, depth.texture().sample_count());
     record(gpu, &mut pass, view, depth);
-    pass.wait().expect("the device answers").expect("a picture was recorded")
+    pass.wait().expect("the device works").expect("a frame was recorded")
 }
 
-/// Records a picture and submits it.
+/// Records a view and submits it.
 pub(super) fn record(gpu: &Engine, pass: &mut DemandPass, view: &DemandView, depth: &wgpu::TextureView) {
     let mut encoder = gpu.encoder();
     assert_eq!(pass.record(&mut encoder, depth, view, None), Ok(true));
@@ -87,7 +87,7 @@ impl From<&VisibleDemand> for Counts {
     }
 }
 
-/// A perspective with an infinite far plane and reversed depth.
+/// Returns a perspective with an infinite far plane and reversed depth.
 pub(super) fn infinite(clip_from_view: Mat4, near: f32) -> Mat4 {
     let mut matrix = clip_from_view;
     matrix.z_axis.z = 0.0;

@@ -1,8 +1,9 @@
-//! Two maps of the same casters, compared as the rasterisers of all drivers may draw them.
+//! Comparison of two maps of the same casters that allows for the differences between rasterisers.
 //!
-//! A rasteriser rounds a triangle's corners to a step of a texel and may interpolate depth between the rounded corners. Two
-//! draws with matrices that round differently can thus place a corner one step apart. That moves slopes everywhere, and
-//! edges where a texel's centre lies within a step of them. Any other difference is a fault.
+//! A rasteriser rounds a triangle's corners to a step of a texel and may interpolate depth between the
+//! rounded corners. Two draws with matrices that round differently can thus place a corner one step apart.
+//! That moves slopes everywhere, and edges where a texel's centre lies within a step of them. Any other
+//! difference is a bug.
 
 use core::fmt;
 
@@ -10,23 +11,25 @@ use shadowfit_testing::subpixel_step;
 
 use crate::engine::Engine;
 
-/// Greatest difference of depths that counts as equal on level ground: the rounding of matrices and positions.
+/// Greatest difference of depths that counts as equal on level ground: the rounding of matrices and
+/// positions.
 const DEPTH: f32 = 1e-5;
 
-/// Steps by which the corners of two draws may lie apart: one of rounding, and half of one for the matrices.
+/// Greatest distance between the corners of two draws, in steps: one of rounding, and half of one for the
+/// matrices.
 const STEPS: f32 = 1.5;
 
-/// How many times as steep as the flattest triangle at a texel the others may be where no edge passes it.
+/// Greatest ratio between the slopes of triangles at a texel without an edge.
 const BENT: f32 = 2.5;
 
-/// Differences that a map may have however few edges it has: the ends of an edge, in all maps.
+/// Differences that a map may have regardless of its number of edges: the ends of an edge, in all maps.
 const FEW: usize = 8;
 
 /// Two depth maps of the same size.
 pub(crate) struct Compared<'a> {
-    /// Depths by row.
+    /// Depths in rows.
     maps: [&'a [f32]; 2],
-    /// Texels a side.
+    /// Width in texels.
     side: usize,
     /// Texels by which two draws may differ.
     moved: f32,
@@ -35,7 +38,7 @@ pub(crate) struct Compared<'a> {
 
 /// A texel whose depths differ by more than its slope allows.
 pub(crate) struct Difference {
-    /// Index of the texel, by row.
+    /// Index of the texel, in rows.
     pub(crate) texel: usize,
     pub(crate) depths: [f32; 2],
     /// Difference that the slope of the surface allows.
@@ -65,7 +68,7 @@ impl<'a> Compared<'a> {
         differ.map(|texel| self.difference(texel)).filter(Difference::is_beyond_slope).collect()
     }
 
-    /// Asserts that differences lie at edges, and that they are no more than edges explain.
+    /// Asserts that differences lie at edges, and that edges explain their number.
     pub(crate) fn assert_explained(&self, found: &[Difference], what: impl fmt::Display) {
         let adapter = &self.adapter;
         let faults: Vec<_> = found.iter().filter(|found| !found.is_at_edge).collect();
@@ -79,7 +82,8 @@ impl<'a> Compared<'a> {
             return;
         }
         let edges = (0..self.maps[0].len()).filter(|texel| self.is_at_edge(*texel)).count();
-        // A band of three texels lies at an edge. Its centre row shows the other side where the edge moves across a centre.
+        // An edge has a band of three texels. The centre row shows the other side where the edge moves across
+        // a texel's centre.
         let most = FEW + (edges as f32 * self.moved) as usize;
         assert!(
             found.len() <= most,
@@ -111,7 +115,7 @@ impl<'a> Compared<'a> {
         axis(x, 1) + axis(y, self.side)
     }
 
-    /// Whether the depths around a texel differ by more than those of a plane.
+    /// Returns whether the depths around a texel differ by more than those on a plane.
     fn has_edge(&self, map: &[f32], texel: usize) -> bool {
         let (x, y) = (texel % self.side, texel / self.side);
         let last = self.side - 1;

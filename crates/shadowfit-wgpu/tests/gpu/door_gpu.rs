@@ -1,4 +1,4 @@
-//! `SunShadows` as an engine meets it: on the least of devices, twice in one shader, and with input that makes no sense.
+//! `SunShadows` from an engine's view: on minimal devices, twice in one shader, and with invalid input.
 
 #[path = "door/ground.rs"]
 mod ground;
@@ -21,12 +21,12 @@ use shadowfit_wgpu::{
 use crate::engine::Engine;
 use ground::{BOXES, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
 
-/// Small maps: the software adapter draws them often.
+/// Returns a technique with small maps, because the software adapter draws them often.
 fn technique() -> Technique {
     Technique::default().with_resolution(256, 256).with_max_distance(40.0)
 }
 
-/// Where the shadow of the block lies on the ground, by the sun's direction; and where nothing is.
+/// Ground points in the block's shadow, by light, and a lit ground point.
 const IN_SUN_SHADOW: [f32; 2] = [1.0, 0.0];
 const IN_MOON_SHADOW: [f32; 2] = [-1.0, 0.0];
 const LIT: [f32; 2] = [0.0, 5.0];
@@ -56,7 +56,7 @@ fn gpu_the_default_technique_runs_on_a_device_of_webgl2_limits_without_an_error(
         let mut encoder = device.encoder();
         let convention = shadowfit::DepthConvention::Reversed;
         let recorded = sun.record_demand(&mut encoder, &depth, camera.clip_from_world(convention), convention);
-        assert_eq!(recorded, Ok(false), "such a device cannot count");
+        assert_eq!(recorded, Ok(false), "this device cannot count");
         assert_eq!(sun.wait_for_demand(), Ok(()));
     }
     quiet.assert("WebGL2's limits");
@@ -93,8 +93,8 @@ fn gpu_a_technique_that_no_maps_can_be_made_of_is_refused_with_its_value_and_the
     let bad = [
         (technique().with_resolution(0, 2048), vec!["0 × 2048", "256 to 8192"]),
         (technique().with_resolution(2048, 100_000), vec!["2048 × 100000", "256 to 8192"]),
-        (technique().with_count(0), vec!["0 shadow maps", "between 1 and 8"]),
-        (technique().with_count(9), vec!["9 shadow maps", "between 1 and 8"]),
+        (technique().with_count(0), vec!["0 shadow maps", "1 to 8"]),
+        (technique().with_count(9), vec!["9 shadow maps", "1 to 8"]),
         (clamped, vec!["PCSS with depth clamp", "another filter"]),
     ];
     let views = [camera(EYE).frustum().expect("a camera")];
@@ -111,7 +111,7 @@ fn gpu_a_technique_that_no_maps_can_be_made_of_is_refused_with_its_value_and_the
     quiet.assert("techniques that are refused");
 }
 
-/// Frames that make no sense, and what their errors have to say.
+/// Returns invalid frames, and the words that their errors must contain.
 fn bad_frames<'a>(good: &SunFrame<'a>, views: &'a [[ViewFrustum; 1]; 3]) -> Vec<(SunFrame<'a>, &'static str)> {
     vec![
         (SunFrame { views: &[], ..*good }, "view"),
@@ -143,7 +143,7 @@ fn gpu_a_frame_that_makes_no_sense_is_refused_with_its_value_and_the_next_one_is
     for (bad, word) in bad_frames(&good, &odd) {
         let error = sun.update(&device.queue, &bad).expect_err(word);
         assert!(error.to_string().contains(word), "{error}: {word}");
-        assert_eq!(sun.passes().len(), 0, "{word}: there is nothing to draw");
+        assert_eq!(sun.passes().len(), 0, "{word}: the frame has passes");
         let mut encoder = device.encoder();
         let convention = shadowfit::DepthConvention::Reversed;
         let clip_from_world = camera(EYE).clip_from_world(convention);
@@ -170,8 +170,8 @@ fn gpu_scenes_without_casters_or_receivers_and_lists_of_other_lengths_are_drawn(
     let frames = [
         ("moves that are too short", with(&[true]), true),
         ("moves that are too long", with(&[false, true, false, true, true, true]), true),
-        ("no receivers are known", SunFrame { receivers: None, ..good }, true),
-        ("a box that is empty", frame_of(&views, SUN, &empty_boxes), true),
+        ("unknown receivers", SunFrame { receivers: None, ..good }, true),
+        ("an empty box", frame_of(&views, SUN, &empty_boxes), true),
         ("no casters", SunFrame { casters: Casters::default(), ..good }, false),
     ];
     for (what, frame, has_shadow) in frames {
@@ -182,7 +182,7 @@ fn gpu_scenes_without_casters_or_receivers_and_lists_of_other_lengths_are_drawn(
     let nothing_receives = SunFrame { receivers: Some(Boxes::default()), ..good };
     sun.update(&device.queue, &nothing_receives).expect("a scene in which nothing receives shadows");
     painter.draw(&device, &[(&sun, &BOXES)]);
-    // A box that is not a number may be refused or ignored, and leaves no trace.
+    // A box with NaN may be refused or ignored, and must not affect later frames.
     let refused = sun.update(&device.queue, &frame_of(&views, SUN, &odd_boxes));
     assert!(matches!(refused, Ok(()) | Err(SunShadowsError::Fit(FitError::NotFinite { .. }))), "{refused:?}");
     sun.update(&device.queue, &good).expect("a good frame");
@@ -213,7 +213,7 @@ fn gpu_maps_of_another_size_or_number_are_refused_by_the_drawing_half() {
     assert_eq!(refused, ShadowMapError::TooManyFits { fits: 5, layers: 4 });
     kept.prepare(&device.queue, &frame, &own).expect("its own maps");
     assert_eq!(kept.passes().len(), 4);
-    // Another end of shadows needs no other maps, and one that makes no sense is refused.
+    // Another shadow distance needs no new maps, and an invalid fade is refused.
     let nearer = technique().with_max_distance(30.0).with_fade(0.5);
     assert_eq!(kept.set_technique(&nearer), Ok(false));
     assert_eq!(kept.map().descriptor().fade, [15.0, 30.0]);
@@ -230,7 +230,7 @@ fn gpu_a_proof_fails_where_shaders_take_positions_from_too_far_away() {
     let mut sun = SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
     let nothing = frame_of(&[], SUN, &BOXES);
     assert_eq!(sun.prove(&nothing), Err(SunShadowsError::NoFrame));
-    // The f32 numbers there are half a metre apart.
+    // f32 numbers at this distance are half a metre apart.
     let place = DVec3::X * 8_000_000.0;
     let views = [ViewFrustum { origin: EYE + place, ..camera(EYE).frustum().expect("a camera") }];
     let boxes = Boxes { origin: place, boxes: &BOXES };
@@ -243,8 +243,8 @@ fn gpu_a_proof_fails_where_shaders_take_positions_from_too_far_away() {
     quiet.assert("proofs");
 }
 
-/// The bias of a map that waits must cover the rounding of positions relative to the new eye: a ground of 40 km makes that
-/// rounding larger than any other part of the bias.
+/// The bias of a map that waits must cover the rounding of positions relative to the new eye. A ground of 40
+/// km makes that rounding larger than any other part of the bias.
 #[test]
 fn gpu_maps_that_wait_over_a_large_ground_stay_proven() {
     let device = Engine::shared();

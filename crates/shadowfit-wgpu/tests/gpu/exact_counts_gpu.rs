@@ -1,4 +1,5 @@
-//! A picture that can be counted by hand: a rectangle over a plane under a vertical light, all on texel boundaries.
+//! An image that can be counted by hand: a rectangle over a plane under a vertical light, all on texel
+//! boundaries.
 //!
 //! ```text
 //!        light │││││││││││
@@ -17,12 +18,13 @@ use super::engine::Engine;
 use super::engine::points::Point;
 use super::harness::{Answer, Harness, ROW};
 
-/// Texels of the map, each way.
+/// Width of the map in texels.
 const TEXELS: u32 = ROW;
 /// Size of a texel, in metres. Like every number here it is exact in f32.
 const TEXEL: f32 = 1.0 / 16.0;
-/// Share of its extent by which a fit widens its box against rounding, at most: on both sides 28 · 2⁻²⁴
-/// of the extent, twice in depth, and of the farthest corner's distance: 12 m, where the extent is 5 m at least.
+/// Greatest share of its extent by which a fit widens its box against rounding: on both sides 28 · 2⁻²⁴ of
+/// the extent, twice in depth, and of the farthest corner's distance, which is 12 m for an extent of at least
+/// 5 m.
 const WIDENED: f32 = 2.0 * 28.0 / 16_777_216.0 * (2.0 + 12.0 / 5.0);
 /// Corners of the caster, in metres: x, then z.
 const CASTER: [[f32; 2]; 2] = [[-2.0, 3.0], [-1.0, 2.0]];
@@ -31,7 +33,7 @@ const HEIGHT: f32 = 2.0;
 /// Texels of the caster's shadow: 5 m × 3 m.
 const SHADOWED: usize = 80 * 48;
 
-/// The fit of a box of 16 m × 5 m × 16 m around the origin, seen from the box's middle along -z.
+/// Returns the fit of a box of 16 m × 5 m × 16 m around the origin, viewed from the box's centre along -z.
 pub(super) fn box_fit(depth: DepthConvention) -> LightProjection {
     let corner = |x: f32, y: f32, z: f32| Vec3::new(x * 8.0, if y > 0.0 { 4.0 } else { -1.0 }, z * 8.0);
     let face = |z| [corner(-1.0, 1.0, z), corner(1.0, 1.0, z), corner(1.0, -1.0, z), corner(-1.0, -1.0, z)];
@@ -54,7 +56,7 @@ fn caster(height: f32) -> Vec<Vec3> {
     vec![a, b, c, a, c, d]
 }
 
-/// Points of the plane at the centres of the map's texels, rows from the map's top, which is -z.
+/// Returns points of the plane at the centres of the map's texels, in rows from the map's top, which is -z.
 fn plane() -> Vec<Point> {
     let middle = |index: u32| (index as f32 + 0.5) * TEXEL - 8.0;
     (0..TEXELS * TEXELS)
@@ -92,7 +94,7 @@ fn the_fit_has_texels_of_a_sixteenth_metre_on_the_grid() {
     }
 }
 
-/// Numbers of formats, filters and depths.
+/// Number of formats, filters and depth conventions.
 const COUNTS: [usize; 3] = [MapFormat::ALL.len(), 2, 2];
 
 #[test]
@@ -106,14 +108,16 @@ fn the_shadow_has_the_caster_s_area_in_the_full_product_of_formats_filters_and_d
     assert_exact(&full_product(&COUNTS));
 }
 
-/// Asserts that the shadow covers exactly the texels under the caster, for formats, filters and depths by their indices.
+/// Asserts that the shadow covers exactly the texels under the caster, for formats, filters and depth
+/// conventions by index.
 fn assert_exact(rows: &[Vec<usize>]) {
     let plane = plane();
     let expected: Vec<f32> = plane.iter().map(|point| if is_under_the_caster(point) { 0.0 } else { 1.0 }).collect();
     assert_eq!(expected.iter().filter(|factor| **factor == 0.0).count(), SHADOWED);
     for row in rows {
         let format = MapFormat::ALL[row[0]];
-        // At texel centres the 2×2 filter has all its weight on one texel, except for the share by which the box is widened.
+        // At texel centres the 2×2 filter reads a single texel, except for the share by which the box is
+        // widened.
         let filter = [FilterKind::Point, FilterKind::Hardware2x2][row[1]];
         let depth = [DepthConvention::ZeroToOne, DepthConvention::Reversed][row[2]];
         let factors: Vec<f32> = answers(format, filter, depth).iter().map(|answer| answer.factor).collect();
@@ -133,7 +137,7 @@ fn the_map_stores_the_caster_s_depth_in_its_texels_and_the_far_plane_elsewhere()
             [MapFormat::Depth32Float, MapFormat::R32Float].map(|format| answers(format, FilterKind::Point, depth));
         for (point, (a, b)) in plane().iter().zip(as_depth.iter().zip(&as_color)) {
             let expected: f32 = if is_under_the_caster(point) { near } else { far };
-            // The box is widened about its middle, and depths are interpolated with a few roundings of 2⁻²⁴.
+            // The box is widened about its centre, and depths are interpolated with a few roundings of 2⁻²⁴.
             let tolerance = (expected - 0.5).abs() * WIDENED + 4.0 / 16_777_216.0;
             assert!((a.stored - expected).abs() <= tolerance, "{depth:?} {point:?}: {a:?}");
             assert_eq!(a.stored.to_bits(), b.stored.to_bits(), "{depth:?} {point:?}: both formats store one depth");
@@ -155,8 +159,8 @@ fn depth_clamp_alone_keeps_a_caster_before_the_near_plane_and_stores_it_there() 
                 for (point, answer) in plane().iter().zip(answers_under(BEFORE_THE_NEAR_PLANE, &descriptor)) {
                     let is_kept = depth_clamp && is_under_the_caster(point);
                     let (factor, stored) = if is_kept { (0.0, near) } else { (1.0, far) };
-                    // Shaders may take numbers below the least normal one for zero: where they find a depth by
-                    // comparisons, a stored zero comes back as any of them.
+                    // Shaders may treat denormal numbers as zero. Where they find a depth by comparisons, a
+                    // stored zero may come back as any denormal number.
                     let is_there = (answer.stored - stored).abs() < f32::MIN_POSITIVE;
                     assert!(answer.factor == factor && is_there, "{descriptor:?} {point:?}: {answer:?}");
                 }

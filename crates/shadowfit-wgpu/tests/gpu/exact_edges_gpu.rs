@@ -1,5 +1,5 @@
-//! The edge pass as an engine meets it: against its twin in plain Rust, and with pictures, budgets, boxes and schedules
-//! of all kinds.
+//! The edge pass from an engine's view: it equals its reference in plain Rust, and works with all kinds of
+//! views, budgets, boxes and schedules.
 
 #[path = "exact_edges/any_hit_gpu.rs"]
 mod any_hit_gpu;

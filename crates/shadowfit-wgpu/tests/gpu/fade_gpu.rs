@@ -10,7 +10,7 @@ use super::engine::points::Point;
 use super::exact_counts_gpu::box_fit;
 use super::harness::{Harness, ROW};
 
-/// A triangle before the whole map, at the near plane.
+/// Returns a triangle that shadows the whole map, at the near plane.
 fn lid(fit: &LightProjection) -> Vec<Vec3> {
     let c = fit.corners();
     let (right, below) = (c[1] - c[0], c[3] - c[0]);
@@ -18,7 +18,8 @@ fn lid(fit: &LightProjection) -> Vec<Vec3> {
     vec![start, start + right * 5.0, start + below * 5.0]
 }
 
-/// Factors of points in shadow at view depths of 0.1 to 9.9 m, and the maps that they read, by the fade.
+/// Returns the factors of points in shadow at view depths of 0.1 to 9.9 m, and the maps that they read, for a
+/// fade.
 fn read(fade: [f32; 2]) -> Vec<(f32, f32, i32)> {
     let gpu = Engine::shared();
     let fit = box_fit(DepthConvention::ZeroToOne);

@@ -12,19 +12,19 @@ use super::exact_counts_gpu::box_fit;
 
 /// Width and height of the map: a million texels.
 const SIDE: u32 = 1024;
-/// Bits of 1.
+/// Bits of the float 1.
 const ONE: u32 = 0x3f80_0000;
-/// Bits of the least number that is not denormal.
+/// Bits of the smallest number that is not denormal.
 const NORMAL: u32 = 0x0080_0000;
 
-/// Writes to each texel a depth of its own, the last of them 1.
+/// Writes a different depth to each texel, the last of them 1.
 const WRITE: &str = "
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
     return shadowfit_caster_color(bitcast<f32>(bits_of(u32(pixel.y) * SIDE + u32(pixel.x))));
 }
 ";
 
-/// Reads them as bits, in two halves that f32 holds.
+/// Reads the depths as bits, in two halves that f32 can hold.
 const READ: &str = "
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
     let bits = bitcast<u32>(shadowfit_stored(0, vec2<i32>(pixel.xy)));
@@ -32,7 +32,8 @@ const READ: &str = "
 }
 ";
 
-/// Spreads 2²⁰ numbers over the bits from 0 to 1; the last one is 1.
+/// Returns the bits of the depth with this index. The 2²⁰ numbers are spread from 0 to 1, and the last one is
+/// 1.
 fn bits_of(index: u32) -> u32 {
     if index == SIDE * SIDE - 1 { ONE } else { index * 1015 }
 }
@@ -55,7 +56,7 @@ fn pipeline(
     Pipeline { layout: Some(&layout), targets: &targets, depth, ..Pipeline::new(&wgsl) }.make(gpu)
 }
 
-/// The bits that a shader reads in each texel.
+/// Returns the bits that a shader reads in each texel.
 fn read_bits(gpu: &Engine, map: &ShadowMap) -> Vec<u32> {
     let format = wgpu::TextureFormat::Rgba32Float;
     let target = gpu.texture(map.descriptor().resolution, 1, format, READ_BACK);

@@ -1,6 +1,6 @@
-//! Maps whose casters a compute shader finds hold what maps hold whose casters the CPU lists: texel by texel, frame after
-//! frame, while the camera walks and turns, casters move, shrink, vanish and come back. The engine is that of the example
-//! `gpu_casters`.
+//! Maps whose casters are found by a compute shader equal maps whose casters the CPU lists, texel by texel
+//! and frame after frame, while the camera walks and turns, and casters move, shrink, vanish and come back.
+//! The engine belongs to the example `gpu_casters`.
 
 #[path = "../../../../examples/gpu_casters/engine.rs"]
 mod engine;
@@ -17,7 +17,7 @@ use crate::engine::Engine;
 use engine::GpuCasters;
 use town::Town;
 
-/// Texels of a map, a side.
+/// Width of a map in texels.
 const SIDE: u32 = 256;
 
 const SUNLIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
@@ -30,20 +30,20 @@ struct Pair {
     casters: GpuCasters,
 }
 
-/// What a run drew.
+/// Results of a run.
 #[derive(Debug, Default)]
 struct Found {
     /// Texels that differ.
     unequal: usize,
-    /// Passes of each content.
+    /// Passes of each kind.
     all: usize,
     fixed: usize,
     moving: usize,
     /// Passes after the first frame in which a map was cleared as a whole.
     cleared: usize,
-    /// Frames in which a map was stored from another texel on than its first.
+    /// Frames in which a map wrapped around in its layer.
     wrapped: usize,
-    /// Casters that the compute shader found, and that were listed.
+    /// Casters that the compute shader found, and casters that were listed.
     by_shader: usize,
     by_lists: usize,
 }
@@ -59,7 +59,8 @@ impl Pair {
         Self { gpu, by_shader, by_lists, casters }
     }
 
-    /// Draws what the maps can store, whatever is in view: then they hold the same, however much of them is kept.
+    /// Draws all casters that the maps can store, so that both sets have the same content however much of it
+    /// is kept.
     fn whole_maps(mut self) -> Self {
         for sun in [&mut self.by_shader, &mut self.by_lists] {
             sun.set_culling(Culling::WholeMap);
@@ -67,7 +68,7 @@ impl Pair {
         self
     }
 
-    /// Draws a frame with both, of maps that are fitted to the coarse boxes, and compares them.
+    /// Draws a frame with both sets, with maps fitted to the coarse boxes, and compares them.
     fn draw(&mut self, town: &Town, frame: u32, found: &mut Found) {
         let views = [camera(frame).frustum().expect("a camera")];
         let coarse = Boxes::world(&town.cells);
@@ -85,12 +86,12 @@ impl Pair {
         found.by_lists += self.draw_by_lists();
         let [a, b] = [&self.by_shader, &self.by_lists].map(|sun| self.gpu.unwrapped(sun));
         for (map, (a, b)) in a.iter().zip(&b).enumerate() {
-            // What is kept was drawn with a matrix that is rounded otherwise.
+            // Kept parts were drawn with a matrix that is rounded differently.
             let compared = Compared::new(&self.gpu, [a, b], SIDE);
             let differ = compared.differences();
             compared.assert_explained(&differ, format_args!("frame {frame}, map {map}"));
             found.unequal += differ.len();
-            assert!(frame > 0 || map > 0 || a.iter().any(|depth| *depth < 1.0), "nothing was drawn");
+            assert!(frame > 0 || map > 0 || a.iter().any(|depth| *depth < 1.0), "the map is empty");
         }
         for pass in self.by_shader.passes() {
             let of_content = match pass.content() {
@@ -104,7 +105,7 @@ impl Pair {
         found.wrapped += usize::from(self.by_shader.maps().iter().any(|map| map.texel_offset.max_element() > 0));
     }
 
-    /// Returns the number of casters that were drawn.
+    /// Draws the casters that the compute shader finds, and returns their number.
     fn draw_by_shader(&self) -> usize {
         let mut encoder = self.gpu.encoder();
         let draws = self.casters.cull(&mut encoder, &self.by_shader);
@@ -120,7 +121,7 @@ impl Pair {
         arguments.iter().map(|[_, instances, ..]| *instances as usize).sum()
     }
 
-    /// The same with the lists.
+    /// Draws the listed casters, and returns their number.
     fn draw_by_lists(&self) -> usize {
         let mut drawn = 0;
         let mut encoder = self.gpu.encoder();
@@ -135,7 +136,7 @@ impl Pair {
     }
 }
 
-/// A walk with turns, and a look at another place in every second.
+/// Returns the camera of a walk with turns, which oscillates about its direction.
 fn camera(frame: u32) -> PerspectiveCamera {
     let angle = (frame as f32 * 0.7).to_radians() + 0.5 * (frame as f32 * 0.05).sin();
     PerspectiveCamera {
@@ -157,7 +158,7 @@ fn gpu_casters_that_a_compute_shader_finds_make_the_maps_that_lists_make() {
     for frame in 0..60 {
         town.bob(frame);
         let number = 1 + frame as usize * 97 % (town.blocks.len() - 1);
-        // One that stands still shrinks, vanishes or comes back within its coarse box.
+        // A static caster shrinks, vanishes or comes back within its coarse box.
         if frame % 5 == 3 && town.blocks[number].moves == 0 {
             let block = &mut town.blocks[number];
             let before = block.aabb();

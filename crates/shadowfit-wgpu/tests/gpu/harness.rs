@@ -1,5 +1,5 @@
-//! A shadow map alone, as an engine would draw and read it: triangles are its casters, and the receiver's WGSL is evaluated at
-//! given points.
+//! A shadow map without other parts of an engine: it draws triangles as casters, and evaluates the receiver's
+//! WGSL at given points.
 
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::selection::DepthRange;
@@ -11,20 +11,20 @@ use super::engine::Engine;
 use super::engine::casters::{CasterShader, Casters, Shape, look_up_wgsl};
 use super::engine::points::{Bound, Point, Values};
 
-/// What the WGSL makes of a point.
+/// Results of the WGSL at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Answer {
-    /// Texture coordinates and depth by `shadowfit_project` in the map asked for.
+    /// Texture coordinates and depth from `shadowfit_project` in the requested map.
     pub(super) projected: Vec3,
-    /// The plane's change of depth over a texel.
+    /// Change of the plane's depth over a texel.
     pub(super) gradient: Vec2,
     /// `shadowfit_factor` over all maps.
     pub(super) factor: f32,
-    /// `shadowfit_stored` at the texel of the point's index: x runs over a row.
+    /// `shadowfit_stored` at the texel with the point's index, in rows.
     pub(super) stored: f32,
 }
 
-/// Which map the WGSL reads at a point.
+/// Map that the WGSL reads at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Selection {
     /// `shadowfit_map_index`.
@@ -33,10 +33,10 @@ pub(super) struct Selection {
     pub(super) view_depth: f32,
 }
 
-/// Points in a row of the picture of answers; a power of two keeps the pixels' centres exact.
+/// Points per row of the answers' texture. A power of two keeps the pixels' centres exact.
 pub(super) const ROW: u32 = 256;
 
-/// The WGSL of [`Harness::ask`].
+/// WGSL of [`Harness::ask`].
 const LOOK_UP: &str = "
 fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
     let found = shadowfit_project(shadowfit_receiver.maps[MAP], position, normal);
@@ -46,14 +46,14 @@ fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
 }
 ";
 
-/// The WGSL of [`Harness::turned`].
+/// WGSL of [`Harness::turned`].
 const TURNED: &str = "
 fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
     return Answer(vec4<f32>(shadowfit_factor_at(position, normal, pixel)), vec4<f32>(0.0));
 }
 ";
 
-/// The WGSL of [`Harness::selections`].
+/// WGSL of [`Harness::selections`].
 const SELECTION: &str = "
 fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
     let map = f32(shadowfit_map_index(position));
@@ -61,22 +61,22 @@ fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
 }
 ";
 
-/// The WGSL of [`Harness::stored`].
+/// WGSL of [`Harness::stored`].
 const STORED: &str = "
 fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
     return Answer(vec4<f32>(shadowfit_stored(i32(MAP), vec2<i32>(pixel))), vec4<f32>(0.0));
 }
 ";
 
-/// A shadow map with its casters drawn.
+/// A shadow map with drawn casters.
 pub(super) struct Harness<'a> {
     gpu: &'a Engine,
     map: ShadowMap,
 }
 
 impl<'a> Harness<'a> {
-    /// Draws `casters`, triangles relative to `origin`, into every map; `casters[i]` into map i. Points of all view
-    /// depths read the first map that covers them.
+    /// Draws `casters[i]`, triangles relative to `origin`, into map i. Points of all view depths read the
+    /// first map that covers them.
     pub(super) fn new(
         gpu: &'a Engine,
         descriptor: &ShadowMapDescriptor,
@@ -93,7 +93,7 @@ impl<'a> Harness<'a> {
         Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, casters)
     }
 
-    /// The same for maps that are chosen by view depth.
+    /// Draws casters into maps that are selected by view depth.
     pub(super) fn with_maps(
         gpu: &'a Engine,
         descriptor: &ShadowMapDescriptor,
@@ -104,7 +104,7 @@ impl<'a> Harness<'a> {
         Self::with_caster_group(gpu, descriptor, view, maps, casters, 0)
     }
 
-    /// The same with the map's matrix at a bind group of the shadow pass.
+    /// Draws casters with the map's matrix at this bind group of the shadow pass.
     pub(super) fn with_caster_group(
         gpu: &'a Engine,
         descriptor: &ShadowMapDescriptor,
@@ -124,7 +124,7 @@ impl<'a> Harness<'a> {
         Self { gpu, map }
     }
 
-    /// Asks the WGSL about points, at most [`ROW`]² of them; projections are those of map `index`.
+    /// Evaluates the WGSL at points, at most [`ROW`]². Projections are into map `index`.
     pub(super) fn ask(&self, index: u32, points: &[Point]) -> Vec<Answer> {
         let answer = |Values { one: [x, y, z, factor], other: [stored, across, down, _] }: Values| Answer {
             projected: Vec3::new(x, y, z),
@@ -135,18 +135,19 @@ impl<'a> Harness<'a> {
         self.draw(&LOOK_UP.replace("MAP", &format!("{index}u")), points).into_iter().map(answer).collect()
     }
 
-    /// `shadowfit_factor_at` for points, at most [`ROW`]² of them; point i is pixel (i mod [`ROW`], i / [`ROW`]).
+    /// Evaluates `shadowfit_factor_at` at points, at most [`ROW`]². Point i is pixel (i mod [`ROW`], i /
+    /// [`ROW`]).
     pub(super) fn turned(&self, points: &[Point]) -> Vec<f32> {
         self.draw(TURNED, points).iter().map(|values| values.one[0]).collect()
     }
 
-    /// The stored depths of a map of [`ROW`]² texels, rows from the top.
+    /// Returns the stored depths of a map of [`ROW`]² texels, in rows from the top.
     pub(super) fn stored(&self, index: u32) -> Vec<f32> {
         let nowhere = vec![Point { position: [0.0; 3], normal: [0.0, 1.0, 0.0] }; (ROW * ROW) as usize];
         self.draw(&STORED.replace("MAP", &format!("{index}u")), &nowhere).iter().map(|values| values.one[0]).collect()
     }
 
-    /// Asks the WGSL which map it reads at points, at most [`ROW`]² of them.
+    /// Returns the map that the WGSL reads at each point, for at most [`ROW`]² points.
     pub(super) fn selections(&self, points: &[Point]) -> Vec<Selection> {
         let selection = |values: &Values| Selection { map: values.one[0] as i32, view_depth: values.one[1] };
         self.draw(SELECTION, points).iter().map(selection).collect()

@@ -1,4 +1,5 @@
-//! Rust structs against naga's reflection of the WGSL that reads them: size, and every field's offset by its name.
+//! Layout of Rust structs equals naga's reflection of the WGSL that reads them: size, and each field's offset
+//! by name.
 
 use core::mem::offset_of;
 
@@ -14,7 +15,7 @@ use shadowfit_wgpu::{
     CullingRegion, MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl,
 };
 
-/// Boxes around unknown casters that a picture may have.
+/// Maximum number of boxes around unknown casters in a frame.
 pub(super) const MAX_UNKNOWN: usize =
     (size_of::<EdgeUniform>() - offset_of!(EdgeUniform, unknown)) / size_of::<UnknownUniform>();
 
@@ -87,7 +88,7 @@ fn what_a_look_up_into_two_sets_of_maps_reads_lies_as_in_wgsl() {
     let module = receiver(&ShadowMapDescriptor { cross_fades: true, ..Default::default() });
     let fading = layout!("shadowfit_Fading" = FadingUniform { now, before, share, first_layer, padding_0, padding_1 });
     assert_same(&module, &fading);
-    // The sets themselves are what the only one is elsewhere.
+    // Both sets have the same layout as the only set without cross-fades.
     assert_eq!(reflected(&module, "shadowfit_Receiver").1 as usize, size_of::<ReceiverUniform>());
     assert_eq!(reflected(&module, "shadowfit_Map").1 as usize, size_of::<MapUniform>());
 }
@@ -180,7 +181,7 @@ fn the_uniforms_of_the_edge_passes_lie_as_in_wgsl() {
         });
         assert_eq!(counts, [Edges::MAX_SAMPLES as usize, MAX_UNKNOWN]);
     }
-    // These are written as four numbers: how many pixels, and the frame; and a layer.
+    // Rust code writes these as four numbers: the budget in pixels and the frame, and a layer.
     for (module, name, fields) in
         [(&select, "Budget", &[("pixels", 0), ("frame", 4)][..]), (&blocks, "Layer", &[("layer", 0)])]
     {

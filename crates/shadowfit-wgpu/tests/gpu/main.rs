@@ -1,8 +1,8 @@
-//! Tests of shadowfit-wgpu: its WGSL and its uniforms, which need no GPU, and maps, look-ups and passes on the
-//! adapter of the tests. `engine` is the renderer of all tests that draw.
+//! Tests of shadowfit-wgpu. Its WGSL and its uniforms need no GPU. Maps, look-ups and passes run on the test
+//! adapter. `engine` is the renderer of all tests that draw.
 //!
-//! Tests that need a graphics device have `gpu` in their path, and `cargo xtask test` leaves them out on machines without
-//! one.
+//! Tests that need a graphics device have `gpu` in their path, and `cargo xtask test` skips them on machines
+//! without one.
 
 mod acne_gpu;
 mod cached_maps_gpu;

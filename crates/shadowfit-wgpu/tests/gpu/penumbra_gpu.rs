@@ -1,5 +1,5 @@
-//! How wide penumbrae are: a straight edge over a plane across the light, from where 5% of the light reach the plane to
-//! where 95% do, against the closed form for a light of uniform brightness.
+//! Width of penumbrae: a straight edge over a plane across the light, from 5% to 95% of the light, compared
+//! with the closed form for a light of uniform brightness.
 //!
 //! ```text
 //!          light │││││││││││
@@ -18,12 +18,13 @@ use super::engine::Engine;
 use super::engine::points::Point;
 use super::harness::{Harness, ROW};
 
-/// Texels of the map, each way.
+/// Width of the map in texels.
 const TEXELS: u32 = 512;
 /// Rows of points across the edge.
 const ROWS: usize = 160;
 
-/// A box of 6 m under a vertical light, with texels of a size, turned about the light by an angle in radians.
+/// Returns the fit of a box of 6 m height under a vertical light, with texels of this size, rotated about the
+/// light by an angle in radians.
 fn turned_fit(texel: f32, angle: f32, depth: DepthConvention) -> LightProjection {
     let half = texel * TEXELS as f32 * 0.5;
     let (sine, cosine) = angle.sin_cos();
@@ -43,7 +44,7 @@ fn turned_fit(texel: f32, angle: f32, depth: DepthConvention) -> LightProjection
     fit(&frustum, Vec3::NEG_Y, &settings).expect("a good fit")
 }
 
-/// The half-plane x < 0 at a height, but not beyond the map.
+/// Returns the half-plane x < 0 at a height, limited to the map.
 fn edge(height: f32, texel: f32) -> Vec<Vec3> {
     let far = texel * TEXELS as f32;
     let corner = |x: f32, z: f32| Vec3::new(x, height, z);
@@ -51,7 +52,7 @@ fn edge(height: f32, texel: f32) -> Vec<Vec3> {
     vec![a, b, c, a, c, d]
 }
 
-/// A filter and a map that it is read from.
+/// A filter, and the map that it reads.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     filter: FilterKind,
@@ -62,8 +63,8 @@ struct Case {
     angle: f32,
 }
 
-/// Width of the penumbra from 5% to 95% of the light, in metres: of the means over pixels along the edge. `radius` is
-/// about that of the penumbra.
+/// Returns the width of the penumbra from 5% to 95% of the light, in metres, from means over the pixels along
+/// the edge. `radius` is roughly the penumbra's radius.
 fn width(case: &Case, height: f32, radius: f32) -> f32 {
     let Case { filter, softness, format, depth, texel, angle } = *case;
     let gpu = Engine::shared();
@@ -83,7 +84,7 @@ fn width(case: &Case, height: f32, radius: f32) -> f32 {
     let across = |row: usize| ((row as f32 + 0.5) / ROWS as f32 * 2.0 - 1.0) * reach;
     let points: Vec<Point> = (0..ROWS * ROW as usize)
         .map(|i| {
-            // Along the edge, no two points of a row at the same place in their texels.
+            // Along the edge, no two points of a row have the same texel phase.
             let along = (i % ROW as usize) as f32 / ROW as f32 * 37.3 * texel;
             Point { position: [across(i / ROW as usize), 0.0, along], normal: [0.0, 1.0, 0.0] }
         })
@@ -99,8 +100,8 @@ fn width(case: &Case, height: f32, radius: f32) -> f32 {
     crossing(0.95) - crossing(0.05)
 }
 
-/// The same of a disc of uniform brightness, in radii: the segment beyond a chord at distance h from the middle has the
-/// share (acos h - h √(1 - h²)) / π.
+/// Returns the width of a penumbra for a disc of uniform brightness, in radii. The segment beyond a chord at
+/// distance h from the centre has the share (acos h - h √(1 - h²)) / π.
 fn closed_form() -> f32 {
     let (mut low, mut high) = (0.0_f64, 1.0_f64);
     for _ in 0..50 {
@@ -111,7 +112,7 @@ fn closed_form() -> f32 {
     (2.0 * low) as f32
 }
 
-/// A sun of a radius in degrees, with the least bounds to the filter's radius.
+/// Returns the softness of a sun with a radius in degrees, with wide bounds for the filter's radius.
 fn sun(degrees: f32) -> Softness {
     Softness::default().with_radius(SoftRadius::SunAngle(degrees.to_radians())).with_floor(0.5).with_ceiling(64.0)
 }

@@ -1,4 +1,4 @@
-//! WGSL with prefixes of the engine's choice: two suns in one shader.
+//! WGSL with the engine's own prefixes: two suns in one shader.
 
 use naga::valid::Capabilities;
 use shadowfit::settings::{FilterKind, MapFormat};

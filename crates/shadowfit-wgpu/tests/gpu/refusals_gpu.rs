@@ -1,5 +1,5 @@
-//! What a shadow map refuses to be prepared with, since it would give a wrong picture without a word: each error carries
-//! the index and the value. And that a refusal changes nothing.
+//! Maps that a shadow map refuses, because they would silently give a wrong image. Each error contains the
+//! index and the value, and a refusal changes no state.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::selection::DepthRange;
@@ -19,7 +19,7 @@ fn fit() -> LightProjection {
     box_fit(shadowfit::DepthConvention::ZeroToOne)
 }
 
-/// Maps that end at the given view depths.
+/// Returns maps that end at the given view depths.
 fn maps(far: &[f32]) -> Vec<FittedMap> {
     let depths = |far: &f32| DepthRange::new(0.0, Some((*far).into()));
     far.iter().map(|far| FittedMap::new(fit(), Bias::default()).with_depths(depths(far))).collect()
@@ -64,7 +64,7 @@ fn a_forward_direction_that_is_not_of_unit_length_is_an_error() {
     for length in [1.0, 1.0 - 0.9e-3, 1.0 + 0.9e-3] {
         assert_eq!(prepared(&maps(&[1.0]), Vec3::new(0.6, 0.0, -0.8) * length), Ok(1), "{length}");
     }
-    assert_eq!(prepared(&[], Vec3::NAN), Ok(0), "without maps no view depth is asked for");
+    assert_eq!(prepared(&[], Vec3::NAN), Ok(0), "without maps the direction is not used");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Several maps of one view: which of them a point reads, maps that are smaller than their layers, and casters at any bind
-//! group.
+//! Several maps of one view: their selection, maps that are smaller than their layers, and casters at any
+//! bind group.
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
@@ -13,10 +13,10 @@ use super::harness::{Harness, Selection};
 
 const NO_BIAS: BiasSettings =
     BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
-/// The light's direction of travel.
+/// Direction of travel of the light.
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
 
-/// A map around the first so many metres of a view along -z.
+/// Returns a map for the first `distance` metres of a view along -z.
 fn map_to(distance: f32, texels: u32) -> LightProjection {
     let camera = PerspectiveCamera {
         eye: DVec3::ZERO,
@@ -34,7 +34,7 @@ fn map_to(distance: f32, texels: u32) -> LightProjection {
     fit(&camera.frustum().expect("a camera"), DIRECTION, &settings).expect("a fit")
 }
 
-/// A triangle before the whole map, at the near plane.
+/// Returns a triangle that shadows the whole map, at the near plane.
 fn lid(fit: &LightProjection) -> Vec<Vec3> {
     let c = fit.corners();
     let down = (c[4] - c[0]) * 0.01;
@@ -43,12 +43,12 @@ fn lid(fit: &LightProjection) -> Vec<Vec3> {
     vec![start, start + right * 5.0, start + below * 5.0]
 }
 
-/// A map without biases that ends at a view depth.
+/// Returns a map without biases that ends at a view depth.
 fn map_fit(fit: &LightProjection, far: f32) -> FittedMap {
     FittedMap::new(*fit, Bias::default()).with_depths(DepthRange::new(0.0, Some(far.into())))
 }
 
-/// The view depth at which a map ends, in metres.
+/// Returns the view depth at which a map ends, in metres.
 fn end(map: &FittedMap) -> f64 {
     map.depths.and_then(|range| range.far).expect("it ends")
 }
@@ -63,12 +63,12 @@ fn descriptor(maps: &[FittedMap]) -> ShadowMapDescriptor {
     }
 }
 
-/// Points of level ground, relative to the origin.
+/// Returns points of level ground, relative to the origin.
 fn ground(points: &[Vec3]) -> Vec<Point> {
     points.iter().map(|point| Point { position: point.to_array(), normal: [0.0, 1.0, 0.0] }).collect()
 }
 
-/// Casters that cover one of the maps.
+/// Returns casters that cover one of the maps.
 fn lids(maps: &[FittedMap], shadowed: usize) -> Vec<Vec<Vec3>> {
     maps.iter().enumerate().map(|(i, map)| if i == shadowed { lid(&map.projection) } else { Vec::new() }).collect()
 }
@@ -84,7 +84,7 @@ fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
     let maps: Vec<FittedMap> = fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| map_fit(fit, far)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
-    // Along the axis at these view depths; the last one is near, but aside of the first map.
+    // Points along the axis at these view depths. The last one is near, but beside the first map.
     let is_aside = |point: &Vec3| !fits[0].covers(point.as_dvec3()) && fits[1].covers(point.as_dvec3());
     let aside = (1..200).map(|step| Vec3::new(step as f32 * 0.1, 0.0, -3.0)).find(is_aside).expect("a point aside");
     let points = [2.0_f32, 3.9, 4.1, 10.0, 14.9, 15.1, 40.0].map(|depth| Vec3::NEG_Z * depth);
@@ -94,7 +94,7 @@ fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it
         let expected: Vec<f32> = read.iter().map(|map| if *map == shadowed { 0.0 } else { 1.0 }).collect();
         assert_eq!(ask(&view, &maps, shadowed, &points), expected, "shadow in map {shadowed}");
     }
-    // Seen from an eye that is 10 m back, every view depth is 10 m more, wherever the origin is.
+    // From an eye 10 m farther back, every view depth is 10 m greater, with the same origin.
     let view = MapView { eye: DVec3::new(0.0, 0.0, 10.0), ..view };
     let read = [1, 1, 1, 2, 2, 2, 2, 1];
     for shadowed in 0..3 {
@@ -126,7 +126,7 @@ fn a_map_in_the_corner_of_a_larger_layer_is_read_like_one_that_fills_it() {
     };
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
-    // Rows of points across the map, up to its very border, behind the caster.
+    // Rows of points across the map, up to its border, behind the caster.
     let points: Vec<Point> = (0..64 * 64)
         .map(|i| {
             let at = [i % 64, i / 64].map(|step| (step as f32 + 0.25) / 64.0);
@@ -143,7 +143,7 @@ fn a_map_in_the_corner_of_a_larger_layer_is_read_like_one_that_fills_it() {
         let shadowed = answers[0].iter().filter(|factor| **factor < 0.5).count();
         assert!((1500..2700).contains(&shadowed), "{filter:?}: {shadowed} of {} points in shadow", points.len());
         let [full, corner] = &answers;
-        // Texture coordinates of another size are rounded otherwise.
+        // Texture coordinates for another size are rounded differently.
         let differ: Vec<_> = (0..points.len()).filter(|index| (full[*index] - corner[*index]).abs() >= 0.02).collect();
         let shown = differ.iter().take(3).map(|index| (points[*index], full[*index], corner[*index]));
         assert!(differ.is_empty(), "{filter:?}: {} points differ, as {:?}", differ.len(), shown.collect::<Vec<_>>());
@@ -159,7 +159,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
     let (origin, eye) = (DVec3::new(1.0, -0.5, 2.0), DVec3::new(-0.5, 0.25, 1.0));
     let view = MapView { origin, eye, forward, frame: 0 };
     let harness = Harness::with_maps(&gpu, &descriptor(&maps), &view, &maps, &lids(&maps, 0));
-    // In front of the eye and behind it, in view and beside it.
+    // In front of the eye and behind it, in view and out of view.
     let positions: Vec<Vec3> = (0..4000)
         .map(|i| {
             let [a, b, c] = [0.754_877_7, 0.569_840_3, 0.430_159_7].map(|step: f32| (i as f32 * step).fract());
@@ -192,7 +192,8 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
     assert!(met.iter().all(|count| *count > 15), "outside, then by map: {met:?}");
 }
 
-/// Maps whose order is not that of their texels' sizes, nor of their widths: two of one size, and one that is empty.
+/// Returns maps whose order differs from the order of their texel sizes and of their widths. Two have the
+/// same size, and one is empty.
 fn crossing_maps() -> [FittedMap; 5] {
     let mut empty = map_to(4.0, 256);
     empty.is_empty = true;
@@ -200,7 +201,7 @@ fn crossing_maps() -> [FittedMap; 5] {
     fits.map(|fit| map_fit(&fit, f32::MAX))
 }
 
-/// Points all over the maps, relative to the origin.
+/// Returns points all over the maps, relative to the origin.
 fn scattered() -> Vec<Vec3> {
     let at = |i: u16| {
         let [a, b, c] = [0.754_877_7, 0.569_840_3, 0.430_159_7].map(|step: f32| (f32::from(i) * step).fract());
@@ -210,8 +211,9 @@ fn scattered() -> Vec<Vec3> {
     (0..6000).map(at).collect()
 }
 
-/// Asserts that the WGSL reads at points what `read` finds, with the weights that the factors tell: each map in turn is
-/// in shadow. Gives how many points read each map alone, and how many are blended.
+/// Asserts that the WGSL selects the map that `read` returns at each point, with the same weights. The
+/// factors show the weights, with each map in shadow in turn. Returns the number of points that read each map
+/// alone, and the number of blended points.
 fn assert_read(
     descriptor: &ShadowMapDescriptor,
     maps: &[FittedMap],
@@ -231,7 +233,7 @@ fn assert_read(
     for (index, point) in points.iter().enumerate() {
         let point = point.as_dvec3();
         let expected = read(point);
-        // Rounding may put a point beside a border of a map, or of a band.
+        // Rounding may put a point on the other side of a border of a map, or of a band.
         let beside =
             [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 2e-4).map(|step| [read(point + step), read(point - step)]);
         let which = |read: Option<MapRead>| read.map(|read| (read.map, read.blend.map(|blend| blend.map), read.main()));
@@ -247,7 +249,7 @@ fn assert_read(
         };
         for (map, factors) in factors.iter().enumerate() {
             let factor = f64::from(factors[index]);
-            // Texture coordinates are rounded to some 2⁻²² of 256 texels, of which the band has eight.
+            // Texture coordinates are rounded to some 2⁻²² of 256 texels, and the band has eight texels.
             assert!((1.0 - factor - weight(map)).abs() < 1e-3, "{point}: {factor} with map {map} of {expected:?}");
         }
         match expected {
@@ -272,7 +274,7 @@ fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_towar
         };
         let (alone, blended) = assert_read(&descriptor, &maps, &scattered(), read);
         println!("{filter:?}, blend {blend}: {alone:?} alone, {blended} blended");
-        // One map is empty, and of two equal ones the last is never the first to hold a point.
+        // One map is empty, and the second of two equal maps is never selected.
         assert_eq!((alone[1], alone[4]), (0, 0), "{filter:?}");
         // With the widest blend the smallest map is all band.
         assert!([0, 3].iter().all(|map| alone[*map] > 30) && (alone[2] > 30 || blend > 32.0), "{filter:?}: {alone:?}");

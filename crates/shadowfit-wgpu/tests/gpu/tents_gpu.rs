@@ -1,4 +1,4 @@
-//! The tents of look-ups and the discs of them against their definitions, texel by texel, on a map of squares.
+//! Tent filters and discs equal their definitions, texel by texel, on a map of squares.
 
 use shadowfit::LightProjection;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -13,14 +13,14 @@ use super::harness::{Harness, ROW};
 const NO_BIAS: BiasSettings =
     BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
 
-/// Whether a texel is covered: squares of 1 to 3 texels in no order.
+/// Returns whether a texel is covered: squares of 1 to 3 texels without a regular order.
 fn is_covered(x: i32, y: i32) -> bool {
     let cell = (x.div_euclid(3) * 7 + y.div_euclid(3) * 13).rem_euclid(5);
     let inner = x.rem_euclid(3).max(y.rem_euclid(3));
     (20..60).contains(&x) && (20..60).contains(&y) && inner <= cell - 2
 }
 
-/// Squares over the covered texels, at the height where nothing else is.
+/// Returns squares over the covered texels, at a height without other casters.
 fn casters(fit: &LightProjection) -> Vec<Vec3> {
     let corners = fit.corners();
     let (right, down) = ((corners[1] - corners[0]) / ROW as f32, (corners[3] - corners[0]) / ROW as f32);
@@ -33,7 +33,7 @@ fn casters(fit: &LightProjection) -> Vec<Vec3> {
     all.flat_map(|(x, y)| square(x, y)).collect()
 }
 
-/// What a bilinear look-up gives at a place, in texels.
+/// Returns the result of a bilinear look-up at a position in texels.
 fn look_up(texel: DVec2) -> f64 {
     let at = texel - 0.5;
     let (corner, t) = (at.floor(), at - at.floor());
@@ -42,7 +42,7 @@ fn look_up(texel: DVec2) -> f64 {
     row(0) * (1.0 - t.y) + row(1) * t.y
 }
 
-/// Share of light by the definition: a tent of `taps` × `taps` look-ups one texel apart.
+/// Returns the share of light by the definition: a tent of `taps` × `taps` look-ups one texel apart.
 fn tent(taps: i32, texel: DVec2) -> f64 {
     let half = taps / 2;
     let mut sum = 0.0;
@@ -57,8 +57,8 @@ fn tent(taps: i32, texel: DVec2) -> f64 {
     sum / weights
 }
 
-/// Share of light by the definition: `taps` look-ups over an ellipse, each turned from the last by the golden angle, at
-/// radii that give each the same area.
+/// Returns the share of light by the definition: `taps` look-ups over an ellipse, each rotated from the
+/// previous one by the golden angle, at radii that give each the same area.
 fn disc(taps: u32, radii: DVec2, turn: f64, texel: DVec2) -> f64 {
     let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let tap = |tap: u32| {
@@ -68,20 +68,21 @@ fn disc(taps: u32, radii: DVec2, turn: f64, texel: DVec2) -> f64 {
     (0..taps).map(tap).sum::<f64>() / f64::from(taps)
 }
 
-/// Angle of a pixel, in radians, by interleaved gradient noise; `None` where rounding may wrap it.
+/// Returns the rotation of a pixel, in radians, by interleaved gradient noise; `None` where rounding may wrap
+/// it.
 fn turn(index: usize) -> Option<f64> {
     let (x, y) = (index % ROW as usize, index / ROW as usize);
     let inner = (0.067_110_56 * x as f64 + 0.005_837_15 * y as f64).fract();
     (0.001..0.999).contains(&inner).then(|| (52.982_918_9 * inner).fract() * core::f64::consts::TAU)
 }
 
-/// Places that meet many edges, in texels.
+/// Returns positions in texels near many edges.
 fn texels() -> Vec<DVec2> {
     let step = DVec2::new(0.754_877_666, 0.569_840_291);
     (0..3000).map(|i| DVec2::splat(18.0) + step * f64::from(i) % 44.0).collect()
 }
 
-/// Points of the plane below the squares at those places.
+/// Returns points of the plane below the squares at these positions.
 fn points(fit: &LightProjection) -> Vec<Point> {
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
@@ -112,7 +113,7 @@ fn four_nine_and_sixteen_look_ups_give_the_sum_of_nine_twenty_five_and_forty_nin
             for (texel, answer) in texels().iter().zip(harness.ask(0, &points)) {
                 let expected = tent(taps, *texel);
                 partly += usize::from((0.1..0.9).contains(&expected));
-                // Samplers weight in steps of 1/256, in both axes, of each look-up.
+                // Samplers weight in steps of 1/256, in both axes, for each look-up.
                 let error = (f64::from(answer.factor) - expected).abs();
                 assert!(error < 0.02, "{format:?} {filter:?} at {texel}: {} for {expected}", answer.factor);
             }

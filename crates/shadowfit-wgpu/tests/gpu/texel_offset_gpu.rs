@@ -1,4 +1,4 @@
-//! Maps that are stored shifted in their layers: each point gets the factor that it gets from the map as it is.
+//! Maps that wrap around in their layers: each point gets the same factor as without the offset.
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius, Softness};
@@ -11,10 +11,10 @@ use super::engine::points::Point;
 use super::exact_counts_gpu::box_fit;
 use super::harness::{Harness, ROW};
 
-/// Where the map begins in its layer: beside, above, and both, far in and at the last texel.
+/// Texel offsets of the map: beside, above, and both, far inside and at the last texel.
 const OFFSETS: [[u32; 2]; 4] = [[100, 0], [0, 37], [200, 131], [1, ROW - 1]];
 
-/// Squares of three texels over the whole map, at two heights.
+/// Returns squares of three texels over the whole map, at two heights.
 fn casters(fit: &LightProjection) -> Vec<Vec3> {
     let corners = fit.corners();
     let (right, down) = ((corners[1] - corners[0]) / ROW as f32, (corners[3] - corners[0]) / ROW as f32);
@@ -28,7 +28,7 @@ fn casters(fit: &LightProjection) -> Vec<Vec3> {
     all.filter(|(x, y)| (x * 7 + y * 13) % 5 < 2).flat_map(square).collect()
 }
 
-/// Points all over the map below the squares, up to its very borders.
+/// Returns points all over the map below the squares, up to its borders.
 fn points(fit: &LightProjection) -> Vec<Point> {
     let corners = fit.corners();
     let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
@@ -40,14 +40,15 @@ fn points(fit: &LightProjection) -> Vec<Point> {
     (0..10_000).map(point).collect()
 }
 
-/// A map of a whole layer that is stored shifted.
+/// Returns a map of a whole layer with a texel offset.
 fn harness<'a>(gpu: &'a Engine, map: &ShadowMapDescriptor, texel_offset: [u32; 2]) -> Harness<'a> {
     let fit = box_fit(map.depth);
     let maps = [FittedMap { texel_offset: texel_offset.into(), ..FittedMap::new(fit, Bias::default()) }];
     Harness::with_maps(gpu, map, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps, &[casters(&fit)])
 }
 
-/// Compares shifted maps of two formats with the maps as they are. Every filter and every format meets every offset.
+/// Compares maps with and without offsets, in two formats. Every filter and every format is tested with every
+/// offset.
 fn assert_same(kinds: [(MapFormat, DepthConvention); 2]) {
     for (number, (format, depth)) in kinds.into_iter().enumerate() {
         for (turn, filter) in FilterKind::ALL.into_iter().enumerate() {
@@ -57,7 +58,7 @@ fn assert_same(kinds: [(MapFormat, DepthConvention); 2]) {
             let half = (number + turn) % 2 * 2;
             let offsets = &OFFSETS[half..half + 2];
             assert_same_factors(&map, offsets);
-            // The filter does not change the texels, and two filters meet all offsets.
+            // The filter does not change the texels, and two filters cover all offsets.
             if turn < 2 {
                 assert_same_texels(&map, offsets);
             }
@@ -65,11 +66,12 @@ fn assert_same(kinds: [(MapFormat, DepthConvention); 2]) {
     }
 }
 
-/// Share of points with a sample that takes another weight: each of 25 samples in two axes, whose position of 2⁻¹⁷ of a texel
-/// crosses one of the borders between weights, which are 2⁻⁸ apart.
+/// Share of points with a sample that takes another weight: each of 25 samples in two axes, whose position of
+/// 2⁻¹⁷ of a texel crosses one of the borders between weights, which are 2⁻⁸ apart.
 const STEPPED: f32 = 25.0 * 2.0 / 512.0;
 
-/// Whether the sampler compares four depths and mixes the results, which it does with depth textures alone.
+/// Returns whether the sampler compares four depths and blends the results, which it does only with depth
+/// textures.
 fn filters_linearly(map: &ShadowMapDescriptor) -> bool {
     map.format.is_depth()
 }
@@ -79,8 +81,8 @@ fn assert_same_factors(map: &ShadowMapDescriptor, offsets: &[[u32; 2]]) {
     let points = points(&box_fit(map.depth));
     // Weights come from the position in the layer, which f32 rounds to 2⁻¹⁷ of a texel here, in each axis.
     let tolerance = 4e-5;
-    // A sampler rounds the position, as Vulkan allows (`subTexelPrecisionBits`): some samples take the next weight in each
-    // axis.
+    // A sampler rounds the position, as Vulkan allows (`subTexelPrecisionBits`): some samples take the next
+    // weight in each axis.
     let (weight, share) =
         if filters_linearly(map) { (2.0 * filter_step(&gpu.adapter.get_info()), STEPPED) } else { (0.0, 0.0) };
     let factors = harness(&gpu, map, [0, 0]).turned(&points);

@@ -1,5 +1,5 @@
-//! The WGSL of shadowfit-wgpu and of shadowfit-rays: every file is used and valid, and names and features stay within the
-//! limits of engines that paste it. The tests beside this one compare the results of the shaders.
+//! WGSL of shadowfit-wgpu and of shadowfit-rays: every file is used and valid, and names and features stay
+//! within the limits of engines that paste it. The other tests compare the results of the shaders.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -20,17 +20,17 @@ use shadowfit_wgpu::{
 
 use super::layout::MAX_UNKNOWN;
 
-/// Values of all options by which the WGSL differs. Samples per pixel and normals change the edge passes alone.
+/// Values of all options that change the WGSL. Samples per pixel and normals change only the edge passes.
 const DEPTHS: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
 const SELECTIONS: [MapSelection; 2] = [MapSelection::Coverage { blend: 8.0 }, MapSelection::ViewDepth { overlap: 0.0 }];
 const CROSS_FADES: [bool; 2] = [false, true];
 const SAMPLES: [u32; 2] = [1, 4];
 const NORMALS: [Option<NormalEncoding>; 3] = [None, Some(NormalEncoding::Signed), Some(NormalEncoding::Unsigned)];
 
-/// The number of values of each option, in the order that [`Kind::new`] reads.
+/// Number of values of each option, in the order that [`Kind::new`] reads.
 const COUNTS: [usize; 7] = [MapFormat::ALL.len(), FilterKind::ALL.len(), 2, 2, 2, SAMPLES.len(), NORMALS.len()];
 
-/// Maps, and a picture whose edges are traced with them.
+/// Maps, and a view whose edges are traced with them.
 #[derive(Clone, Copy, Debug)]
 struct Kind {
     map: ShadowMapDescriptor,
@@ -62,22 +62,22 @@ impl Kind {
         format!("{format:?} {filter:?} {depth:?} {selection:?} {sets}, {samples} samples, normals {normals:?}")
     }
 
-    /// Whether PCSS reads depths as numbers, which WebGL2 cannot.
+    /// Returns whether PCSS reads depths as numbers, which WebGL2 cannot.
     fn loads_depths(&self) -> bool {
         self.map.format.is_depth() && self.map.filter == FilterKind::Pcss
     }
 }
 
-/// Kinds in which every pair of values of two options occurs.
+/// Kinds that contain every pair of values of two options.
 static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| all_pairs(&COUNTS).iter().map(|row| Kind::new(row)).collect());
 
-/// The look-ups of [`KINDS`].
+/// Look-ups of [`KINDS`].
 static RECEIVERS: LazyLock<Vec<Shader>> = LazyLock::new(|| {
     let receiver = |kind: &Kind| receiver_wgsl(&kind.map, &WgslOptions::group(1));
     KINDS.iter().map(|kind| Shader::new(kind.name(), receiver(kind))).collect()
 });
 
-/// Every module that the crate gives to a device, and the pieces for engines.
+/// Every module that the crate creates on a device, and the pieces for engines.
 static MODULES: LazyLock<Vec<Shader>> = LazyLock::new(|| {
     let [_, count, select, ..] = edges_wgsl(&ShadowMapDescriptor::default(), 1, None);
     let mut all = vec![
@@ -205,7 +205,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Edges",
         "Budget",
         "Layer",
-        // Those of this crate are compared in `layout.rs`, and shadowfit-rays compares this one.
+        // `layout.rs` compares the uniforms of this crate, and shadowfit-rays compares this one.
         "shadowfit_rays_Refit",
     ];
     for shader in MODULES.iter() {
@@ -224,7 +224,7 @@ fn every_module_has_the_entry_points_of_its_passes() {
     for shader in MODULES.iter().filter(|shader| !shader.name.contains("piece")) {
         let stages: &[ShaderStage] = match shader.name.as_str() {
             name if name.contains("compute") => &[ShaderStage::Compute],
-            // Depth alone, from vertices.
+            // Depth only, from vertices.
             name if name.contains("clear") => &[ShaderStage::Vertex],
             _ => &[ShaderStage::Vertex, ShaderStage::Fragment],
         };
@@ -243,7 +243,7 @@ fn the_pieces_for_engines_name_nothing_without_their_prefix() {
         assert!(names.len() >= 3, "{name}: {names:?}");
         for global in names {
             let prefixed = global.starts_with("shadowfit_") || global.starts_with("SHADOWFIT_");
-            assert!(prefixed, "{name}: `{global}` may meet a name of the engine's");
+            assert!(prefixed, "{name}: `{global}` may conflict with a name of the engine");
         }
         assert!(module.entry_points.is_empty() && module.overrides.is_empty(), "{name}");
     }
@@ -261,7 +261,7 @@ fn the_look_up_needs_uniforms_and_sampled_textures_only_and_no_derivatives() {
         }
         for (_, function) in module.functions.iter() {
             for (_, expression) in function.expressions.iter() {
-                // Sampling without an explicit level takes derivatives too.
+                // Sampling without an explicit level takes derivatives, too.
                 let derives = match expression {
                     naga::Expression::Derivative { .. } => true,
                     naga::Expression::ImageSample { level, .. } => {
@@ -275,7 +275,7 @@ fn the_look_up_needs_uniforms_and_sampled_textures_only_and_no_derivatives() {
     }
 }
 
-/// A fragment shader alone in its module, of which wgpu translates all functions.
+/// A fragment shader that makes the look-up a complete module; wgpu translates all functions.
 const SHADED: &str = "
 @fragment fn fs(@builtin(position) at: vec4<f32>, @location(0) position: vec3<f32>) -> @location(0) vec4<f32> {
     let factor = shadowfit_factor_at(position, vec3<f32>(0.0, 1.0, 0.0), at.xy);
@@ -333,7 +333,7 @@ fn every_product_of_options_is_valid_and_can_be_translated_for_webgl2() {
         for shader in edge_modules(number, &kind) {
             shader.assert_valid(Capabilities::empty());
         }
-        // Samples and normals are options of the edge passes alone.
+        // Samples and normals are options of the edge passes only.
         if kind.samples == 1 && kind.normals.is_none() {
             for shader in receiver_pieces(&kind) {
                 shader.assert_valid(Capabilities::empty());

@@ -1,19 +1,18 @@
-//! What encloses points: the convex hull in the light's plane, which is all that the choice of a rectangle depends on,
+//! Hulls and spheres around points: the convex hull in the light's plane, from which a rectangle is chosen,
 //! and the least sphere.
 //!
 //! The hull is A. M. Andrew's monotone chain ("Another efficient algorithm for convex hulls in two
-//! dimensions", 1979). Points stream in; most fall inside the octagon of the extreme points seen
-//! so far and are dropped at once, as S. G. Akl and G. T. Toussaint proposed ("A fast convex hull
-//! algorithm", 1978).
+//! dimensions", 1979). Most points fall inside the octagon of the extreme points so far and are dropped at
+//! once, as S. G. Akl and G. T. Toussaint proposed ("A fast convex hull algorithm", 1978).
 //!
-//! The sphere of a symmetric frustum follows from a formula, that of any other points is constructed.
+//! The sphere of a symmetric frustum follows from a formula. The sphere of other points is constructed.
 //! [`fits::sphere`](crate::settings::FitKind::Sphere) derives both.
 
 use glam::{DVec2, DVec3};
 
 use crate::base::{FitError, checks};
 
-/// Directions in which the extreme points are kept: the axes and their diagonals, anticlockwise.
+/// Directions of the extreme points: the axes and their diagonals, anticlockwise.
 const DIRECTIONS: [DVec2; 8] = [
     DVec2::new(1.0, 0.0),
     DVec2::new(1.0, 1.0),
@@ -29,14 +28,13 @@ const DIRECTIONS: [DVec2; 8] = [
 pub(crate) struct HullBuilder<'a> {
     points: &'a mut [DVec2],
     len: usize,
-    /// The most extreme point in each of [`DIRECTIONS`]; often one corner is the most extreme in
-    /// several.
+    /// The most extreme point in each of [`DIRECTIONS`]. One corner is often the most extreme in several.
     extremes: [DVec2; 8],
     reach: [f64; 8],
 }
 
 impl<'a> HullBuilder<'a> {
-    /// Points that the storage needs beyond twice those of the final hull.
+    /// Number of points that the storage needs in addition to twice the corners of the final hull.
     pub(crate) const SLACK: usize = 64;
 
     pub(crate) fn new(points: &'a mut [DVec2]) -> Self {
@@ -47,8 +45,8 @@ impl<'a> HullBuilder<'a> {
         self.len == 0
     }
 
-    /// Whether a point lies inside the octagon of the extreme points so far, so that it cannot
-    /// change the hull.
+    /// Returns whether a point lies inside the octagon of the extreme points so far, so that it cannot change
+    /// the hull.
     pub(crate) fn holds(&self, p: DVec2) -> bool {
         if self.len == 0 {
             return false;
@@ -60,7 +58,8 @@ impl<'a> HullBuilder<'a> {
         }) && (0..8).all(|i| p.dot(DIRECTIONS[i]) <= self.reach[i])
     }
 
-    /// [`Self::holds`] for all points of a rectangle along the axes, given by its middle and half its size.
+    /// Returns [`Self::holds`] for all points of an axis-aligned rectangle, given by its middle and half its
+    /// size.
     pub(crate) fn holds_rectangle(&self, centre: DVec2, half: DVec2) -> bool {
         if self.len == 0 {
             return false;
@@ -71,7 +70,8 @@ impl<'a> HullBuilder<'a> {
         }) && (0..8).all(|i| centre.dot(DIRECTIONS[i]) + half.dot(DIRECTIONS[i].abs()) <= self.reach[i])
     }
 
-    /// Whether a rectangle along the axes, given by its middle and half its size, lies inside the points' bounds.
+    /// Returns whether an axis-aligned rectangle, given by its middle and half its size, lies inside the
+    /// points' bounds.
     pub(crate) fn reaches_around(&self, centre: DVec2, half: DVec2) -> bool {
         // Every other direction is an axis.
         (0..8).step_by(2).all(|i| centre.dot(DIRECTIONS[i]) + half.dot(DIRECTIONS[i].abs()) <= self.reach[i])
@@ -81,7 +81,7 @@ impl<'a> HullBuilder<'a> {
     ///
     /// # Errors
     ///
-    /// [`FitError::ScratchTooSmall`] when the hull itself does not fit the storage.
+    /// [`FitError::ScratchTooSmall`] if the hull itself does not fit the storage.
     pub(crate) fn push(&mut self, p: DVec2) -> Result<(), FitError> {
         if self.holds(p) {
             return Ok(());
@@ -93,7 +93,7 @@ impl<'a> HullBuilder<'a> {
                 self.extremes[i] = p;
             }
         }
-        // The chain needs room for a copy and one more, so half of the storage is collected at most.
+        // The chain needs room for a copy and one more point, so at most half of the storage is filled.
         if 2 * (self.len + 1) + 1 > self.points.len() {
             self.compact();
             if 2 * (self.len + 1) + 1 > self.points.len() {
@@ -110,20 +110,20 @@ impl<'a> HullBuilder<'a> {
         self.len = hull(points, scratch);
     }
 
-    /// Gives the storage back, to begin anew.
+    /// Returns the storage for reuse.
     pub(crate) fn into_storage(self) -> &'a mut [DVec2] {
         self.points
     }
 
-    /// The hull's corners, anticlockwise and without collinear ones.
+    /// Returns the hull's corners, anticlockwise and without collinear ones.
     pub(crate) fn finish(mut self) -> &'a mut [DVec2] {
         self.compact();
         &mut self.points[..self.len]
     }
 }
 
-/// Replaces points by their hull, anticlockwise from the least x; gives the number of corners.
-/// `scratch` is as long as `points` or longer.
+/// Replaces points by their hull, anticlockwise from the least x, and returns the number of corners.
+/// `scratch` must be at least as long as `points`.
 fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let n = points.len();
@@ -132,8 +132,8 @@ fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
     }
     let reach = points.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
     let same = reach * SAME_PLACE;
-    // The lower chain grows in `scratch`; the upper one follows it there, back to the first point.
-    // In a sliver rounding may put a point on both: the upper one leaves out what the lower one has.
+    // The lower chain grows in `scratch`. The upper chain follows it there, back to the first point. In a
+    // sliver, rounding may put a point on both chains, so the upper one skips points of the lower one.
     let order = |a: DVec2, b: DVec2| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
     let lower = chain(points.iter().copied(), scratch, same) - 1;
     let (low, up) = scratch.split_at_mut(lower);
@@ -151,13 +151,13 @@ fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
     corners
 }
 
-/// Distance within which two points count as the same, as a share of the greatest coordinate. The
-/// direction of a shorter edge is rounding noise, from which a chain cannot tell left turns from
-/// right ones: it would keep corners far inside the next ones. The error is a small part of the
-/// room that fits leave for rounding.
+/// Distance within which two points count as the same, as a share of the greatest coordinate. The direction
+/// of a shorter edge is rounding noise. A chain could not tell its left turns from right turns, and would
+/// keep corners far inside the following ones. The error is a small part of the room that fits leave for
+/// rounding.
 const SAME_PLACE: f64 = 1.0 / 1_073_741_824.0;
 
-/// Writes a chain of left turns, from the first to the last of the points, and gives its length.
+/// Writes a chain of left turns from the first to the last of the points, and returns its length.
 fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2], same: f64) -> usize {
     let mut len = 0;
     let mut points = points.peekable();
@@ -186,17 +186,17 @@ pub(crate) struct EnclosingSphere {
     pub(crate) radius: f64,
 }
 
-/// Share of a half diagonal by which the four half diagonals may differ for the frustum to count as
-/// symmetric: a few roundings of f32 corners.
+/// Tolerated difference of a symmetric frustum's four half diagonals, as a share of a half diagonal: a few
+/// roundings of f32 corners.
 pub(crate) const SYMMETRY: f64 = 1e-6;
 
-/// A frustum whose rectangles are symmetric about one axis and perpendicular to it, so that the
-/// spheres of its slices follow from their depths.
+/// A frustum whose rectangles are perpendicular to one axis and symmetric about it. The spheres of its slices
+/// follow from their depths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SymmetricFrustum {
     /// Middle of the near rectangle.
     near: DVec3,
-    /// From there to the middle of the far one.
+    /// Vector from there to the middle of the far rectangle.
     axis: DVec3,
     length: f64,
     /// Half diagonals of the near and the far rectangle.
@@ -204,7 +204,7 @@ pub(crate) struct SymmetricFrustum {
 }
 
 impl SymmetricFrustum {
-    /// `None` for frusta that are not symmetric.
+    /// Creates a symmetric frustum, or returns `None` if the corners are not symmetric.
     #[inline(always)]
     pub(crate) fn new(corners: &[DVec3; 8]) -> Option<Self> {
         let centre = |c: &[DVec3]| (c[0] + c[1] + c[2] + c[3]) * 0.25;
@@ -221,10 +221,10 @@ impl SymmetricFrustum {
         if is_symmetric && length > 0.0 { Some(Self { near, axis, length, radii: (r0, r1) }) } else { None }
     }
 
-    /// The sphere of the part between two positions on the axis, as shares of its length.
+    /// Computes the sphere around the part between two positions on the axis, given as shares of its length.
     pub(crate) fn sphere(&self, from: f64, to: f64) -> EnclosingSphere {
         let radius = |t: f64| self.radii.0 * (1.0 - t) + self.radii.1 * t;
-        // Which end is the wider one does not matter to the formula.
+        // The formula holds for either end being the wider one.
         let (r0, r1, length) = (radius(from), radius(to), self.length * (to - from));
         let x = ((length * length + r1 * r1 - r0 * r0) / (2.0 * length)).min(length);
         let radius = libm::sqrt((length - x) * (length - x) + r1 * r1);
@@ -232,11 +232,11 @@ impl SymmetricFrustum {
     }
 }
 
-/// Share of a squared radius by which a point may lie outside and still count as inside.
+/// Tolerance for points outside a sphere that still count as inside, as a share of its squared radius.
 const INSIDE: f64 = 1e-12;
 
-/// Least sphere around points: when a point lies outside the sphere so far, the sphere is built
-/// anew with that point on its surface; up to four such points determine it.
+/// Computes the least sphere around points. If a point lies outside the sphere so far, the sphere is rebuilt
+/// with that point on its surface. Up to four such points determine it.
 pub(crate) fn minimal(points: &[DVec3]) -> EnclosingSphere {
     let mut support = [DVec3::ZERO; 4];
     grow(points, &mut support, 0)
@@ -257,11 +257,11 @@ fn grow(points: &[DVec3], support: &mut [DVec3; 4], fixed: usize) -> EnclosingSp
     sphere
 }
 
-/// The least sphere with up to four points on its surface; without points, one of negative radius.
+/// Returns the least sphere with up to four points on its surface. Without points its radius is negative.
 fn through(points: &[DVec3]) -> EnclosingSphere {
     let Some(first) = points.first() else { return EnclosingSphere { centre: DVec3::ZERO, radius: -1.0 } };
-    // The centre is first + Σ λᵢ eᵢ with 2 eᵢ·(Σ λⱼ eⱼ) = eᵢ·eᵢ, solved by Gram-Schmidt: each new
-    // point moves the centre along the part of its edge that is across the earlier ones.
+    // The centre is first + Σ λᵢ eᵢ with 2 eᵢ·(Σ λⱼ eⱼ) = eᵢ·eᵢ, solved by Gram-Schmidt: each new point moves
+    // the centre along the part of its edge that is perpendicular to the earlier ones.
     let mut centre = *first;
     let mut across = [DVec3::ZERO; 3];
     for (k, p) in points[1..].iter().enumerate() {
@@ -315,7 +315,7 @@ mod tests {
         assert_eq!(hull_of(&[], &mut storage), 0);
     }
 
-    /// Points on a line but for the last bits of their coordinates, by a linear congruence.
+    /// Points on a line except for the last bits of their coordinates, from a linear congruential generator.
     #[test]
     fn slivers_as_thin_as_rounding_have_no_more_corners_than_points() {
         let mut state = 1_u64;
@@ -335,7 +335,7 @@ mod tests {
         }
     }
 
-    /// Both ends of two edges of a quadrilateral come twice, apart by rounding, as clipping gives them.
+    /// Both ends of two edges of a quadrilateral occur twice, apart by rounding, as clipping produces them.
     #[test]
     fn corners_that_come_twice_but_for_rounding_hide_no_others() {
         let corners = [(-405.085, 288.375), (-384.280, 257.947), (-33.662, 29.217), (-24.330, 15.568)];

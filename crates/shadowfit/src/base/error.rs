@@ -1,7 +1,7 @@
-//! The one error type of the fits, and how it writes numbers.
+//! The error type of all fits, and how it writes numbers.
 //!
-//! Every variant carries the offending value and says what to do, since the value that breaks a
-//! fit was usually computed far from the call that reports it.
+//! Every variant carries the offending value and says what to do, since that value was usually computed far
+//! from the call that reports it.
 
 use core::fmt;
 use core::fmt::Write;
@@ -10,7 +10,7 @@ use glam::{UVec2, Vec3};
 
 use crate::base::DepthConvention;
 
-/// Why a frustum or a fit could not be made.
+/// Reason why a frustum or a fit failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FitError {
@@ -21,7 +21,7 @@ pub enum FitError {
         /// Its value.
         value: f64,
     },
-    /// A number lies outside what the input can mean, or what f32 matrices can hold.
+    /// A number is outside the valid range of the input, or outside the range of f32 matrices.
     OutOfRange {
         /// Name of the input.
         input: &'static str,
@@ -47,31 +47,30 @@ pub enum FitError {
         /// The camera's up direction.
         up: Vec3,
     },
-    /// A `world_from_clip` matrix cannot be divided by w at one of the clip corners, or folds two
-    /// of them together. The plane is the near one up to corner 3, else the far one: at infinity where w is zero, and
-    /// behind the eye where w is negative.
+    /// A `world_from_clip` matrix cannot be divided by w at one of the clip corners, or maps two of them to
+    /// one point. Corners up to 3 are on the near plane, the others on the far plane. The plane is at
+    /// infinity if w is zero, and behind the eye if w is negative.
     SingularMatrix {
         /// Index of the corner in [`ViewFrustum::corners`](crate::ViewFrustum::corners).
         corner: usize,
-        /// The w that the matrix gives there.
+        /// The w of the matrix at this corner.
         w: f64,
     },
     /// A plane of a camera's matrix leaves no view that can be shadowed.
     UnusablePlane {
         /// The plane, or planes.
         plane: &'static str,
-        /// Its fault, and the cure.
+        /// Its fault, and the remedy.
         why: &'static str,
     },
-    /// The far plane is infinite and the maximum shadow distance is `f32::MAX`: shadows would have no end.
+    /// The far plane is infinite and the maximum shadow distance is `f32::MAX`, so shadows would have no end.
     Endless,
-    /// A perspective matrix has its near and far planes at the opposite ends of the depth range from
-    /// those of the stated convention.
+    /// The depth of a perspective matrix runs opposite to the stated convention.
     OtherDepth {
-        /// The convention that was stated.
+        /// The stated convention.
         named: DepthConvention,
-        /// Whether the matrix has reversed depth: near at 1, far at 0. If not, its depth is plain:
-        /// 0..1 or -1..1, which cannot be told from a matrix.
+        /// Whether the matrix has reversed depth: near at 1, far at 0. If not, its depth is 0..1 or -1..1,
+        /// which a matrix does not distinguish.
         is_reversed: bool,
     },
     /// The frustum has no volume, or its box in the light's axes has no extent.
@@ -80,53 +79,52 @@ pub enum FitError {
         /// the world's axes when a frustum does.
         size: Vec3,
     },
-    /// The near distance is not below the far distance. A view that begins beyond a positive shadow distance is no
-    /// error of a fit: it has no shadows.
+    /// The near distance is not below the far distance. A view that begins beyond a positive shadow distance
+    /// is not an error of a fit: it has no shadows.
     NearNotBelowFar {
         /// Near distance, in metres.
         near: f32,
         /// Far distance, in metres.
         far: f32,
     },
-    /// There is no view to fit to.
+    /// The input has no view.
     NoView,
-    /// The caller's storage is too small; [`Scratch::required`](crate::Scratch::required) says
-    /// what is enough.
+    /// The caller's storage is too small; see [`Scratch::required`](crate::Scratch::required).
     ScratchTooSmall {
         /// Number of elements given.
         given: usize,
         /// Least number of elements that the call needs.
         required: usize,
     },
-    /// The input's number of elements differs from that of the data that it belongs to.
+    /// The input's number of elements does not match the data that it belongs to.
     CountMismatch {
         /// Name of the number.
         input: &'static str,
         /// Its value.
         given: usize,
-        /// The value that is expected.
+        /// The expected value.
         expected: usize,
     },
     /// A matrix is not an orthographic view-projection of the stated light.
     NotOrthographic {
-        /// What is wrong with it.
+        /// The fault of the matrix.
         why: &'static str,
     },
     /// The map does not lie on the world's texel grid.
     NotOnGrid,
-    /// A filter needs the distances of casters, and the maps clamp depths
+    /// A filter needs the distances of casters, but the maps clamp depths
     /// ([`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp)), which loses them.
     ClampedCasters,
     /// The shadow map has no texels.
     ZeroResolution {
-        /// The resolution asked for, in texels.
+        /// The requested resolution, in texels.
         resolution: UVec2,
     },
 }
 
 impl core::error::Error for FitError {}
 
-const ENDLESS: &str = "the far plane is infinite, so shadows have no end: name a maximum shadow distance, in metres";
+const ENDLESS: &str = "the far plane is infinite, so shadows have no end; set a maximum shadow distance, in metres";
 
 impl fmt::Display for FitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -157,7 +155,7 @@ impl fmt::Display for FitError {
                 write!(f, "the scratch memory has {given} elements and needs {required}; see Scratch::required")
             }
             Self::CountMismatch { input, given, expected } => {
-                write!(f, "{input} is {given}; give {expected} as before, or build anew")
+                write!(f, "{input} is {given}; give {expected} as before, or rebuild")
             }
             Self::NotOrthographic { why } => {
                 write!(f, "the matrix is not an orthographic view-projection of this light: {why}")
@@ -171,11 +169,11 @@ impl fmt::Display for FitError {
     }
 }
 
-const CLAMPED: &str = "the filter Pcss, and any soft one whose edges are traced, needs the distance of each caster, which \
-                       depth clamp loses; choose another caster policy, such as PerObject, or another filter";
+const CLAMPED: &str = "the filter Pcss, and any soft filter with traced edges, needs the distance of each caster, \
+                       which depth clamp loses; choose another caster policy, such as PerObject, or another filter";
 
 const NOT_ON_GRID: &str =
-    "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere";
+    "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or use the sphere fit";
 
 fn write_empty(f: &mut fmt::Formatter<'_>, size: Vec3) -> fmt::Result {
     write!(
@@ -206,7 +204,7 @@ fn write_singular(f: &mut fmt::Formatter<'_>, corner: usize, w: f64) -> fmt::Res
     write!(
         f,
         "the camera's {plane} plane {place}: world_from_clip gives w = {} at clip corner {corner}; pass the inverse of \
-         clip_from_world, with the depth convention that it was made for",
+         clip_from_world, with its depth convention",
         Number(w)
     )
 }
@@ -218,23 +216,23 @@ fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: 
     } else {
         ("plain depth (it grows away from the eye)", "DepthConvention::ZeroToOne, or NegativeOneToOne for OpenGL")
     };
-    write!(f, "the camera's matrix has {has}, not near {near}, far {far} as named; name {advice}")
+    write!(f, "the camera's matrix has {has}, not near {near}, far {far} as stated; use {advice}")
 }
 
-/// A number with up to six significant digits: plain from 0.0001 up to a million, with an exponent
-/// beyond.
+/// A number written with up to six significant digits. It is plain from 0.0001 up to a million, and has an
+/// exponent beyond.
 pub(crate) struct Number(pub(crate) f64);
 
-/// Significant digits that are written.
+/// Number of significant digits.
 const DIGITS: usize = 6;
 
-/// Powers of ten of the first digit that are written without an exponent.
+/// Powers of ten of the first digit that need no exponent.
 const PLAIN: core::ops::Range<i32> = -4..6;
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut text = Text { bytes: [0; 32], len: 0 };
-        // The formatter rounds to as many digits: d.ddddde-ddd.
+        // The formatter rounds to this number of digits: d.ddddde-ddd.
         let written = write!(text, "{:.*e}", DIGITS - 1, self.0);
         let Some((mantissa, exponent)) = text.as_str().split_once('e').filter(|_| written.is_ok()) else {
             return write!(f, "{}", self.0); // NaN and infinity
@@ -266,7 +264,7 @@ impl fmt::Display for Number {
     }
 }
 
-/// Three of them.
+/// Three numbers, written as a vector.
 pub(crate) struct Numbers(pub(crate) Vec3);
 
 impl fmt::Display for Numbers {

@@ -1,12 +1,11 @@
-//! How space is given: the boxes of receivers and casters, and the depth ranges of clip spaces.
+//! Boxes of receivers and casters, and the depth ranges of clip spaces.
 //!
-//! Every matrix that this crate reads or writes names its depth range with [`DepthConvention`], because a fit that
-//! guesses it wrong still looks right from most cameras.
+//! Every matrix that this crate reads or writes names its depth range with [`DepthConvention`], because a fit
+//! with the wrong one still looks right from most cameras.
 
 use glam::{DVec3, Vec3};
 
-/// An axis-aligned box in metres, relative to an origin that the user of the box defines. Fits take boxes in
-/// world axes.
+/// An axis-aligned box in metres, relative to an origin that its user defines. Fits take boxes in world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -19,44 +18,46 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The empty box: joining it to another box leaves that box unchanged.
+    /// The empty box. Its union with another box is that other box.
     pub const EMPTY: Self = Self { min: Vec3::MAX, max: Vec3::MIN };
 
-    /// A box from its least and greatest corner, in metres.
+    /// Creates a box from its least and greatest corner, in metres.
     pub const fn new(min: Vec3, max: Vec3) -> Self {
         Self { min, max }
     }
 
-    /// The least box that holds all `points`, which are finite and in metres; `None` if there are none.
+    /// Returns the least box that holds all `points`, which must be finite and in metres, or `None` without
+    /// points.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
         Some(points.fold(Self::new(first, first), Self::with_point))
     }
 
-    /// The least box that holds both.
+    /// Returns the least box that holds both boxes.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The least box that holds this one and a point, in metres.
+    /// Returns the least box that holds this one and a point, in metres.
     #[must_use]
     pub fn with_point(self, point: Vec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// Edge lengths along x, y and z, in metres. Those of an empty box have no meaning.
+    /// Returns the edge lengths along x, y and z, in metres. They are meaningless for an empty box.
     pub fn size(&self) -> Vec3 {
         self.max - self.min
     }
 
-    /// The eight corners: the four with the least z around, then the four with the greatest.
+    /// Returns the eight corners: the four with the least z in order around, then the four with the greatest
+    /// z.
     pub fn corners(&self) -> [Vec3; 8] {
         box_corners(self.min.as_dvec3(), self.max.as_dvec3()).map(DVec3::as_vec3)
     }
 
-    /// Whether the box holds no point: a coordinate of `min` above that of `max`, or NaN.
+    /// Returns whether the box holds no point: a coordinate of `min` exceeds the one of `max`, or is NaN.
     pub fn is_empty(&self) -> bool {
         !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
     }
@@ -73,13 +74,14 @@ pub struct Boxes<'a> {
 }
 
 impl<'a> Boxes<'a> {
-    /// Boxes in plain world space, in metres.
+    /// Creates boxes in plain world space, in metres.
     pub const fn world(boxes: &'a [Aabb]) -> Self {
         Self { origin: DVec3::ZERO, boxes }
     }
 }
 
-/// Corners of a box: the four with the least z around, then the four with the greatest.
+/// Returns the corners of a box: the four with the least z in order around, then the four with the greatest
+/// z.
 pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     let (a, b) = (min, max);
     [
@@ -94,7 +96,7 @@ pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     ]
 }
 
-/// A box's corners relative to another origin, in f64.
+/// Returns the least and greatest corner of a box relative to another origin, in f64.
 pub(crate) fn moved(aabb: &Aabb, offset: DVec3) -> (DVec3, DVec3) {
     let to = |v: Vec3| v.as_dvec3() + offset;
     (to(aabb.min), to(aabb.max))
@@ -107,14 +109,14 @@ pub enum DepthConvention {
     /// Near is 0, far is 1 (wgpu, Direct3D, Vulkan, Metal).
     #[default]
     ZeroToOne,
-    /// Near is 1, far is 0: the same range reversed, for float precision.
+    /// Near is 1, far is 0: 0..1 reversed, for float precision.
     Reversed,
     /// Near is -1, far is 1 (OpenGL).
     NegativeOneToOne,
 }
 
 impl DepthConvention {
-    /// Clip depth (after the division by w) of the near plane.
+    /// Returns the clip depth (after the division by w) of the near plane.
     pub const fn near(self) -> f32 {
         match self {
             Self::ZeroToOne => 0.0,
@@ -123,7 +125,7 @@ impl DepthConvention {
         }
     }
 
-    /// Clip depth (after the division by w) of the far plane.
+    /// Returns the clip depth (after the division by w) of the far plane.
     pub const fn far(self) -> f32 {
         match self {
             Self::ZeroToOne | Self::NegativeOneToOne => 1.0,

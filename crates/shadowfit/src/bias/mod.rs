@@ -1,28 +1,28 @@
-//! Biases against self-shadowing: the one place that turns texels into depth and metres.
+//! Biases against self-shadowing. All conversions from texels to depth and metres are here.
 //!
-//! A map stores one depth per texel, but a slanted plane has many. A bias covers the difference
-//! between the texel's centre and the sampled point; it is proportional to the texel, so it is
-//! set in texels and converted here for each fit.
+//! A map stores one depth per texel, but a slanted plane has many. A bias covers the difference between the
+//! texel's centre and the sampled point. It is proportional to the texel size, so it is set in texels and
+//! converted here for each fit.
 //!
-//! # What a plane needs
+//! # Bias of a plane
 //!
-//! Let n be the plane's unit normal on the light's side, x and y the map's axes in the world (the
-//! first two rows of `light_from_world`), tx and ty the texel's sides and E the filter's
-//! [`FilterRadius`]. A point lifted by h along n has no texel centre in reach whose stored plane depth is
-//! nearer to the light exactly when
+//! Let n be the plane's unit normal on the light's side, x and y the map's axes in the world (the first two
+//! rows of `light_from_world`), tx and ty the texel's sides and E the filter's [`FilterRadius`]. Lift a point
+//! of the plane by h along n. No texel centre within the radius then stores a plane depth that is nearer to the
+//! light than the lifted point, if and only if
 //!
 //! ```text
 //!   h ≥ E · (tx·|n·x| + ty·|n·y|)  =  texel · E · sin θ · (|cos φ| + |sin φ|)  for square texels
 //! ```
 //!
-//! with θ the angle between n and the light, φ the slope's azimuth in the map. Proof: a texel
-//! centre (dx, dy) beside the *lifted* point lies on the plane at a height dz over it with
-//! n·(dx, dy, dz) = -h, so dz ≤ 0 means h ≥ -(dx n·x + dy n·y), and |dx| ≤ E tx, |dy| ≤ E ty.
-//! The same clearance as depth, without moving the point, is h / cos θ: the receiver-plane form
-//! `E · (|∂z/∂u| + |∂z/∂v|)` with the plane's depth gradient per texel.
+//! with θ the angle between n and the light and φ the slope's azimuth in the map. Proof: relative to the
+//! *lifted* point, the plane's point at a texel centre is (dx, dy, dz) with n·(dx, dy, dz) = -h. It is not
+//! nearer to the light if dz ≤ 0, that is, if h ≥ -(dx n·x + dy n·y). Since |dx| ≤ E tx and |dy| ≤ E ty, the
+//! right side is at most the bound above. As a depth bias, without moving the point, the same clearance is h
+//! / cos θ: the receiver-plane form `E · (|∂z/∂u| + |∂z/∂v|)` with the plane's depth gradient per texel.
 //!
-//! All of this holds for the **geometric** normal of the surface that is stored. With normals that
-//! are interpolated or come from a normal map nothing is guaranteed.
+//! All of this holds for the **geometric** normal of the stored surface. Interpolated normals and normal maps
+//! give no guarantee.
 
 mod classic;
 pub(crate) mod depth_storage;
@@ -40,12 +40,11 @@ use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::projection::LightProjection;
 use crate::technique::settings::{BiasSettings, FilterKind, Softness};
 
-/// Biases ready for a shader. With θ the angle between the geometric normal and the direction
-/// toward the light, a receiver is looked up at `p + normal · normal_offset · sin θ`, and its
-/// depth is moved toward the light by
+/// Biases for a shader. With θ the angle between the geometric normal and the direction toward the light, a
+/// receiver is looked up at `p + normal · normal_offset · sin θ`, and its depth is moved toward the light by
 /// `constant_depth + slope_depth · tan θ + receiver_plane · (|∂z/∂u| + |∂z/∂v|)`.
 ///
-/// cos θ is held at [`MIN_COSINE`] or above, so that a grazing surface gets a finite bias.
+/// cos θ is at least [`MIN_COSINE`], so that a grazing surface gets a finite bias.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -57,50 +56,51 @@ pub struct Bias {
     pub slope_depth: f32,
     /// Offset along the geometric normal to be multiplied by sin θ, in metres.
     pub normal_offset: f32,
-    /// Depth bias to be multiplied by `|∂z/∂u| + |∂z/∂v|`, the [`depth_gradient`] of the
-    /// receiver's plane per texel: in texels. Where it is not 0, each comparison of a filter is made
-    /// with the plane's own depth where it reads.
+    /// Depth bias to be multiplied by `|∂z/∂u| + |∂z/∂v|`, the [`depth_gradient`] of the receiver's plane per
+    /// texel, in texels. If it is not 0, a filter compares each look-up with the plane's depth at that
+    /// look-up's position.
     pub receiver_plane: f32,
 }
 
-/// The offset and depth that a [`Bias`] gives on a plane.
+/// The offset and depth of a [`Bias`] on a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneBias {
     /// Offset of the looked-up point along the normal that faces the light, in metres.
     pub offset: f32,
-    /// How far its depth is moved toward the light, in units of the stored depth.
+    /// Depth bias toward the light, in units of the stored depth.
     pub depth: f32,
 }
 
-/// Below this cosine between normal and light (89.7°) a depth bias grows no more: such a surface
-/// receives next to no light. Normal offsets need no such limit.
+/// Least cosine between normal and light (89.7°) for depth biases. Biases are constant below it, because such
+/// a surface receives almost no light. Normal offsets need no such limit.
 pub const MIN_COSINE: f32 = 0.005;
 
 /// Constant bias of [`BiasSettings::automatic`], in texels: room for inexact surface normals.
-/// The rounding of depths and positions, which is less in most maps, is covered by [`BiasSettings::depth_steps`].
+/// [`BiasSettings::depth_steps`] covers the rounding of depths and positions, which is less in most maps.
 const SPARE_TEXELS: f32 = 1.0 / 32.0;
 
 /// Error of the square of a sine that a shader computes from an f32 cosine: four roundings of 2⁻²⁴.
 pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 * checks::UNIT;
 
-/// Greatest error of the sine itself, reached where that error is as large as the square: its root,
-/// 2⁻¹¹, rounded up.
+/// Greatest error of the sine itself, where the error is as large as the square: its root, 2⁻¹¹, rounded up.
 const SINE_ROUNDING: f64 = 5e-4;
 
 impl Bias {
-    /// Converts biases in texels for one fit, and those in steps of how its map stores depths, which may be given as
-    /// the [`MapFormat`](crate::settings::MapFormat). Texels that are not square count with their longer
-    /// side, which is conservative against acne. Settings that are not finite give biases that are
-    /// not finite; [`Self::checked`] refuses those.
+    /// Converts biases in texels, and in depth steps, for one map. The depth storage may be given as the
+    /// [`MapFormat`](crate::settings::MapFormat). Texels that are not square count with their longer side,
+    /// the safe choice against acne. Settings that are not finite give biases that are not finite, which
+    /// [`Self::checked`] rejects.
     ///
-    /// [`BiasSettings::depth_steps`] of 1 covers the rounding of stored depths and of f32 positions wherever the map
-    /// and the receivers' vertices are. Up to its size, the constant in texels covers the rounding of positions too.
+    /// A [`BiasSettings::depth_steps`] of 1 covers the rounding of stored depths and of f32 positions for any
+    /// positions of the map and of the receivers' vertices. A constant bias that is greater than the rounding
+    /// of positions covers it already, so only a smaller one is raised.
     pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &LightProjection) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
         let rounding = settings.depth_steps * rounding(fit) as f32;
         let constant = settings.constant * texel;
-        // The constant covers rounding up to its own size. A negative one asks for less than that, and stays.
+        // The constant covers rounding up to its own size. A negative constant is a deliberate reduction and
+        // is not changed.
         let constant = if (0.0..rounding).contains(&constant) { rounding } else { constant };
         let bias = Self {
             constant_depth: 0.0,
@@ -112,8 +112,8 @@ impl Bias {
         Self { constant_depth, ..bias.widened(rounding, fit) }
     }
 
-    /// Returns this bias with room for more rounding of positions, in metres. Biases of 0 stay 0. A shift of a surface
-    /// across the light changes its depth by the slope times the shift, so the other forms grow, too.
+    /// Returns this bias, enlarged by a rounding of positions in metres. Biases of 0 stay 0. A shift of a
+    /// surface across the light changes its depth by the slope times the shift, so the other forms grow, too.
     pub(crate) fn widened(self, rounding: f32, fit: &LightProjection) -> Self {
         let more = |bias: f32, rounding: f32| if bias > 0.0 { bias + rounding } else { bias };
         Self {
@@ -124,28 +124,28 @@ impl Bias {
         }
     }
 
-    /// A fixed number of the stored depth, independent of the slope: the classic form, such as
-    /// [`XNA_DEPTH_BIAS`]. In metres it changes with the depth range of each fit. A negative one
-    /// moves the receiver away from the light, as maps of back faces may want it.
+    /// Returns a fixed bias in units of the stored depth, independent of the slope: the classic form, such as
+    /// [`XNA_DEPTH_BIAS`]. In metres it changes with the depth range of each fit. A negative bias moves the
+    /// receiver away from the light, which maps of back faces may need.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`], and [`FitError::OutOfRange`] beyond the whole range of depths.
+    /// Returns [`FitError::NotFinite`], and [`FitError::OutOfRange`] beyond the whole range of depths.
     pub fn fixed(depth: f32) -> Result<Self, FitError> {
         checks::within("the fixed depth bias", f64::from(depth), -1.0, 1.0)?;
         Ok(Self { constant_depth: depth, ..Self::default() })
     }
 
-    /// The least bias that clears self-shadowing on a plane whose slope has any azimuth: a normal
-    /// offset for the filter's reach [on hardware](FilterRadius::on_hardware), at the worst azimuth `E ·
-    /// √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader takes
-    /// from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to √2 less.
-    /// Geometric normals are assumed.
+    /// Returns the least bias that prevents self-shadowing on a plane whose slope has any azimuth: a normal
+    /// offset for the filter's radius [on hardware](FilterRadius::on_hardware) at the worst azimuth, `E ·
+    /// √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader computes from
+    /// an f32 cosine. If a shader knows the azimuth, [`normal_offset`] needs up to √2 less. Geometric normals
+    /// are assumed.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, or for a fit that was
-    /// filled by hand with what is not finite.
+    /// Returns [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the radius, and for a fit with fields
+    /// that are not finite.
     pub fn automatic(
         reach: impl Into<FilterRadius>,
         storage: impl Into<DepthStorage>,
@@ -153,7 +153,8 @@ impl Bias {
     ) -> Result<Self, FitError> {
         let reach = reach.into().checked()?.on_hardware(fit);
         let (x, y) = (f64::from(fit.texel_size.x), f64::from(fit.texel_size.y));
-        // Greatest over all azimuths of the box's part and of the ellipse's, which may differ.
+        // Sum of the greatest terms of the box and of the ellipse over all azimuths. Their azimuths may
+        // differ.
         let taps = f64::from(reach.taps) * libm::sqrt(x * x + y * y);
         let disc = (f64::from(reach.disc.x) * x).max(f64::from(reach.disc.y) * y);
         let sine = SINE_ROUNDING * (taps + disc) / f64::from(fit.depth_range);
@@ -165,13 +166,14 @@ impl Bias {
         bias.checked()
     }
 
-    /// As [`Self::automatic`], by depth bias alone, for shaders that do not offset the looked-up
-    /// point: the receiver plane's gradient over the filter's reach on hardware. It clears planes
-    /// up to [`MIN_COSINE`], and grows without bound toward it.
+    /// Returns a bias as [`Self::automatic`] does, but as depth bias alone, for shaders that do not offset
+    /// the looked-up point: the receiver plane's gradient over the filter's radius on hardware. It prevents
+    /// self-shadowing on planes whose normal has a cosine of at least [`MIN_COSINE`] with the light. It is
+    /// very large near that limit.
     ///
     /// # Errors
     ///
-    /// As [`Self::automatic`].
+    /// Returns the errors of [`Self::automatic`].
     pub fn automatic_receiver_plane(
         reach: impl Into<FilterRadius>,
         storage: impl Into<DepthStorage>,
@@ -182,12 +184,12 @@ impl Bias {
         Self { constant_depth, receiver_plane: reach.per_axis(), ..Self::default() }.checked()
     }
 
-    /// The offset and depth that this bias gives on a plane with the given geometric normal (world
-    /// axes, any length, turned toward the light), as a shader computes it.
+    /// Returns the offset and depth of this bias on a plane with the given geometric normal (world axes, any
+    /// length, on the light's side), as a shader computes it.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the normal, and the former for a
+    /// Returns [`FitError::NotFinite`] and [`FitError::BadDirection`] for the normal, and the former for a
     /// bias that is not finite.
     pub fn on_plane(&self, fit: &LightProjection, normal: Vec3) -> Result<PlaneBias, FitError> {
         let bias = self.checked()?;
@@ -205,8 +207,8 @@ impl Bias {
         })
     }
 
-    /// Returns this bias if all its numbers are finite. Use it after [`Self::from_texels`] when the
-    /// settings come from outside.
+    /// Returns this bias if all its numbers are finite. Call it after [`Self::from_texels`] for settings from
+    /// outside.
     ///
     /// # Errors
     ///
@@ -226,13 +228,13 @@ impl Bias {
 }
 
 impl BiasSettings {
-    /// Biases that clear self-shadowing on planes for a filter, in any map. Geometric normals are assumed.
+    /// Returns biases that prevent self-shadowing on planes for a filter, in any map. Geometric normals are
+    /// assumed.
     ///
-    /// It is the receiver-plane form, which needs to cover only the reach of one comparison, so that a wider disc of
-    /// a soft filter needs no more. Compared
-    /// with ray tracing, with [`FilterKind::Pcf5x5`], it leaves a tenth (fine texels) to two fifths
-    /// (coarse ones) of the wrong pixels that the [normal offset](Self::automatic_normal_offset)
-    /// leaves.
+    /// It uses the receiver-plane form, which only has to cover the radius of one comparison, so a wider disc
+    /// of a soft filter needs no more. Compared with ray tracing, for [`FilterKind::Pcf5x5`], it leaves a
+    /// tenth (fine texels) to two fifths (coarse texels) of the wrong pixels that the [normal
+    /// offset](Self::automatic_normal_offset) leaves.
     pub fn automatic(filter: FilterKind) -> Self {
         let one_comparison = if filter == FilterKind::Point { FilterRadius::POINT } else { FilterRadius::HARDWARE_2X2 };
         Self {
@@ -244,9 +246,9 @@ impl BiasSettings {
         }
     }
 
-    /// As [`Self::automatic`], by an offset along the normal over the filter's whole reach in any map, for
-    /// shaders without a receiver-plane bias: of a [soft](FilterKind::is_soft) filter over the
-    /// [ceiling](Softness::ceiling) of its disc, which is far.
+    /// Returns biases as [`Self::automatic`] does, but as an offset along the normal over the filter's whole
+    /// radius in any map, for shaders without a receiver-plane bias. For a [soft](FilterKind::is_soft) filter
+    /// this is the [ceiling](Softness::ceiling) of its disc, a large offset.
     pub fn automatic_normal_offset(filter: FilterKind, softness: &Softness) -> Self {
         Self {
             constant: SPARE_TEXELS,
@@ -258,30 +260,30 @@ impl BiasSettings {
     }
 }
 
-/// Normal offset that a plane needs, in metres along its normal on the light's side (sin θ is
-/// in it): `E · (tx·|n·x| + ty·|n·y|)`, and for a disc the ellipse's own part,
-/// `√((rx tx n·x)² + (ry ty n·y)²)`, as the [module](self) derives it.
+/// Returns the normal offset for a plane, in metres along its normal on the light's side (including sin θ):
+/// `E · (tx·|n·x| + ty·|n·y|)`, and for a disc the ellipse's part, `√((rx tx n·x)² + (ry ty n·y)²)`. The
+/// [module](self) derives it.
 ///
-/// `normal` is the geometric one, in world axes, of any length and on either side. It is the least
-/// offset in exact arithmetic; [`FilterRadius::on_hardware`] and [`depth_precision`] add what a GPU needs.
+/// `normal` is the geometric one, in world axes, of any length and on either side. The offset is the least
+/// one in exact arithmetic. [`FilterRadius::on_hardware`] and [`depth_precision`] add the needs of a GPU.
 ///
 /// # Errors
 ///
-/// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the reach and [`FitError::BadDirection`]
-/// for the normal.
+/// Returns [`FitError::NotFinite`], [`FitError::OutOfRange`] for the filter radius, and
+/// [`FitError::BadDirection`] for the normal.
 pub fn normal_offset(fit: &LightProjection, reach: impl Into<FilterRadius>, normal: Vec3) -> Result<f32, FitError> {
     let reach = reach.into().checked()?;
     let plane = Slope::of(fit, normal)?;
     checks::rounded("the plane's normal offset", reach.rise(plane.u, plane.v))
 }
 
-/// Depth bias that a plane needs, in units of the stored depth toward the light:
-/// `E · (|∂z/∂u| + |∂z/∂v|)` with the [`depth_gradient`] per texel, and for a disc the ellipse's
-/// own part. It is [`normal_offset`] / cos θ in units of depth, with cos θ held at [`MIN_COSINE`].
+/// Returns the depth bias for a plane, in units of the stored depth toward the light: `E · (|∂z/∂u| +
+/// |∂z/∂v|)` with the [`depth_gradient`] per texel, and for a disc the ellipse's part. It is
+/// [`normal_offset`] / cos θ in units of depth, with cos θ at least [`MIN_COSINE`].
 ///
 /// # Errors
 ///
-/// As [`normal_offset`].
+/// Returns the errors of [`normal_offset`].
 pub fn receiver_plane_depth(
     fit: &LightProjection,
     reach: impl Into<FilterRadius>,
@@ -292,39 +294,40 @@ pub fn receiver_plane_depth(
     checks::rounded("the plane's depth bias", reach.rise(u, v))
 }
 
-/// Change of the stored depth of a plane over one texel along u and along v (∂z/∂u, ∂z/∂v), with
-/// cos θ held at [`MIN_COSINE`]. A filter that adds `gradient · (tap - centre)`, in texels, to the
-/// depth that each tap is compared with compares with the plane's own depth there, so the bias only
-/// has to cover the reach of one look-up, [`FilterRadius::POINT`] or [`FilterRadius::HARDWARE_2X2`].
+/// Returns the change of the stored depth of a plane over one texel along u and along v (∂z/∂u, ∂z/∂v), with
+/// cos θ at least [`MIN_COSINE`]. A filter can add `gradient · (look-up - centre)`, in texels, to the
+/// compared depth of each look-up around its centre. Each look-up is then compared with the plane's depth at
+/// its own position, so the bias only has to cover the radius of one look-up, [`FilterRadius::POINT`] or
+/// [`FilterRadius::HARDWARE_2X2`].
 ///
 /// # Errors
 ///
-/// As [`normal_offset`].
+/// Returns the errors of [`normal_offset`].
 pub fn depth_gradient(fit: &LightProjection, normal: Vec3) -> Result<Vec2, FitError> {
     let [u, v] = Slope::of(fit, normal)?.gradient(fit);
     let rounded = |gradient| checks::rounded("the plane's depth gradient", gradient);
     Ok(Vec2::new(rounded(u)?, rounded(v)?))
 }
 
-/// Depth bias that covers rounding, in units of the stored depth: the greatest difference that f32
-/// can make between the stored and the compared depth of one point at this fit's origin, and one
-/// step of the format where it is coarsest (half for storing a depth, half where hardware rounds
-/// the compared one too).
+/// Returns the depth bias that covers rounding, in units of the stored depth: the greatest f32 error between
+/// the stored and the compared depth of a point, for positions relative to the map's origin, plus the
+/// coarsest step of the format (half for storing a depth, half because hardware may round the compared depth
+/// too).
 pub fn depth_precision(fit: &LightProjection, storage: impl Into<DepthStorage>) -> f32 {
     (rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
 }
 
-/// Normal offset, in texels and to be multiplied by sin θ, that clears self-shadowing on a plane whose slope has any
-/// azimuth: `E · (|cos φ| + |sin φ|)` at its worst, the map's diagonal, which is `√2 · E`. Square texels are assumed;
-/// [`normal_offset`] takes any.
+/// Returns the normal offset, in texels and to be multiplied by sin θ, that prevents self-shadowing on a
+/// plane whose slope has any azimuth. It is the greatest value of `E · (|cos φ| + |sin φ|)`, reached at the
+/// map's diagonal: `√2 · E`. Square texels are assumed. [`normal_offset`] accepts any texels.
 pub const fn automatic_normal_offset(reach: f32) -> f32 {
     SQRT_2 * reach
 }
 
-/// A plane measured in the map's texels.
+/// A plane's slope, measured in the map's texels.
 pub(crate) struct Slope {
-    /// Share of one texel's side, along the map's x (u) and y (against v), that lies along the
-    /// normal on the light's side, in metres.
+    /// Component of one texel's side, along the map's x (u) and y (against v), along the normal on the
+    /// light's side, in metres.
     pub(crate) u: f64,
     pub(crate) v: f64,
     /// Cosine of the angle between that normal and the direction toward the light: 0..=1.
@@ -348,8 +351,8 @@ impl Slope {
         Ok(Self { u, v, cosine: z.abs().min(1.0) })
     }
 
-    /// Change of the stored depth over one texel along u and v: height falls by n·x / n·z along
-    /// x, and v runs against y.
+    /// Returns the change of the stored depth over one texel along u and v. Height falls by n·x / n·z along
+    /// x, and v points against y.
     pub(crate) fn gradient(&self, fit: &LightProjection) -> [f64; 2] {
         let sign = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
         let per_metre = sign / (self.cosine.max(f64::from(MIN_COSINE)) * f64::from(fit.depth_range));

@@ -1,4 +1,4 @@
-//! The casters of a frame, by number, and what changed since the frame before.
+//! The casters of a frame, and their changes since the previous frame.
 
 use alloc::vec::Vec;
 
@@ -7,48 +7,50 @@ use super::world_box::{WorldBox, rounding};
 use crate::static_boxes::BoxRevision;
 use crate::{Boxes, StaticBoxes};
 
-/// Everything that casts shadows, by number: the index of its box.
+/// All shadow casters. A caster's number is the index of its box.
 ///
-/// Static casters are identified by their boxes and keys, not by their numbers. Lists may come in any order, sorted or
-/// culled, with casters inserted or removed anywhere. The cache redraws the places where a caster came, went, or has
-/// another box or another key. Identical casters are interchangeable: only their count matters.
+/// Static casters are identified by their boxes and keys, not by their numbers. Lists may come in any order,
+/// sorted or culled, with casters inserted or removed anywhere. The cache redraws places where a caster
+/// appeared or disappeared, or where its box or key changed. Identical casters are interchangeable: only
+/// their count matters.
 ///
-/// | a static caster that | needs |
+/// | change of a static caster | what to do |
 /// |---|---|
-/// | comes, goes, or has another box | nothing: it is redrawn where it was and where it is |
-/// | has another shape in the same box | another key, or [`invalidate`](super::MapCache::invalidate) |
-/// | has another number | nothing, and costs the least where most keep theirs |
+/// | appears, disappears, or has another box | nothing: its old and new places are redrawn |
+/// | has another shape in the same box | change its key, or call [`invalidate`](super::MapCache::invalidate) |
+/// | has another number | nothing: cheapest if most casters keep their numbers |
 ///
-/// A box may hold many casters that an engine culls by itself, such as all casters in a cell of the world. Then call
-/// [`invalidate`](super::MapCache::invalidate) with the places where static casters changed within it. Give moving
-/// casters separate boxes, which may overlap it.
+/// One box may hold many casters that an engine culls by itself, such as all casters in a cell of the world.
+/// In this case call [`invalidate`](super::MapCache::invalidate) for the places where static casters changed
+/// within the box. Give moving casters separate boxes, which may overlap it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
-    /// A box around each caster. Empty boxes cast nothing.
+    /// Bounding box of each caster. A caster with an empty box casts no shadow.
     pub boxes: Boxes<'a>,
-    /// Whether each of them moves, is deformed or changes its shape in any other way; those past the end of the slice
-    /// do not. Moving casters are drawn in every frame; static ones are drawn once and kept.
+    /// Whether each caster moves, deforms or changes its shape in any other way. Casters past the end of the
+    /// slice are static. Moving casters are drawn in every frame. Static casters are drawn once and kept.
     pub moves: &'a [bool],
-    /// A key for each caster that stands for its shape: of the mesh, of its level of detail, of the entity, or a hash
-    /// of them; any number is a key. Those past the end of the slice have none, and are known by their boxes alone; keys
-    /// past the end of the boxes are ignored. Casters may share a key. Where a caster has a key in one frame and none in
-    /// the next, its box decides.
+    /// A key that identifies each caster's shape: an id of its mesh, level of detail or entity, or a hash of
+    /// them. Any number is a valid key, and casters may share one. Casters past the end of the slice have no
+    /// key and are identified by their boxes alone. Keys past the end of the boxes are ignored. If a caster
+    /// has a key in only one of two successive frames, its box decides.
     pub keys: &'a [u64],
 }
 
 impl<'a> Casters<'a> {
-    /// Casters that all stand still.
+    /// Returns a list of static casters.
     pub const fn fixed(boxes: Boxes<'a>) -> Self {
         Self { boxes, moves: &[], keys: &[] }
     }
 
-    /// Whether a caster moves.
+    /// Returns whether a caster moves.
     pub fn moves(&self, number: usize) -> bool {
         self.moves.get(number).copied().unwrap_or(false)
     }
 }
 
-/// Where static casters changed in a frame, in world space. What has another box is in both.
+/// Places where static casters changed in a frame, in world space. A caster whose box changed is in both
+/// lists.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Changes {
     pub(super) gone: Vec<WorldBox>,
@@ -60,13 +62,13 @@ pub(super) struct Changes {
 /// The casters of the last frame.
 #[derive(Debug, Default)]
 pub(super) struct KnownCasters {
-    /// Where each static caster stood when it was drawn; empty for those that move.
+    /// Box of each static caster when it was drawn. Empty for moving casters.
     drawn: Vec<WorldBox>,
-    /// The keys of those that had one, from the first caster on.
+    /// The keys of the casters that had one, from the first caster on.
     keys: Vec<u64>,
-    /// Those that move, by number.
+    /// The numbers of the moving casters.
     pub(super) moving: Vec<u32>,
-    /// The state of the static ones.
+    /// The revision of the static boxes.
     static_boxes: Option<BoxRevision>,
 }
 
@@ -76,7 +78,7 @@ impl KnownCasters {
         self.drawn.get(number as usize).is_some_and(|aabb| !aabb.is_empty())
     }
 
-    /// Takes the casters of a frame, and finds where static ones changed.
+    /// Records the casters of a frame, and finds the places where static casters changed.
     pub(super) fn update(&mut self, casters: &Casters<'_>, static_boxes: Option<&StaticBoxes>) -> Changes {
         let mut changes = self.update_listed(casters);
         let before = core::mem::replace(&mut self.static_boxes, static_boxes.map(StaticBoxes::revision));
@@ -108,19 +110,19 @@ impl KnownCasters {
         let Differences { mut gone, mut come, .. } = differ;
         gone.retain(|caster| !caster.aabb.is_empty());
         come.retain(|caster| !caster.aabb.is_empty());
-        // One that is known by another number stays as it was drawn.
+        // A caster that is found under another number keeps the box it was drawn with.
         pair(&mut gone, &mut come, |number, aabb| self.drawn[number] = aabb);
         let boxes = |list: Vec<Caster>| list.into_iter().map(|caster| caster.aabb).collect();
         Changes { gone: boxes(gone), come: boxes(come), is_all: false }
     }
 
-    /// A caster of the last frame.
+    /// Returns a caster of the last frame.
     fn before(&self, number: usize) -> Option<Caster> {
         let aabb = *self.drawn.get(number)?;
         Some(Caster { key: self.keys.get(number).copied(), aabb, rounding: 0.0, number })
     }
 
-    /// Compares the lists number by number, up to where something was put in or taken out; returns that number.
+    /// Compares the lists number by number, up to the first insertion or removal. Returns that number.
     fn compare_in_place(&mut self, list: &List<'_>, differ: &mut Differences) -> usize {
         let count = list.len().min(self.drawn.len());
         let has_same_keys = self.keys == list.keys;
@@ -143,7 +145,7 @@ impl KnownCasters {
         count
     }
 
-    /// Compares the lists from a number on, as one in which casters were put in and taken out.
+    /// Compares the rest of the lists from a number on, with a search for insertions and removals.
     fn compare_shifted(&mut self, list: &List<'_>, first: usize, differ: &mut Differences) {
         let before: Vec<Caster> = (first..self.drawn.len()).filter_map(|number| self.before(number)).collect();
         self.drawn.truncate(first);
@@ -169,7 +171,7 @@ impl KnownCasters {
     }
 }
 
-/// The casters of a frame, and the keys of those that have one.
+/// The casters of a frame, and their keys.
 struct List<'a> {
     casters: &'a Casters<'a>,
     keys: &'a [u64],
@@ -180,7 +182,8 @@ impl List<'_> {
         self.casters.boxes.boxes.len()
     }
 
-    /// The box of a caster, empty for one that moves, and the metres by which the same one may differ.
+    /// Returns the box of a caster, empty for a moving one, and the rounding in metres by which the same box
+    /// may differ.
     fn aabb(&self, number: usize) -> (WorldBox, f64) {
         let Boxes { origin, boxes } = self.casters.boxes;
         if self.casters.moves(number) {
@@ -197,20 +200,20 @@ impl List<'_> {
     }
 }
 
-/// Casters that only one of two lists has, by their numbers there.
+/// Casters that are in only one of two lists, with their numbers in that list.
 #[derive(Default)]
 struct Differences {
     gone: Vec<Caster>,
     come: Vec<Caster>,
-    /// Times that nothing was found ahead.
+    /// Number of failed searches ahead.
     missed: usize,
 }
 
-/// Times that nothing is found ahead, after which lists count as being in different orders.
+/// Number of failed searches ahead after which two lists count as differently ordered.
 const MAX_MISSED: usize = 256;
 
 impl Differences {
-    /// As [`shift`], unless the lists are in different orders.
+    /// Calls [`shift`] unless the lists are in different orders.
     fn shift(
         &mut self,
         before: impl Fn(usize) -> Option<Caster>,
@@ -258,14 +261,15 @@ mod tests {
         let boxes = [cube(0.0, 0.0), cube(5.0, 2.0), cube(9.0, 1.0)];
         assert_eq!(take(known, &boxes, &[], &[]), changes(&[], &boxes));
         assert_eq!(take(known, &boxes, &[], &[]), Changes::default());
-        // It starts to move: it is no longer where it was.
+        // It starts to move, so its old place changes.
         assert_eq!(take(known, &boxes, &[false, true], &[]), changes(&[boxes[1]], &[]));
         assert_eq!([0, 1, 2].map(|number| known.is_fixed(number)), [true, false, true]);
         assert_eq!(known.moving, [1]);
-        // Moving casters change nothing that is kept.
+        // Moving casters do not change the kept content.
         let moved = [boxes[0], cube(5.0, 7.0), boxes[2]];
         assert_eq!(take(known, &moved, &[false, true], &[]), Changes::default());
-        // It comes to rest, elsewhere; a static one is set elsewhere; the last one is gone.
+        // The moving caster comes to rest elsewhere, a static one is placed elsewhere, and the last one
+        // disappears.
         let rest = [cube(0.5, 0.0), moved[1]];
         assert_eq!(take(known, &rest, &[], &[]), changes(&[boxes[0], boxes[2]], &rest));
         assert_eq!(take(known, &[], &[], &[]), changes(&rest, &[]));
@@ -300,7 +304,7 @@ mod tests {
         assert_eq!(take(known, &[b, a, a, a], &[], &[]), Changes::default());
         assert_eq!(take(known, &[a, b, a], &[], &[]), changes(&[a], &[]));
         assert_eq!(take(known, &[b, a, a, b, b], &[], &[]), changes(&[], &[b, b]));
-        // The same key for all is as good as none.
+        // One key for all casters has the same effect as no keys.
         assert_eq!(take(known, &[b, b, a, a, b], &[], &[7; 5]), Changes::default());
         assert_eq!(take(known, &[b, a, b, a, b], &[], &[7; 5]), Changes::default());
         assert_eq!(take(known, &[a, b, a], &[], &[7; 3]).gone, [world(b), world(b)]);
@@ -312,12 +316,12 @@ mod tests {
         let boxes = row(4);
         take(known, &boxes, &[], &[1, 2, 3, 4]);
         assert_eq!(take(known, &boxes, &[], &[1, 2, 30, 4]), changes(&[boxes[2]], &[boxes[2]]));
-        // Keys and boxes in another order are the same casters; keys in another order alone are not.
+        // Keys and boxes reordered together are the same casters. Keys reordered alone are not.
         let turned = [boxes[3], boxes[2], boxes[1], boxes[0]];
         assert_eq!(take(known, &turned, &[], &[4, 30, 2, 1]), Changes::default());
         let swapped = take(known, &turned, &[], &[4, 30, 1, 2]);
         assert_eq!(swapped, changes(&[boxes[1], boxes[0]], &[boxes[1], boxes[0]]));
-        // A key whose box moved.
+        // The box moves and the key stays.
         let moved = [turned[0], turned[1], cube(3.0, 8.0), turned[3]];
         assert_eq!(take(known, &moved, &[], &[4, 30, 1, 2]), changes(&[boxes[1]], &[moved[2]]));
     }

@@ -16,33 +16,35 @@ use crate::culling::cull;
 use crate::scroll::{StoredRect, TexelRect};
 use crate::{Aabb, Boxes, CasterVolume, FittedMap, StaticBoxes};
 
-/// Volumes that casters are tested against at once: the bits of a mask.
+/// Number of volumes that casters are tested against at once: one bit of a mask each.
 const VOLUMES: usize = 8;
 
-/// Texels by which the box of a caster that moved is widened before the layer is restored there: the rasteriser rounds
+/// Texels that widen the box of a moved caster before the layer is restored there. Rasterisers round
 /// by less.
 const MENDED_AROUND: f32 = 2.0;
 
-/// Rounding by which a shader may keep a caster in a box that the CPU culls, as a share of their coordinates: each
-/// allows for 16 · 2⁻²⁴ of them, and the coordinates of a box sum to half of those of a caster in it at least.
+/// Rounding that lets a shader keep a caster whose box the CPU culls, as a share of the coordinates. CPU and
+/// shader each allow for 16 · 2⁻²⁴ of the coordinates. The summed coordinates of a box are at least half of
+/// those of a caster in it.
 const SHADER_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
-/// Memory that is kept between frames.
+/// Buffers that are kept between frames.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    /// The parts in which a whole map is stored, and those that are redrawn of it.
+    /// The stored pieces of a whole map, and its redrawn pieces.
     whole: Vec<StoredRect>,
     redrawn: Vec<StoredRect>,
-    /// A bit for each volume that a listed caster lies in.
+    /// A mask for each listed caster: one bit per volume that it touches.
     masks: Vec<u8>,
-    /// Static casters in some volumes, with the same bits.
+    /// Static casters that touch some volumes, with the same masks.
     static_masks: Vec<(u32, u8)>,
     /// Sort keys of casters.
     order: Vec<u64>,
-    /// The boxes of moving casters, and their bits: first the view, then each part of the map.
+    /// The boxes of moving casters and their masks. The first bit is the view, each further bit a part of the
+    /// map.
     moving_boxes: Vec<Aabb>,
     moving_masks: Vec<u8>,
-    /// Static casters near some parts.
+    /// Static casters near the redrawn parts.
     near: Vec<u32>,
     near_boxes: Vec<Aabb>,
 }
@@ -50,7 +52,7 @@ pub(super) struct Buffers {
 /// The passes of one map of a frame.
 pub(super) struct Drawing<'a> {
     pub(super) index: usize,
-    /// The map that is read.
+    /// The map that shaders read.
     pub(super) fitted: &'a FittedMap,
     pub(super) known: &'a KnownCasters,
     pub(super) casters: &'a Casters<'a>,
@@ -59,7 +61,7 @@ pub(super) struct Drawing<'a> {
     pub(super) to_light: Vec3,
     /// Origin of positions in the shaders, in world space, in metres.
     pub(super) origin: DVec3,
-    /// Casters that can shadow something in view; all casters where no pass needs them.
+    /// Casters that can shadow something in view. All casters if no pass needs this volume.
     pub(super) in_view: CasterVolume,
     pub(super) settings: &'a CacheSettings,
     pub(super) plan: &'a mut FramePlan,
@@ -67,7 +69,7 @@ pub(super) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Adds the map's passes, and carries out a transition of its layers, which redraws these rectangles.
+    /// Adds the passes of a transition, which redraws `rects`, and updates the state of the map's layers.
     pub(super) fn plan(&mut self, state: &mut MapState, transition: &Transition, rects: &[TexelRect]) {
         let was_split = state.layers.is_split();
         match transition {
@@ -100,8 +102,8 @@ impl Drawing<'_> {
         self.whole_map(PassKind::All, &volume, |number, mask| mask != 0 && casts(number));
     }
 
-    /// Adds one pass with all static casters over the map, and the moving casters in view. Returns the number of static
-    /// ones.
+    /// Adds one pass with all static casters over the map and the moving casters in view. Returns the number
+    /// of static casters.
     fn all_casters(&mut self, moving: &mut Vec<WorldBox>) -> usize {
         let whole = StoredRect { window: self.whole(), stored: self.whole() };
         let over = self.volume(whole.window);
@@ -118,8 +120,8 @@ impl Drawing<'_> {
         self.whole_map(content, &over, is_over) - moving.len()
     }
 
-    /// Adds a pass that clears the shown layer. It draws the casters of the list that `is_over` chooses by number and
-    /// mask, and the static boxes in a volume. Returns their number.
+    /// Adds a pass that clears the shown layer, then draws the static boxes in a volume and the listed
+    /// casters that `is_over` accepts by number and mask. Returns the number of casters.
     fn whole_map(
         &mut self,
         content: PassKind,
@@ -136,8 +138,8 @@ impl Drawing<'_> {
         region.casters.len() + region.static_boxes.len()
     }
 
-    /// Adds a region with the planned casters from this one on, and the static boxes that have a bit in their
-    /// masks.
+    /// Adds a region with the planned casters from index `first` on, and the static boxes whose mask has this
+    /// bit.
     fn region(&mut self, part: StoredRect, first: usize, bit: usize) {
         let (plan, order) = (&mut *self.plan, &mut self.buffers.order);
         let static_boxes = plan.static_boxes.len();
@@ -153,7 +155,7 @@ impl Drawing<'_> {
         plan.regions.push(RegionPlan { part, casters, static_boxes });
     }
 
-    /// Finds the static casters in some volumes.
+    /// Finds the static casters that touch some volumes.
     fn find_static_boxes(&mut self, volumes: &[CasterVolume]) {
         let masks = &mut self.buffers.static_masks;
         masks.clear();
@@ -162,9 +164,9 @@ impl Drawing<'_> {
         }
     }
 
-    /// Adds the passes that redraw rectangles of a kept map: static casters, then moving ones. `moving` are the moving
-    /// casters that the shown layer holds. Returns whether static casters have a separate layer from now on, which the
-    /// first caster that moves over the map causes.
+    /// Adds the passes that redraw rectangles of a kept map: static casters, then moving ones. `moving` are
+    /// the moving casters in the shown layer. Returns whether static casters have a separate layer from now
+    /// on. The first moving caster over the map makes it necessary.
     fn update(&mut self, moving: &mut Vec<WorldBox>, was_split: bool, rects: &[TexelRect]) -> bool {
         let FittedMap { projection, texel_offset, .. } = self.fitted;
         let (mut whole, mut redrawn) = (take(&mut self.buffers.whole), take(&mut self.buffers.redrawn));
@@ -191,8 +193,8 @@ impl Drawing<'_> {
         is_split
     }
 
-    /// Adds a pass with the static casters of some parts, unless there are none. It `clears` the whole layer, or the
-    /// parts.
+    /// Adds a pass with the static casters of some parts, unless the list is empty. It clears the whole layer
+    /// if `clears` is set, otherwise only the parts.
     fn static_casters(&mut self, parts: &[StoredRect], layer: Layer, clears: bool) {
         if parts.is_empty() {
             return;
@@ -208,7 +210,7 @@ impl Drawing<'_> {
 
     /// Adds a region for each part, with the static casters over it.
     fn cull_static(&mut self, parts: &[StoredRect]) {
-        // First the casters over any of the parts.
+        // Cull against the rectangle around all parts first.
         let around = parts.iter().map(|part| part.window).reduce(TexelRect::union).unwrap_or_default();
         let Boxes { origin, boxes } = self.casters.boxes;
         self.cull(&[self.volume(around)]);
@@ -234,7 +236,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Finds the moving casters in view over the map, and which of its parts each lies over.
+    /// Finds the moving casters in view over the map, and the parts of the map that each of them touches.
     fn find_moving(&mut self, parts: &[StoredRect], moving: &mut Vec<WorldBox>) {
         let Boxes { origin, boxes } = self.casters.boxes;
         let (volumes, count) =
@@ -255,9 +257,9 @@ impl Drawing<'_> {
         }
     }
 
-    /// Adds a pass that restores the shown layer and draws the moving casters that were found, unless there is nothing to
-    /// do. `redrawn` are the parts in which this frame draws static casters, `boxes` the places where an earlier frame
-    /// drew moving ones.
+    /// Adds a pass that restores the shown layer and draws the moving casters that were found. Adds none if
+    /// both are unnecessary. `redrawn` are the parts in which this frame draws static casters. `boxes` are
+    /// the places where an earlier frame drew moving casters.
     fn moving_casters(&mut self, parts: &[StoredRect], redrawn: &[StoredRect], boxes: Range<usize>) {
         let (region, first_rect, first_viewport) =
             (self.plan.regions.len(), self.plan.rects.len(), self.plan.viewports.len());
@@ -286,7 +288,7 @@ impl Drawing<'_> {
         pass.viewports = first_viewport..last_viewport;
     }
 
-    /// Tests all casters of the list against some volumes.
+    /// Tests all listed casters against some volumes.
     fn cull(&mut self, volumes: &[CasterVolume]) {
         let Boxes { origin, boxes } = self.casters.boxes;
         self.buffers.masks.clear();
@@ -294,7 +296,7 @@ impl Drawing<'_> {
         cull(volumes, origin, boxes, &mut self.buffers.masks);
     }
 
-    /// Returns up to [`VOLUMES`] volumes, and their number.
+    /// Returns up to [`VOLUMES`] volumes as an array, and their number.
     fn volumes(&self, volumes: impl Iterator<Item = CasterVolume>) -> ([CasterVolume; VOLUMES], usize) {
         let (mut array, mut count) = ([CasterVolume::everywhere(self.origin); VOLUMES], 0);
         for (slot, volume) in array.iter_mut().zip(volumes) {
@@ -304,12 +306,12 @@ impl Drawing<'_> {
         (array, count)
     }
 
-    /// All texels of the map.
+    /// Returns the rectangle of all texels.
     fn whole(&self) -> TexelRect {
         TexelRect::all(self.fitted.projection.resolution)
     }
 
-    /// All casters over a part of the map.
+    /// Returns the volume of all casters over a part of the map.
     fn volume(&self, part: TexelRect) -> CasterVolume {
         if self.settings.culling == Culling::Off {
             return CasterVolume::everywhere(self.fitted.projection.origin);
@@ -317,7 +319,7 @@ impl Drawing<'_> {
         CasterVolume::of_part(&self.fitted.projection, self.settings.caster_policy(), part)
     }
 
-    /// Adds a pass with the regions from this one on.
+    /// Adds a pass with the regions from `first_region` on.
     fn pass(&mut self, content: PassKind, layer: Layer, clears: bool, first_region: usize) -> &mut PassPlan {
         let pass = PassPlan {
             map: self.index,
@@ -337,8 +339,9 @@ impl Drawing<'_> {
     }
 }
 
-/// Returns a box of moving casters that holds everything a shader may draw of them, so that it is mended in the next
-/// frame. `offset` lies between its origin and that of the shader's boxes, in metres along all axes together.
+/// Returns the box of moving casters, widened by rounding errors. If a shader draws any caster in it, the box
+/// passes the CPU's test too, so that the next frame restores it. `offset` is the distance between the box's
+/// origin and the shader's origin, in metres, summed over the axes.
 fn widened(aabb: &Aabb, offset: f32) -> Aabb {
     if aabb.is_empty() {
         return Aabb::EMPTY;
@@ -347,8 +350,8 @@ fn widened(aabb: &Aabb, offset: f32) -> Aabb {
     Aabb::new(aabb.min - by, aabb.max + by)
 }
 
-/// Returns the box within which a caster that moved may have been drawn, relative to the shaders' origin. `texel` is the
-/// width of a texel, in metres.
+/// Returns a box around all places where a moved caster may have been drawn, relative to the shaders' origin.
+/// `texel` is the width of a texel, in metres.
 fn mended(moved: &WorldBox, origin: DVec3, texel: f32) -> Aabb {
     let aabb = moved.relative_to(origin);
     let around = MENDED_AROUND * texel;
@@ -361,7 +364,7 @@ mod tests {
 
     use super::*;
 
-    /// Numbers in 0..1 that fill the cube evenly.
+    /// Returns numbers in 0..1 that fill the cube evenly.
     fn evenly(index: u32, axis: i32) -> f32 {
         (f64::from(index) * 1.220_744_084_605_759_5_f64.powi(-axis)).fract() as f32
     }
@@ -372,11 +375,12 @@ mod tests {
         for i in 1..20_000 {
             let [x, y, z, a] = [1, 2, 3, 4].map(|axis| evenly(i, axis));
             let normal = (Vec3::new(x, y, z) - 0.5).normalize_or(Vec3::Y);
-            // A caster in the farthest corner along the normal of a box whose other corner is at the origin.
+            // A caster in the farthest corner of a box along the normal. The box's opposite corner is the
+            // origin.
             let corner = Vec3::new(a, x, y) * 300.0 * normal.signum();
             let group = Aabb::new(corner.min(Vec3::ZERO), corner.max(Vec3::ZERO));
             let caster = Aabb::new(corner.min(corner * 0.99), corner.max(corner * 0.99));
-            // The plane lies beyond the corner by what both tests may round.
+            // The plane lies beyond the corner, by at most the rounding of both tests.
             let reach = normal.as_dvec3().dot(corner.as_dvec3()) as f32;
             let beyond = corner.abs().element_sum() * 2.0 * evenly(i, 5) * 16.0 / 16_777_216.0;
             let mut volume = CasterVolume::everywhere(DVec3::ZERO);

@@ -1,16 +1,17 @@
-//! Identity of static casters: which casters of two frames' lists are the same, although no caster has an identifier.
+//! Identity of static casters: finds the casters that two frames' lists share, although casters have no
+//! identifiers.
 //!
-//! Two casters are the same if their boxes are equal, and their keys where both have one. Boxes are equal up to rounding,
-//! which differs with their origin, so they can be neither hashed nor compared bit by bit. Lists are compared in three
-//! steps, each for the casters that the step before it left:
+//! Two casters are the same if their boxes are equal and, where both have a key, their keys are equal. Boxes
+//! are equal up to rounding, which depends on their origin, so they can be neither hashed nor compared bit by
+//! bit. The lists are compared in three steps, each for the casters that the previous step left:
 //!
-//! 1. Number by number, which finds all casters of a list that did not change.
-//! 2. With a look ahead of [`AHEAD`] casters, where some were inserted or removed.
-//! 3. By *sort keys*, for lists in another order. A sort key is a weighted sum of a box's coordinates and of the caster's
-//!    key. Equal casters have nearly equal sort keys, and few other casters do. Both lists are sorted, and walked side by
-//!    side.
+//! 1. Number by number. This finds all casters of an unchanged list.
+//! 2. With a look ahead of [`AHEAD`] casters, for lists with insertions or removals.
+//! 3. By *sort keys*, for reordered lists. A sort key is a weighted sum of a box's coordinates and of the
+//!    caster's key. Equal casters have nearly equal sort keys, and few other casters do. Both lists are
+//!    sorted and walked side by side.
 //!
-//! An example, with unit cubes that begin at x = 0 (A), 5 (B), 9 (C) and 20 m (D):
+//! Example with unit cubes that begin at x = 0 (A), 5 (B), 9 (C) and 20 m (D):
 //!
 //! ```text
 //!   last frame    A  B  C
@@ -32,26 +33,26 @@ use super::world_box::WorldBox;
 pub(super) struct Caster {
     pub(super) key: Option<u64>,
     pub(super) aabb: WorldBox,
-    /// Metres by which an equal box may differ.
+    /// Greatest difference of an equal box, in metres.
     pub(super) rounding: f64,
     pub(super) number: usize,
 }
 
 impl Caster {
-    /// Returns whether this caster of the last frame is the same as one of this frame.
+    /// Returns whether this caster of the last frame is the same as a caster of this frame.
     pub(super) fn is_same(&self, now: &Self) -> bool {
         let has_same_key = self.key.zip(now.key).is_none_or(|(before, now)| before == now);
         has_same_key && self.aabb.is_same(&now.aabb, now.rounding)
     }
 }
 
-/// Casters to look ahead where two lists differ. More of them find longer insertions, and cost more in lists that are in
-/// another order.
+/// Number of casters to look ahead at a difference of two lists. A greater number finds longer insertions,
+/// and costs more in reordered lists.
 const AHEAD: usize = 8;
 
-/// Returns how many casters were removed from a list and inserted into it, before it goes on as it did. `None` where
-/// neither is found, or where a caster only took the place of another one. The functions return the casters of both lists
-/// from where they differ.
+/// Returns the numbers of casters that were removed from a list and inserted into it at the first difference.
+/// Returns `None` if the search fails within [`AHEAD`] casters, or if one caster only replaced another one.
+/// The functions return the casters of both lists, counted from the difference.
 pub(super) fn shift(
     before: impl Fn(usize) -> Option<Caster>,
     now: impl Fn(usize) -> Option<Caster>,
@@ -67,8 +68,8 @@ pub(super) fn shift(
     taken_out.chain(put_in).find(|ahead| is_same(*ahead))
 }
 
-/// Weights of the coordinates in a sort key: fractions of square roots. No sums of a few of them are equal, so that
-/// neither grids of boxes nor boxes in a row share sort keys.
+/// Weights of the coordinates in a sort key: fractions of square roots. No two sums of a few weights are
+/// equal, so boxes in grids or rows have different sort keys.
 const WEIGHTS: [f64; 6] = [1.0, 0.732_050_807, 0.236_067_977, 0.645_751_311, 0.316_624_790, 0.605_551_275];
 
 /// Sum of the weights, rounded up.
@@ -77,14 +78,15 @@ const WEIGHT: f64 = 4.0;
 /// Rounding of a sort key in f64, as a share of the coordinates.
 const SORT_KEY_ROUNDING: f64 = 1e-14;
 
-/// Distance between the sort keys of casters with different keys, about, in metres: far more than a world, and few enough
-/// for sort keys to be exact to a hundredth of a millimetre.
+/// Approximate distance in metres between the sort keys of casters with different keys. It is far greater
+/// than a world, and small enough for sort keys to be exact to a hundredth of a millimetre.
 const KEY_RANGE: f64 = 1e9;
 
-/// Removes the pairs of the same caster from both lists. `found` gets the number of each in the second list, and its box
-/// in the first one.
+/// Removes the pairs of the same caster from both lists. Calls `found` with the caster's number in the second
+/// list and its box in the first one.
 ///
-/// Two casters with keys are the same if their keys and boxes are; where one has none, their boxes decide.
+/// Two casters with keys are the same if their keys and boxes are equal. If one of them has no key, their
+/// boxes decide.
 pub(super) fn pair(before: &mut Vec<Caster>, now: &mut Vec<Caster>, mut found: impl FnMut(usize, WorldBox)) {
     let mut pair_of = |of_before: KeyOf, of_now: KeyOf| {
         if !before.is_empty() && !now.is_empty() {
@@ -98,10 +100,10 @@ pub(super) fn pair(before: &mut Vec<Caster>, now: &mut Vec<Caster>, mut found: i
     pair_of(unkeyed, keyed);
 }
 
-/// From a caster's key to the key that its sort key contains; the outer `None` leaves the caster out.
+/// Maps a caster's key to the key that goes into its sort key. The outer `None` skips the caster.
 type KeyOf = fn(Option<u64>) -> Option<Option<u64>>;
 
-/// Pairs those casters of both lists that the functions do not leave out.
+/// Pairs the casters of both lists that the functions do not skip.
 fn pair_by_key(
     before: &mut Vec<Caster>,
     now: &mut Vec<Caster>,
@@ -142,14 +144,14 @@ fn keep_untaken(list: &mut Vec<Caster>, is_taken: &[bool]) {
     list.retain(|_| is_taken.next() == Some(&false));
 }
 
-/// A caster of a list, by its sort key.
+/// A caster's index in its list, with its sort key.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     sort_key: f64,
     index: u32,
 }
 
-/// Returns the casters that `key_of` does not leave out, in the order of their sort keys.
+/// Returns the casters that `key_of` does not skip, sorted by sort key.
 fn entries(list: &[Caster], key_of: KeyOf) -> Vec<Entry> {
     let entry =
         |(index, caster): (u32, &Caster)| Some(Entry { sort_key: sort_key(caster, key_of(caster.key)?), index });
@@ -161,20 +163,22 @@ fn entries(list: &[Caster], key_of: KeyOf) -> Vec<Entry> {
 fn sort_key(caster: &Caster, key: Option<u64>) -> f64 {
     let coordinates = caster.aabb.min.to_array().into_iter().chain(caster.aabb.max.to_array());
     let of_box: f64 = coordinates.zip(WEIGHTS).map(|(coordinate, weight)| coordinate * weight).sum();
-    // The fraction of the golden ratio spreads keys in a row far from each other.
+    // The golden ratio's fraction spreads consecutive keys far apart.
     let of_key = key.map_or(0, |key| key.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15)) >> 40;
     of_box + of_key as f64 * (KEY_RANGE / f64::from(1 << 24))
 }
 
-/// Returns the greatest difference between the sort keys of the same casters.
+/// Returns the greatest possible difference between the sort keys of the same caster.
 fn tolerance(caster: &Caster) -> f64 {
     let size = caster.aabb.min.abs().max(caster.aabb.max.abs()).max_element();
     WEIGHT * (caster.rounding + (size + KEY_RANGE) * SORT_KEY_ROUNDING)
 }
 
-/// For each entry the next one that is not taken: a forest whose roots are the untaken entries, with path compression.
+/// The next untaken entry after each entry: a forest whose roots are the untaken entries, with path
+/// compression.
 struct NextUntaken {
-    /// An untaken entry names itself; a taken one names a later entry, at most the next untaken one.
+    /// An untaken entry points to itself. A taken one points to a later entry, at most to the next untaken
+    /// one.
     next: Vec<u32>,
 }
 
@@ -183,7 +187,7 @@ impl NextUntaken {
         Self { next: (0..=count as u32).collect() }
     }
 
-    /// Returns the first untaken entry at or after this one; the number of entries where there is none.
+    /// Returns the first untaken entry from this one on, or the number of entries if there is none.
     fn at_or_after(&mut self, entry: usize) -> usize {
         let mut end = entry.min(self.next.len() - 1);
         while self.next[end] as usize != end {

@@ -1,8 +1,9 @@
 //! Caching: the parts of the maps that can be kept from frame to frame, and the passes that draw the rest.
 //!
-//! A map on the world's grid moves by whole texels, so its static casters are drawn once. [`MapCache`] compares a frame's
-//! maps and casters with the drawn ones, and lists the passes, each with rectangles and casters. It needs no
-//! graphics API: an engine carries the passes out with its own, as `shadowfit-wgpu` does with wgpu.
+//! A map on the world's grid moves by whole texels, so its static casters are drawn once. [`MapCache`]
+//! compares a frame's maps and casters with the layers' content and returns a list of passes, each with
+//! rectangles and casters. It uses no graphics API: the engine executes the passes, as `shadowfit-wgpu` does
+//! with wgpu.
 //!
 //! ```text
 //!   a frame's casters ──▶ 1. take: which of them changed, and where in each map?
@@ -11,10 +12,11 @@
 //!                     ──▶ 4. plan: passes, regions, casters
 //! ```
 //!
-//! Static casters are drawn into rectangles that came into a map, or in which one of them changed. Where casters move,
-//! the static ones have separate layers. The shown layer is restored from them where something moved in the frame
-//! before; then moving casters are drawn over it. A map that is drawn as a whole is drawn once, all casters together,
-//! into the shown layer; the static casters' own layer follows in the next frame that keeps the map.
+//! Static casters are redrawn only in rectangles that entered the map and where a static caster changed. If
+//! casters move, the static casters also have a separate layer. The shown layer is restored from it where
+//! moving casters were drawn before, and the moving casters of this frame are drawn over it. A map that is
+//! redrawn completely is drawn in one pass, with static and moving casters, into the shown layer. Its static
+//! layer is drawn in the next frame that keeps the map.
 //!
 //! ```
 //! use shadowfit::cache::{CacheFrame, CacheSettings, Casters, MapCache};
@@ -55,17 +57,19 @@
 //!
 //! # Carrying out a pass
 //!
-//! 1. Bind the pass's [layer](PassPlan::layer) of its map as depth attachment; clear it if [`PassPlan::clears`].
+//! 1. Bind the pass's [layer](PassPlan::layer) of its map as depth attachment. Clear it if
+//!    [`PassPlan::clears`] is set.
 //! 2. Write the far depth into the [cleared](PassPlan::cleared) rectangles.
-//! 3. Copy the [mended](PassPlan::mended) rectangles from the static casters' layer, and all texels that the
-//!    [mended boxes](PassPlan::mended_boxes) cover, in each of their [viewports](PassPlan::viewports).
-//! 4. For each [region](FramePlan::regions_of) set viewport and scissor rectangle, and draw its casters with the map's
-//!    [`clip_from_world`](crate::LightProjection::clip_from_world).
+//! 3. Copy the [mended](PassPlan::mended) rectangles from the static casters' layer. Copy the texels that the
+//!    [mended boxes](PassPlan::mended_boxes) cover too, once for each of the
+//!    [viewports](PassPlan::viewports).
+//! 4. For each [region](FramePlan::regions_of) set viewport and scissor rectangle, and draw its casters with
+//!    the map's [`clip_from_world`](crate::LightProjection::clip_from_world).
 //!
 //! # Memory
 //!
-//! Steady frames allocate nothing, also while the camera walks and casters move. Buffers grow with the number of casters.
-//! Changes of static casters allocate.
+//! Steady frames do not allocate, even while the camera and casters move. Buffers grow with the number of
+//! casters. Changes of static casters allocate.
 
 mod casters;
 mod drawing;
@@ -108,7 +112,7 @@ pub use updates::{UpdateKind, UpdatedRect};
 pub use volumes::RegionVolumes;
 pub use world_box::WorldBox;
 
-/// Remembers the content of the layers of one light's maps, and plans the passes of each frame.
+/// The content of the layers of one light's maps. Plans the passes of each frame.
 #[derive(Debug, Default)]
 pub struct MapCache {
     /// Settings. They may change between any two frames.
@@ -117,19 +121,19 @@ pub struct MapCache {
     known: KnownCasters,
     /// Number of the frame.
     frame: u64,
-    /// Whether static casters have separate layers: from the first moving caster on.
+    /// Whether static casters have separate layers. True from the first moving caster on.
     has_static_layers: bool,
     plan: FramePlan,
     choice: Choice,
     buffers: Buffers,
 }
 
-/// The maps that are read in a frame; some of them were drawn in an earlier one.
+/// The maps that shaders read in a frame. Some of them were drawn in an earlier frame.
 #[derive(Debug, Default)]
 struct Choice {
     transitions: Vec<Transition>,
     maps: Vec<FittedMap>,
-    /// Rectangles that are redrawn, of all maps.
+    /// Redrawn rectangles of all maps.
     rects: Vec<TexelRect>,
     /// The casters of each map that can shadow something in view.
     in_view: Vec<CasterVolume>,
@@ -137,32 +141,33 @@ struct Choice {
 }
 
 impl MapCache {
-    /// Makes a cache for empty layers.
+    /// Returns a cache for empty layers.
     pub fn new(settings: CacheSettings) -> Self {
         Self { settings, ..Self::default() }
     }
 
-    /// Plans the passes of a frame. They count as drawn from the next call on.
+    /// Plans the passes of a frame. The next call assumes that they were executed.
     ///
-    /// The first moving caster needs [separate layers](Self::has_static_layers) for the static ones.
+    /// The first moving caster makes [separate layers](Self::has_static_layers) for the static casters
+    /// necessary.
     ///
     /// # Errors
     ///
-    /// Those of [`caster_volumes`](crate::culling::caster_volumes), for views that make no sense: [`FitError::NoView`]
-    /// without a view, where passes depend on it. Then the frame has no passes, and shaders go on reading the maps of the
-    /// frame before.
+    /// Returns the errors of [`caster_volumes`](crate::culling::caster_volumes) for invalid views, and
+    /// [`FitError::NoView`] if passes depend on the views and there are none. The frame then has no passes,
+    /// and shaders keep reading the maps of the previous frame.
     pub fn update(&mut self, frame: &CacheFrame<'_>) -> Result<&FramePlan, FitError> {
         self.skip();
-        // 1. Where static casters changed.
+        // 1. Find the places where static casters changed.
         self.take(frame);
-        // 2. Which maps are drawn now, and which are read as they are.
+        // 2. Choose the maps to draw. The others are read unchanged.
         let is_due = self.due(frame)?;
         self.choose(frame, is_due);
-        // 3. The casters of each.
+        // 3. Find the casters of each map.
         let depends_on_view = self.depends_on_view();
         let Choice { maps, in_view, .. } = &mut self.choice;
         volumes::find(&self.settings, frame, maps, depends_on_view, in_view)?;
-        // 4. The passes.
+        // 4. Write the passes.
         self.write_plan(frame, depends_on_view);
         Ok(&self.plan)
     }
@@ -172,13 +177,13 @@ impl MapCache {
         &self.plan
     }
 
-    /// Leaves the frame without passes. The maps to read stay.
+    /// Removes all passes of the frame. The maps to read stay.
     pub fn skip(&mut self) {
         self.plan.clear_passes();
     }
 
-    /// Leaves the frame without passes and without maps to read, such as for a light that is off. The layers keep their
-    /// content.
+    /// Removes all passes and all maps to read, such as for a light that is switched off. The layers keep
+    /// their content.
     pub fn turn_off(&mut self) {
         self.skip();
         self.plan.maps.clear();
@@ -186,13 +191,14 @@ impl MapCache {
         self.plan.in_view.clear();
     }
 
-    /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
+    /// Makes the next update redraw all maps, such as after a frame whose passes were not submitted.
     pub fn invalidate_all(&mut self) {
         self.maps.fill_with(MapState::default);
     }
 
-    /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
-    /// metres, relative to an origin in world space. An empty box changes nothing.
+    /// Makes the next update redraw the static casters in a box. Call it for a caster that changes its shape
+    /// within the same box. The box is in metres, relative to an origin in world space. An empty box has no
+    /// effect.
     pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         let changed = WorldBox::new(aabb, origin);
         if !changed.is_empty() {
@@ -200,21 +206,21 @@ impl MapCache {
         }
     }
 
-    /// Returns whether static casters have separate layers, one for each map, as large as the shown one. They do from the
-    /// first moving caster on, while caching is on.
+    /// Returns whether static casters have separate layers, one per map, of the same size as the shown layer.
+    /// While caching is on, this becomes true with the first moving caster.
     ///
-    /// Make the layers after the first [`Self::update`] that says so. If memory is lacking, turn
-    /// [caching](CacheSettings::caching) off, and update a new cache with the same frame.
+    /// Create the layers after the first [`Self::update`] that makes it true. If memory is short, turn
+    /// [caching](CacheSettings::caching) off and update a new cache with the same frame.
     pub fn has_static_layers(&self) -> bool {
         self.has_static_layers
     }
 
-    /// Returns whether a map's layer holds all static casters over it, so that later frames can keep it.
+    /// Returns whether a map's layer holds all static casters over the map, so that later frames can keep it.
     pub fn is_kept(&self, map: usize) -> bool {
         self.maps.get(map).is_some_and(|map| map.layers.is_kept())
     }
 
-    /// Finds where static casters changed.
+    /// Finds the places where static casters changed.
     fn take(&mut self, frame: &CacheFrame<'_>) {
         let changes = self.known.update(&frame.casters, frame.static_boxes);
         self.change(&changes);
@@ -228,7 +234,7 @@ impl MapCache {
         }
     }
 
-    /// Chooses which maps are drawn, and which are read as they are. `is_due`: which must not wait.
+    /// Chooses the maps to draw. The others are read unchanged. `is_due` marks the maps that must not wait.
     fn choose(&mut self, frame: &CacheFrame<'_>, is_due: [bool; MAX_MAPS]) {
         let Choice { transitions, maps, rects, candidates, .. } = &mut self.choice;
         transitions.clear();
@@ -236,7 +242,7 @@ impl MapCache {
         rects.clear();
         candidates.clear();
         let (selection, has_moving) = (self.settings.reading.selection, !self.known.moving.is_empty());
-        // By coverage it holds the points outside all others.
+        // With selection by coverage, the coarsest map also serves the points outside all other maps.
         let coarsest = MapOrder::new(selection, frame.maps.iter().map(|map| &map.projection)).iter().last();
         for (index, (map, fitted)) in self.maps.iter_mut().zip(frame.maps).enumerate() {
             let transition = map.decide(fitted, &self.settings, frame.casters.boxes.boxes.len(), rects);
@@ -257,7 +263,7 @@ impl MapCache {
         maps.extend(read.map(|((map, fitted), transition)| map.shown(fitted, transition)));
     }
 
-    /// Returns whether the passes depend on the views: static casters alone do not.
+    /// Returns whether the passes depend on the views. Passes of static casters alone do not.
     fn depends_on_view(&self) -> bool {
         let has_moving = !self.known.moving.is_empty();
         self.choice.transitions.iter().any(|transition| match transition {
@@ -267,7 +273,7 @@ impl MapCache {
         })
     }
 
-    /// Writes the passes of the maps that were chosen.
+    /// Writes the passes of the chosen maps.
     fn write_plan(&mut self, frame: &CacheFrame<'_>, depends_on_view: bool) {
         let Self { choice, plan, .. } = self;
         core::mem::swap(&mut plan.maps, &mut choice.maps);

@@ -1,5 +1,5 @@
-//! The order in which casters are drawn: front to back, as seen from the light, so that hidden texels fail the depth
-//! test.
+//! The drawing order of casters: front to back as seen from the light, so that the depth test rejects
+//! hidden texels.
 
 use alloc::vec::Vec;
 
@@ -7,12 +7,12 @@ use glam::Vec3;
 
 use crate::Aabb;
 
-/// Sorts casters by their ends toward the light, the nearest first, and then by number. `to_light` is the unit direction
-/// toward the light; `order` is a buffer.
+/// Sorts casters by the end of their boxes toward the light, nearest first, and then by number. `to_light` is
+/// the unit direction toward the light. `order` is scratch memory.
 pub(super) fn sort(numbers: &mut [u32], to_light: Vec3, order: &mut Vec<u64>, aabb: impl Fn(u32) -> Aabb) {
     order.clear();
     order.extend(numbers.iter().map(|number| {
-        // Descending floats as ascending integers.
+        // Maps floats to integers so that ascending integers are descending floats.
         let bits = height(&aabb(*number), to_light).to_bits();
         let descending = if bits >> 31 == 0 { !bits & 0x7fff_ffff } else { bits };
         u64::from(descending) << 32 | u64::from(*number)
@@ -23,7 +23,7 @@ pub(super) fn sort(numbers: &mut [u32], to_light: Vec3, order: &mut Vec<u64>, aa
     }
 }
 
-/// Returns the end of a box toward the light, in metres along `to_light`.
+/// Returns the coordinate of a box's end toward the light, in metres along `to_light`.
 fn height(aabb: &Aabb, to_light: Vec3) -> f32 {
     aabb.max.dot(to_light.max(Vec3::ZERO)) + aabb.min.dot(to_light.min(Vec3::ZERO))
 }

@@ -1,41 +1,42 @@
-//! What drawing a part of a map costs, so that rectangles are split and merged by it.
+//! Cost of drawing parts of a map. It decides how rectangles are split and merged.
 
 use crate::scroll::TexelRect;
 
-/// A rectangle's own cost, in texels: a clear, a viewport and a scissor rectangle, and those of its casters that lie in
-/// other rectangles too, such as the ground. An estimate, 3 µs, in texels of 0.29 ns: plans hardly depend on it.
+/// Cost of a rectangle, in texels: a clear, a viewport, a scissor rectangle, and the casters that it shares
+/// with other rectangles, such as the ground. It is an estimate of 3 µs at 0.29 ns per texel. Plans hardly
+/// depend on it.
 ///
-/// A texel is what all others are counted in: four maps of 2048 × 2048 take 4.8 ms on the GPU when drawn anew (zdm2, in
-/// the tables of `docs/BENCHMARKS.md`), so it takes 0.29 ns, of which the clear is 0.07.
+/// All costs are in texels. Redrawing four maps of 2048 × 2048 takes 4.8 ms on the GPU (zdm2, in
+/// `docs/figures/gpu.md`), so a texel takes 0.29 ns, including 0.07 ns for the clear.
 const RECT: f64 = 10_000.0;
 
-/// A caster's cost, in texels, beyond those that it covers: a draw call is 0.13 µs of encoding and 0.05 µs on the GPU
-/// (40,000 of them against 3,755, there).
+/// Cost of a caster, in texels, in addition to the texels that it covers. A draw call takes 0.13 µs of
+/// encoding and 0.05 µs on the GPU (40,000 calls against 3,755, same tables).
 const CASTER: f64 = 600.0;
 
-/// The cost of testing one caster of the list against a rectangle, in texels: 70 µs for 10,000 boxes and four volumes.
+/// Cost of testing one listed caster against a rectangle, in texels: 70 µs for 10,000 boxes and four volumes.
 const CULLED: f64 = 6.0;
 
-/// What a texel costs that is also restored from the static casters' layer: read, and written once more. An estimate:
-/// less than drawing it, more than clearing it.
+/// Additional cost of a texel that is also restored from the static casters' layer, by a read and a second
+/// write. It is an estimate between the costs of clearing and drawing a texel.
 const RESTORED: f64 = 0.5;
 
 /// Prices of a map's parts in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Price {
-    /// Of a rectangle, whatever its size.
+    /// Cost of a rectangle, independent of its size.
     pub(super) rect: f64,
-    /// Of a texel, with the casters over it.
+    /// Cost of a texel, including the casters over it.
     pub(super) texel: f64,
-    /// Of a texel of a map that is drawn as a whole.
+    /// Cost of a texel if the whole map is redrawn.
     whole: f64,
 }
 
 impl Price {
-    /// Prices where so many casters are listed, and so many of them lie over a map of so many texels. `restores`: whether
-    /// static casters have a layer of their own.
+    /// Returns the prices for a list of `listed` casters, of which `over` lie over a map of `texels` texels.
+    /// `restores` says whether static casters have a separate layer.
     pub(super) fn new(listed: usize, over: usize, texels: u64, restores: bool) -> Self {
-        // Casters are taken as spread evenly: what lies where is known only after culling.
+        // Assumes that casters are spread evenly. Their places are known only after culling.
         let each = over as f64 / texels.max(1) as f64;
         let whole = 1.0 + CASTER * each;
         let texel = if restores { whole + RESTORED } else { whole };
@@ -46,12 +47,13 @@ impl Price {
         self.rect + self.texel * texels as f64
     }
 
-    /// Whether rectangles cost less than the map as a whole, which needs no rectangle.
+    /// Returns whether the rectangles cost less than the whole map, which needs no rectangle.
     pub(super) fn is_worth(&self, rects: &[TexelRect], whole: u64) -> bool {
         rects.iter().map(|rect| self.of(rect.area())).sum::<f64>() < self.whole * whole as f64
     }
 
-    /// Whether so many texels cost less than the map as a whole, in as few rectangles as there are.
+    /// Returns whether this number of texels costs less than the whole map, apart from the cost of its
+    /// rectangles.
     pub(super) fn may_be_worth(&self, texels: u64, whole: u64) -> bool {
         self.texel * (texels as f64) < self.whole * whole as f64
     }

@@ -1,38 +1,42 @@
-//! Which maps are drawn in a frame, and which wait.
+//! The choice of the maps to draw in a frame. The others wait.
 
 use crate::settings::MAX_MAPS;
 
-/// When maps are drawn that may wait: those whose shadows would only be late.
+/// Schedule of the maps that may wait, because waiting only delays their shadows.
 ///
-/// A map that waits is read as it was drawn, with its own matrices. It never waits where a receiver would be left out
-/// or a caster lost: when the light has turned, or when its depth range no longer holds its receivers and casters. The
-/// map that holds the points outside all others does not wait when it has moved. Nor does a map wait that shows a static
-/// caster in view that is gone or elsewhere: what comes may be late, what goes never is. Maps that are not kept never wait.
+/// A waiting map keeps its content and its matrices. On any schedule, a map is drawn at once if waiting would
+/// lose a receiver or a caster:
+///
+/// - The light has turned.
+/// - The map's depth range no longer holds its receivers and casters.
+/// - The map serves the points outside all other maps, and it has moved.
+/// - The map shows a static caster in view that has moved or disappeared. New casters may appear late.
+/// - The map is not kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UpdateSchedule {
-    /// Every map in every frame. The default.
+    /// Draws every map in every frame. The default.
     #[default]
     EveryFrame,
-    /// Map i in every n-th frame, with n at index i: a 0 counts as 1.
+    /// Draws map i in every n-th frame, with n at index i. 0 counts as 1.
     Every([u32; MAX_MAPS]),
-    /// Texel budget per frame; the map that waited longest goes first, and at least one is drawn.
+    /// Texel budget per frame. Draws the map that has waited longest first, and at least one map.
     Texels(u64),
 }
 
-/// A map that has something to draw.
+/// A map with something to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Candidate {
     pub(super) map: usize,
-    /// Frames since it was drawn.
+    /// Number of frames since the map was drawn.
     pub(super) age: u64,
-    /// Texels that would be drawn.
+    /// Number of texels to draw.
     pub(super) texels: u64,
     /// Whether it must be drawn.
     pub(super) is_due: bool,
 }
 
 impl UpdateSchedule {
-    /// Whether each map is drawn in a frame of this number.
+    /// Returns for each map whether it is drawn in this frame.
     pub(super) fn choose(self, frame: u64, candidates: &mut [Candidate]) -> [bool; MAX_MAPS] {
         let mut drawn = [false; MAX_MAPS];
         let mut spent = 0;
@@ -45,7 +49,7 @@ impl UpdateSchedule {
         for candidate in candidates.iter().filter(|candidate| !candidate.is_due) {
             let is_chosen = match self {
                 Self::EveryFrame => true,
-                // Maps of one interval take turns.
+                // Maps with the same interval take turns.
                 Self::Every(frames) => {
                     let interval = u64::from(frames[candidate.map].max(1));
                     candidate.age >= interval || (frame + candidate.map as u64).is_multiple_of(interval)

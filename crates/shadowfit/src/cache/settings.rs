@@ -7,15 +7,15 @@ use crate::Technique;
 use crate::selection::MapReading;
 use crate::settings::CasterPolicy;
 
-/// Which casters are drawn into maps. Pictures are the same either way.
+/// The casters that are drawn into maps. All variants give the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Culling {
-    /// Maps that are redrawn and moving casters: only casters that can cast a shadow into view
-    /// ([`caster_volumes`](crate::culling::caster_volumes)). Maps that are kept: all static casters that the map can
-    /// store. The default.
+    /// In redrawn maps, and for moving casters in all maps: only casters that can cast a shadow into view
+    /// ([`caster_volumes`](crate::culling::caster_volumes)). In kept maps: all static casters that the map
+    /// can store. The default.
     #[default]
     Swept,
-    /// Casters that the map can store.
+    /// All casters that the map can store.
     WholeMap,
     /// All casters, for comparison.
     Off,
@@ -24,18 +24,19 @@ pub enum Culling {
 /// Settings of a [`MapCache`](super::MapCache). They may change between any two frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CacheSettings {
-    /// Whether static casters are kept from frame to frame. Without caching every map is redrawn in every frame.
-    /// Default: `true`.
+    /// Whether static casters are kept from frame to frame. Without caching, every map is redrawn in every
+    /// frame. Default: `true`.
     pub caching: bool,
-    /// Which casters are drawn into maps.
+    /// The casters that are drawn into maps.
     pub culling: Culling,
-    /// Which maps may wait for another frame.
+    /// Schedule of the maps that may wait.
     pub schedule: UpdateSchedule,
     /// Whether the shadow pass clamps depth at the near plane, so that maps also store the casters in front of it.
     pub depth_clamp: bool,
-    /// How receivers read the maps.
+    /// Selection of the map that a receiver reads, and the filter of the look-up.
     pub reading: MapReading,
-    /// Width and height of the layers that store the maps, in texels. A smaller map is kept until it moves.
+    /// Width and height of the layers that store the maps, in texels. A smaller map is kept only while it
+    /// does not move.
     pub layer: UVec2,
 }
 
@@ -52,7 +53,7 @@ impl CacheSettings {
         }
     }
 
-    /// Returns which casters in front of the near plane a map stores: all or none.
+    /// Returns the policy for casters in front of the near plane: a map stores either all or none of them.
     pub(super) fn caster_policy(&self) -> CasterPolicy {
         if self.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None }
     }

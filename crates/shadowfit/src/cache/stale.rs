@@ -1,4 +1,4 @@
-//! The errors of maps that wait for another frame: where casters were when they were drawn, and where they are.
+//! Errors of waiting maps: the old and new places of casters that moved since these maps were drawn.
 
 use alloc::vec::Vec;
 
@@ -7,19 +7,19 @@ use super::casters::Casters;
 use super::plan::MapReuse;
 use super::world_box::WorldBox;
 
-/// A map that waits for another frame and shows something wrongly.
+/// A waiting map that shows outdated shadows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaleMap {
     /// Index of the map.
     pub map: usize,
-    /// Boxes around the casters that moved since it was drawn, where they were and where they are; `None` where static
+    /// Boxes of the casters that moved since the map was drawn, at their old and new places. `None` if static
     /// casters changed as well.
     pub boxes: Option<Vec<WorldBox>>,
 }
 
 impl MapCache {
-    /// Writes the errors of the maps that wait in the last [update](Self::update), whose casters these are. Tracers of
-    /// exact edges need them.
+    /// Writes the errors of the maps that wait in the last [update](Self::update), with that update's
+    /// casters. Tracers of exact edges need them.
     pub fn find_stale(&self, casters: &Casters<'_>, stale: &mut Vec<StaleMap>) {
         stale.clear();
         let moves = !self.known.moving.is_empty();

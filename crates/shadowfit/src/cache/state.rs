@@ -15,11 +15,12 @@ use super::world_box::WorldBox;
 use crate::FittedMap;
 use crate::scroll::{Scroll, TexelRect};
 
-/// A map that was new in this many frames in a row counts as one that cannot be kept: it is then drawn with the casters
-/// of one frame alone, which are fewer.
+/// Number of successive renewals after which a map counts as one that cannot be kept. It is then drawn with
+/// the casters of one frame only, which are fewer.
 const NEVER_KEPT: u8 = 2;
 
-/// Gone casters that a map remembers; the last one is a box around all others.
+/// Greatest number of disappeared casters that a map remembers. The last entry is a box around all further
+/// ones.
 const MAX_GONE: usize = 64;
 
 /// The content of a map's layers.
@@ -30,63 +31,64 @@ const MAX_GONE: usize = 64;
 /// | any | [`Self::Kept`] | [`Transition::Renew`] |
 /// | [`Self::Kept`] | [`Self::Kept`], or [`Self::Split`] from the first moving caster on | [`Transition::Update`] |
 /// | [`Self::Split`] | [`Self::Split`] | [`Transition::Update`] |
-/// | any | [`Self::Nothing`] | a change that may have touched everything, or an invalidation of all |
+/// | any | [`Self::Nothing`] | a change that may affect everything, or `invalidate_all` |
 #[derive(Debug, Default)]
 pub(super) enum Layers {
-    /// Nothing that can be shown.
+    /// No valid content.
     #[default]
     Nothing,
-    /// The casters of the frame in which it was drawn; later frames may need others.
+    /// The casters that one frame needed. Later frames may need others.
     OneFrame(Drawn),
     /// The shown layer holds all static casters over the map.
     Kept(Drawn),
-    /// The static casters' own layer holds them, too.
+    /// Both the shown layer and the static casters' layer hold all static casters over the map.
     Split(Drawn),
 }
 
-/// A map as it was drawn, and the changes since.
+/// A drawn map, and the changes since.
 #[derive(Debug)]
 pub(super) struct Drawn {
     /// The map, with its texel offset.
     pub(super) map: FittedMap,
     /// Places where static casters changed, in texels of this map.
     pub(super) changed: ChangedTiles,
-    /// Static casters that it shows and that are gone.
+    /// Static casters that have disappeared but are still in the drawn map.
     pub(super) gone: Vec<WorldBox>,
-    /// Moving casters that the shown layer holds over static ones.
+    /// Moving casters in the shown layer, drawn over the static ones.
     pub(super) moving: Vec<WorldBox>,
 }
 
-/// One map from frame to frame.
+/// State of one map between frames.
 #[derive(Debug, Default)]
 pub(super) struct MapState {
     pub(super) layers: Layers,
     /// The map that was fitted last.
     pub(super) fitted: Option<FittedMap>,
-    /// Frame in which it was drawn.
+    /// The last frame that drew the map.
     pub(super) frame: u64,
-    /// Number of frames in a row in which it was new.
+    /// Number of successive frames that had to redraw the whole map.
     renewals: u8,
-    /// Static casters over it when all of them were drawn last: an estimate of the price of its texels.
+    /// Number of static casters over the map when all of them were drawn last. Estimates the cost of its
+    /// texels.
     pub(super) over: usize,
 }
 
 /// The change of a map's layers in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Transition {
-    /// Reads them as they are.
+    /// Draws no caster. Shaders read the layers unchanged.
     Wait,
-    /// Draws static casters into some rectangles, a range of the rectangles of all maps, and then moving casters:
-    /// to [`Layers::Kept`] or [`Layers::Split`].
+    /// Draws static casters into a range of the common list of rectangles, then moving casters. Results in
+    /// [`Layers::Kept`] or [`Layers::Split`].
     Update { texel_offset: UVec2, shift: IVec2, rects: Range<usize> },
-    /// Draws all static casters together with the moving ones: to [`Layers::Kept`].
+    /// Draws all static casters together with the moving ones. Results in [`Layers::Kept`].
     Renew,
-    /// Draws the casters of this frame: to [`Layers::OneFrame`].
+    /// Draws the casters of this frame. Results in [`Layers::OneFrame`].
     DrawOnce,
 }
 
 impl Transition {
-    /// Returns its name in the plan.
+    /// Returns its equivalent in the plan.
     pub(super) fn reuse(&self) -> MapReuse {
         match *self {
             Self::Wait => MapReuse::Waits,
@@ -96,7 +98,7 @@ impl Transition {
         }
     }
 
-    /// Returns its part of the rectangles of all maps.
+    /// Returns its range of the common list of rectangles.
     pub(super) fn rects<'a>(&self, rects: &'a [TexelRect]) -> &'a [TexelRect] {
         match self {
             Self::Update { rects: range, .. } => &rects[range.clone()],
@@ -106,7 +108,7 @@ impl Transition {
 }
 
 impl Layers {
-    /// Returns the map as it was drawn.
+    /// Returns the drawn map.
     pub(super) fn drawn(&self) -> Option<&Drawn> {
         match self {
             Self::Nothing => None,
@@ -114,7 +116,7 @@ impl Layers {
         }
     }
 
-    /// Takes the map as it was drawn out of the layers, for a map that is drawn now. Moving casters stay.
+    /// Takes the drawn map out of the layers to draw it again as `map`. Its list of moving casters stays.
     pub(super) fn redraw(&mut self, map: &FittedMap) -> Drawn {
         match take(self) {
             Self::Nothing => {
@@ -134,12 +136,12 @@ impl Layers {
         matches!(self, Self::Kept(_) | Self::Split(_))
     }
 
-    /// Returns whether the static casters' separate layer holds them.
+    /// Returns whether the static casters' layer holds all static casters over the map.
     pub(super) fn is_split(&self) -> bool {
         matches!(self, Self::Split(_))
     }
 
-    /// Remembers where static casters changed.
+    /// Records the places where static casters changed.
     pub(super) fn change(&mut self, changes: &Changes) {
         match self {
             Self::OneFrame(_) | Self::Kept(_) | Self::Split(_) if changes.is_all => *self = Self::Nothing,
@@ -173,8 +175,8 @@ impl Drawn {
 }
 
 impl MapState {
-    /// Returns the transition to a map that is fitted now, with this number of casters in the list. Adds the
-    /// transition's rectangles to `rects`.
+    /// Returns the transition to the map `now`, which was fitted for this frame. `casters` is the number of
+    /// listed casters. Adds the transition's rectangles to `rects`.
     pub(super) fn decide(
         &mut self,
         now: &FittedMap,
@@ -191,7 +193,8 @@ impl MapState {
         update.filter(|_| self.layers.is_kept()).unwrap_or(Transition::Renew)
     }
 
-    /// Returns the transition that keeps as many texels as possible; `None` if a new map costs no more.
+    /// Returns the transition that keeps the most texels, or `None` if redrawing the whole map is not more
+    /// expensive.
     fn update(
         &self,
         now: &FittedMap,
@@ -217,8 +220,8 @@ impl MapState {
         is_worth.then_some(Transition::Update { texel_offset, shift: scroll.shift, rects })
     }
 
-    /// Returns whether points may read the map as it was drawn, without losing a shadow. `serves_others`: whether another
-    /// map holds the points outside it.
+    /// Returns whether shaders may read the drawn map without losing a shadow. `serves_others` says whether
+    /// another map covers the points outside it.
     pub(super) fn may_wait(&self, now: &FittedMap, serves_others: bool) -> bool {
         let (Layers::Kept(Drawn { map, .. }) | Layers::Split(Drawn { map, .. })) = &self.layers else { return false };
         let Some((old, grid_position)) = map.grid_position.zip(now.grid_position) else { return false };
@@ -230,18 +233,20 @@ impl MapState {
         is_same_light && holds_depth && !is_empty && (serves_others || is_in_place)
     }
 
-    /// Returns the number of texels in which a transition draws static casters. `rects` are those that it redraws.
+    /// Returns the number of texels that a transition redraws with static casters. `rects` are the rectangles
+    /// that it redraws.
     pub(super) fn texels(&self, transition: &Transition, rects: &[TexelRect], now: &FittedMap) -> u64 {
         match (transition, &self.layers) {
             (Transition::Wait, _) => 0,
-            // Their own layer is made.
+            // The whole static layer is drawn as well.
             (Transition::Update { .. }, Layers::Kept(drawn)) if !drawn.moving.is_empty() => whole(now),
             (Transition::Update { .. }, _) => rects.iter().map(TexelRect::area).sum(),
             (Transition::Renew | Transition::DrawOnce, _) => whole(now),
         }
     }
 
-    /// Returns the map that is read: the fitted one, or the one that was drawn, with its texel offset.
+    /// Returns the map for shaders to read, with its texel offset: the drawn one if it waits, otherwise the
+    /// fitted one.
     pub(super) fn shown(&self, fitted: &FittedMap, transition: &Transition) -> FittedMap {
         match (self.layers.drawn(), transition) {
             (Some(drawn), Transition::Wait) => drawn.map.relative_to(fitted.projection.origin),
@@ -256,7 +261,7 @@ fn whole(map: &FittedMap) -> u64 {
     TexelRect::all(map.projection.resolution).area()
 }
 
-/// Returns where a rectangle of a map lies in the same map after a shift.
+/// Returns the place of a rectangle after the map has moved by `shift`.
 fn moved(rect: TexelRect, shift: IVec2, size: UVec2) -> TexelRect {
     let [min, end] = [rect.min, rect.min + rect.size]
         .map(|corner| (corner.as_ivec2() - shift).clamp(IVec2::ZERO, size.as_ivec2()).as_uvec2());

@@ -1,7 +1,8 @@
 //! The places of a map that changed since it was drawn, and the rectangles that redraw them.
 //!
-//! However much changes and however long a map waits, a bit for each tile remembers it. The rectangles come from above:
-//! the least one around all changes is cut in two where that saves the most, and so on, as long as it saves anything.
+//! One bit per tile records the changes, so memory does not depend on their number or on how long a map
+//! waits. The rectangles are computed top-down: the bounding rectangle of all changes is cut in two where
+//! this saves the most, and its parts again, until no cut saves anything.
 //!
 //! ```text
 //!   ┌──────────────┐      ┌──────┐
@@ -20,13 +21,14 @@ use glam::UVec2;
 use super::price::Price;
 use crate::scroll::TexelRect;
 
-/// Most tiles along a side: their bits are four words, and 16 KiB for a map.
+/// Greatest number of tiles along a side. A row is then four words of bits, and a map takes 16 KiB.
 const MAX_TILES: u32 = 256;
 
-/// Least width and height of a tile, in texels: a caster's rectangle is half a tile larger on each side, on average.
+/// Least width and height of a tile, in texels. On average, tiles enlarge a caster's rectangle by half a tile
+/// on each side.
 const LEAST_TILE: u32 = 8;
 
-/// Most rectangles of a map that are drawn in a frame.
+/// Greatest number of rectangles of a map that are drawn in a frame.
 const MAX_RECTS: usize = 64;
 
 /// A bit for each tile of a row or a column.
@@ -39,7 +41,7 @@ pub(super) struct ChangedTiles {
     size: UVec2,
     /// Width and height of a tile, in texels.
     side: u32,
-    /// The changed tiles of each row, and the same ones of each column; none before the first change.
+    /// The changed tiles by row, and the same ones by column. Empty before the first change.
     rows: Vec<Line>,
     columns: Vec<Line>,
     is_changed: bool,
@@ -55,7 +57,7 @@ struct Block {
 /// A rectangle that may still be cut.
 struct Leaf {
     block: Block,
-    /// The best cut, and what it saves.
+    /// The best cut, and the cost that it saves.
     cut: Option<(f64, [Block; 2])>,
 }
 
@@ -69,7 +71,7 @@ impl ChangedTiles {
         }
     }
 
-    /// Adds a part of a map of this width and height.
+    /// Marks a rectangle as changed. `size` is the map's width and height in texels.
     pub(super) fn add(&mut self, rect: TexelRect, size: UVec2) {
         if rect.is_empty() {
             return;
@@ -86,13 +88,13 @@ impl ChangedTiles {
         set(&mut self.columns[as_usize(&columns)], &rows);
     }
 
-    /// Texels of all tiles that changed, of which no rectangles can have less.
+    /// Returns the number of texels of all changed tiles, a lower bound for the area of the rectangles.
     pub(super) fn texels(&self) -> u64 {
         let tiles: u32 = self.rows.iter().flatten().map(|word| word.count_ones()).sum();
         u64::from(tiles) * u64::from(self.side).pow(2)
     }
 
-    /// Rectangles around all that changed, in texels.
+    /// Returns rectangles around all changes, in texels.
     pub(super) fn rects(&self, price: &Price) -> Vec<TexelRect> {
         let all = Block { columns: 0..self.columns.len() as u32, rows: 0..self.rows.len() as u32 };
         let Some(all) = self.is_changed.then(|| self.tight(&all)).flatten() else { return Vec::new() };
@@ -128,14 +130,14 @@ impl ChangedTiles {
         price.of(self.texels_of(block).area())
     }
 
-    /// The texels of a block.
+    /// Returns the texels of a block.
     fn texels_of(&self, block: &Block) -> TexelRect {
         let min = UVec2::new(block.columns.start, block.rows.start) * self.side;
         let end = (UVec2::new(block.columns.end, block.rows.end) * self.side).min(self.size);
         TexelRect { min, size: end - min }
     }
 
-    /// The least block around the changed tiles of another one.
+    /// Returns the smallest block around the changed tiles in another one.
     fn tight(&self, block: &Block) -> Option<Block> {
         let around = |lines: &[Line], across: &Range<u32>| {
             lines.iter().filter_map(|line| extent(line, across)).reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
@@ -147,7 +149,7 @@ impl ChangedTiles {
 }
 
 impl Block {
-    /// A part of it, from lines counted from its first one.
+    /// Returns a part of the block. `along` counts from the block's first line.
     fn part(&self, along: Range<u32>, across: Range<u32>, by_column: bool) -> Self {
         let moved = |first: u32| along.start + first..along.end + first;
         if by_column {
@@ -161,7 +163,7 @@ impl Block {
 /// The changed tiles of some lines.
 #[derive(Clone, Debug)]
 struct Part {
-    /// From the first line that has any to the last one.
+    /// Lines from the first to the last one with a changed tile.
     along: Range<u32>,
     across: Range<u32>,
 }
@@ -185,7 +187,8 @@ impl Part {
     }
 }
 
-/// The cut between two lines that leaves the least area, if both sides have any.
+/// Returns the two parts of the cut between lines that leaves the least area, if both sides have changed
+/// tiles.
 fn cut(lines: &[Line], across: &Range<u32>) -> Option<[Part; 2]> {
     let extents: Vec<Range<u32>> = lines.iter().map(|line| extent(line, across).unwrap_or(0..0)).collect();
     let numbered = || extents.iter().enumerate().map(|(line, tiles)| (line as u32, tiles));
@@ -215,7 +218,7 @@ fn cut(lines: &[Line], across: &Range<u32>) -> Option<[Part; 2]> {
     (area < u32::MAX).then(|| [part(&|line| line < first), part(&|line| line >= first)])
 }
 
-/// The tiles of a line from the first to the last one that is set within a range.
+/// Returns the range of tiles from the first to the last one that is set within a range.
 fn extent(line: &Line, within: &Range<u32>) -> Option<Range<u32>> {
     let set = core::array::from_fn::<u64, 4, _>(|word| line[word] & mask(within, word));
     let first = set.iter().position(|word| *word != 0)?;
@@ -224,7 +227,7 @@ fn extent(line: &Line, within: &Range<u32>) -> Option<Range<u32>> {
     Some(first as u32 * 64 + first_bit..last as u32 * 64 + last_bit)
 }
 
-/// The bits of a range in one word of a line.
+/// Returns the bits of a range in one word of a line.
 fn mask(range: &Range<u32>, word: usize) -> u64 {
     let below = |end: u32| match end.saturating_sub(word as u32 * 64) {
         bits @ 0..64 => (1 << bits) - 1,
@@ -293,7 +296,7 @@ mod tests {
 
     #[test]
     fn rectangles_hold_every_change_and_do_not_overlap() {
-        // Low-discrepancy places, more of them than rectangles.
+        // Low-discrepancy places. The greater counts exceed the number of rectangles.
         let place = |i: u32, step: f64, size: u32| ((f64::from(i) * step).fract() * f64::from(size - 30)) as u32;
         for count in [1, 7, 33, 200, 3000] {
             let changes: Vec<TexelRect> = (0..count)

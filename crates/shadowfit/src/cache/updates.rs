@@ -1,4 +1,4 @@
-//! Rectangles of the maps that a frame draws, and maps that hold a caster: for tools that show them.
+//! Redrawn rectangles of the maps, and the maps that hold each caster, for tools that show them.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -13,32 +13,33 @@ use crate::culling::cull;
 use crate::scroll::TexelRect;
 use crate::{CasterVolume, FittedMap};
 
-/// A rectangle of a map that is drawn in a frame.
+/// A rectangle of a map that a frame draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UpdatedRect {
-    /// Number of the map.
+    /// Index of the map.
     pub map: usize,
-    /// The rectangle as it is looked up, wherever it is stored: the map's first texel is its left top one.
+    /// The rectangle in the map's coordinates, whose first texel is top left. It may be stored elsewhere in
+    /// the layer.
     pub rect: TexelRect,
-    /// What is drawn there.
+    /// Content that is drawn there.
     pub content: UpdateKind,
 }
 
-/// What is drawn into a rectangle of a map.
+/// Content that is drawn into a rectangle of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdateKind {
-    /// All casters, static and moving, after a clear: no part of the map is kept.
+    /// All casters, static and moving, after a clear. No part of the map is kept.
     All,
-    /// Static casters, after a clear: a strip that came into the map, or a place where one of them changed.
+    /// Static casters, after a clear: in a strip that entered the map, or where one of them changed.
     Static,
-    /// The depths of static casters that are kept, where something that moves was drawn over them before.
+    /// Kept depths of static casters, restored where a moving caster was drawn over them.
     Mended,
     /// A moving caster.
     Moving,
 }
 
 impl MapCache {
-    /// Returns the rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
+    /// Returns the rectangles that this frame draws, in the order of the passes. They may overlap.
     pub fn updates(&self) -> Vec<UpdatedRect> {
         let mut updates = Vec::new();
         for pass in &self.plan.passes {
@@ -58,7 +59,7 @@ impl MapCache {
         updates
     }
 
-    /// Rectangles that are restored from the static casters' layer.
+    /// Returns the rectangles that are restored from the static casters' layer.
     fn mended(&self, pass: &PassPlan, read: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let stored = self.plan.rects[pass.mended.clone()].iter();
         let rects = stored.map(|stored| looked_up(*stored, read.texel_offset, pass.size));
@@ -66,7 +67,7 @@ impl MapCache {
         rects.chain(boxes.map(|aabb| TexelRect::of_box(&read.projection, aabb, self.plan.origin)))
     }
 
-    /// Rectangles around the moving casters that a map was drawn with.
+    /// Returns rectangles around the moving casters in a map.
     fn moving(&self, map: usize, read: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let origin = read.projection.origin;
         let drawn = self.maps.get(map).and_then(|state| state.layers.drawn());
@@ -76,8 +77,9 @@ impl MapCache {
             .map(move |moved| TexelRect::of_box(&read.projection, &moved.relative_to(origin), origin))
     }
 
-    /// Returns the maps that hold each caster of the list: bit i of the mask stands for map i. A map that is kept holds
-    /// all static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
+    /// Returns a mask for each listed caster, with bit i set if map i holds it. A kept map holds all static
+    /// casters over it. Any other map holds the casters that can shadow something in view. Without maps all
+    /// masks are 0.
     pub fn maps_by_caster(&self, casters: &Casters<'_>) -> Vec<u8> {
         let in_view = &self.plan.in_view;
         let over = |((index, map), in_view): ((usize, &FittedMap), &CasterVolume)| match self.settings.culling {
@@ -95,7 +97,7 @@ impl MapCache {
     }
 }
 
-/// Where a rectangle of a layer, which does not reach across the map's seam, is looked up.
+/// Returns the place in the map's coordinates of a stored rectangle, which must not cross the map's seam.
 fn looked_up(stored: TexelRect, texel_offset: UVec2, size: UVec2) -> TexelRect {
     let is_whole = stored == TexelRect::all(size);
     if is_whole {

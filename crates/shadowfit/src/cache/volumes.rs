@@ -12,20 +12,21 @@ use crate::scroll::TexelRect;
 use crate::settings::{CasterPolicy, MAX_MAPS};
 use crate::{CasterVolume, FitError, FittedMap};
 
-/// The casters of a part of a map, for engines that find them themselves, such as on the GPU. The origins of the volumes
-/// may differ.
+/// The volumes that contain the casters of a part of a map, for engines that cull by themselves, such as on
+/// the GPU. Each volume is relative to its own origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionVolumes {
-    /// Casters outside of it are not drawn.
+    /// All casters outside this volume are culled.
     pub casters: CasterVolume,
-    /// Moving casters outside of it are not drawn either.
+    /// Moving casters outside this second volume are culled as well.
     pub moving: Option<CasterVolume>,
 }
 
 impl MapCache {
-    /// Returns the casters to draw into a part of a map, by the [window](crate::scroll::StoredRect::window) of a piece of
-    /// the last plan. Maps that are kept hold all static casters over them; moving casters, and all casters of other
-    /// maps, are drawn if they can shadow something in view.
+    /// Returns the volumes of the casters to draw into a part of a map. `part` is the
+    /// [window](crate::scroll::StoredRect::window) of a region of the last plan. In kept maps, all static
+    /// casters over the part are drawn, and moving casters only if they can shadow something in view. In
+    /// other maps, only casters that can shadow something in view are drawn.
     pub fn region_volumes(&self, map: usize, content: PassKind, part: TexelRect) -> RegionVolumes {
         let plan = &self.plan;
         let (Some(in_view), Some(read)) = (plan.in_view.get(map), plan.maps.get(map)) else {
@@ -41,7 +42,8 @@ impl MapCache {
         RegionVolumes { casters, moving: (content != PassKind::Static).then_some(*in_view) }
     }
 
-    /// Finds the maps that must not wait, whatever the schedule: those that show a static caster that is gone, in view.
+    /// Finds the maps that must not wait, on any schedule, because they show a static caster in view that has
+    /// disappeared.
     pub(super) fn due(&self, frame: &CacheFrame<'_>) -> Result<[bool; MAX_MAPS], FitError> {
         let mut is_due = [false; MAX_MAPS];
         if self.settings.schedule == UpdateSchedule::EveryFrame {
@@ -51,7 +53,8 @@ impl MapCache {
             let Some(drawn) = state.layers.drawn().filter(|drawn| !drawn.gone.is_empty()) else { continue };
             let origin = drawn.map.projection.origin;
             let volume = match frame.in_view {
-                // As if it were the only map: which others are read beside it is not known yet.
+                // Computed as if this were the only map, because the maps that are read beside it are not
+                // chosen yet.
                 InView::Views(views) => {
                     let mut volume = [CasterVolume::everywhere(origin)];
                     let reading = &self.settings.reading;
@@ -67,8 +70,8 @@ impl MapCache {
     }
 }
 
-/// Finds the casters of each map, relative to its origin: where passes depend on the view those that can shadow something
-/// in it, otherwise all that the map can store.
+/// Computes the caster volume of each map, relative to its origin. If passes depend on the views, it holds
+/// the casters that can shadow something in view, otherwise all casters that the map can store.
 pub(super) fn find(
     settings: &CacheSettings,
     frame: &CacheFrame<'_>,

@@ -1,4 +1,4 @@
-//! Boxes in world space, by which casters are compared from frame to frame.
+//! Boxes in world space, for comparing casters from frame to frame.
 
 use glam::DVec3;
 
@@ -13,24 +13,25 @@ pub struct WorldBox {
     pub max: DVec3,
 }
 
-/// Rounding of f32 coordinates, as a share of them: boxes that differ by less are equal, since each origin rounds them
-/// anew.
+/// Rounding of f32 coordinates, as a share of them. Boxes that differ by less are equal, because each change
+/// of the origin rounds them again.
 const ROUNDING: f32 = 1.0 / 4_194_304.0;
 
 impl WorldBox {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: DVec3::MAX, max: DVec3::MIN };
 
-    /// Returns a box that is relative to an origin (world space, metres). Boxes with NaN are empty.
+    /// Returns the world box of a box that is relative to an origin (world space, metres). Boxes with NaN
+    /// become empty.
     pub fn new(aabb: &Aabb, origin: DVec3) -> Self {
-        // Also false for NaN.
+        // The comparison is also false for NaN.
         if !aabb.min.cmple(aabb.max).all() {
             return Self::EMPTY;
         }
         Self { min: origin + aabb.min.as_dvec3(), max: origin + aabb.max.as_dvec3() }
     }
 
-    /// Returns whether it holds nothing.
+    /// Returns whether the box is empty.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
@@ -43,7 +44,7 @@ impl WorldBox {
         Aabb::new((self.min - origin).as_vec3(), (self.max - origin).as_vec3())
     }
 
-    /// Returns the least box around both. Neither may be empty.
+    /// Returns the smallest box around both boxes, which must not be empty.
     pub(super) fn union(&self, other: &Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
@@ -55,7 +56,7 @@ impl WorldBox {
     }
 }
 
-/// Returns the metres by which a box may differ from the same box relative to another origin.
+/// Returns the greatest difference between a box and the same box relative to another origin, in metres.
 pub(super) fn rounding(aabb: &Aabb) -> f64 {
     f64::from(aabb.min.abs().max(aabb.max.abs()).max_element() * ROUNDING)
 }

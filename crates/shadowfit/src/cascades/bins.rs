@@ -1,5 +1,6 @@
-//! Bins of view depth, and the visible share of each: by a histogram of an earlier frame, or estimated from the
-//! [boxes along rays](crate::demand::from_boxes), each spread over the depths between which a ray is in it.
+//! Bins of view depth, and the visible share of each. The shares come from the histogram of an earlier frame,
+//! or from [rays through the boxes](crate::demand::from_boxes). A ray spreads the weight of a box over the
+//! depths inside it.
 
 use crate::content::{Content, Query};
 use crate::demand::from_boxes::{AROUND, Rays};
@@ -10,19 +11,19 @@ use crate::view::RayCount;
 /// Splits of all maps, in metres of view depth: map i covers `splits[i]..splits[i + 1]`.
 pub(crate) type Splits = [f32; MAX_MAPS + 1];
 
-/// Most bins of log view depth that the content is sorted into.
+/// Greatest number of bins of log view depth.
 pub(crate) const BINS: usize = 64;
 
 /// Bins of equal size in log view depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bins {
-    /// Their number, at most [`BINS`].
+    /// Number of bins, at most [`BINS`].
     pub(super) count: usize,
     pub(super) near: f64,
     pub(super) far: f64,
     pub(super) log_near: f64,
     pub(super) log_step: f64,
-    /// Bins in an octave.
+    /// Bins per octave.
     per_log: f64,
 }
 
@@ -33,7 +34,7 @@ impl Bins {
         Self { count, near, far, log_near, log_step, per_log: 1.0 / log_step }
     }
 
-    /// View depth at which a bin begins, in metres.
+    /// Returns the view depth at which a bin begins, in metres.
     pub(super) fn start(&self, bin: usize) -> f64 {
         match bin {
             0 => self.near,
@@ -42,17 +43,17 @@ impl Bins {
         }
     }
 
-    /// The bin whose beginning is nearest to a view depth.
+    /// Returns the bin whose beginning is nearest to a view depth.
     pub(super) fn nearest(&self, depth: f64) -> usize {
         let bin = (libm::log2(depth.max(self.near)) - self.log_near) / self.log_step;
         (libm::round(bin) as usize).min(self.count)
     }
 
-    /// The bin of a view depth; depths outside go to the first or the last.
+    /// Returns the bin of a view depth. Depths outside go to the first or the last bin.
     #[inline]
     pub(super) fn of(&self, depth: f64) -> usize {
         let depth = depth.max(self.near);
-        // Away from the beginning of a bin an approximation tells as much.
+        // Away from the beginning of a bin, an approximation is enough.
         let bin = (approximate_log2(depth) - self.log_near) * self.per_log;
         let error = APPROXIMATE * self.per_log;
         let (low, high) = ((bin - error) as usize, (bin + error) as usize);
@@ -66,8 +67,8 @@ impl Bins {
     }
 }
 
-/// log2 of a positive normal number rounded to f32: that of libm, which is only asked where an approximation
-/// does not tell how it rounds.
+/// Computes log2 of a positive normal number, rounded to f32. It equals libm's log2, which is only called if
+/// the approximation does not decide the rounding.
 #[inline]
 pub(super) fn log2(x: f64) -> f32 {
     let near = approximate_log2(x);
@@ -78,8 +79,8 @@ pub(super) fn log2(x: f64) -> f32 {
 /// Greatest error of [`approximate_log2`], in octaves.
 const APPROXIMATE: f64 = 1e-11;
 
-/// log2 of a positive normal number: exponent, and the first terms of the series of artanh for the rest, which
-/// lies within √½..√2.
+/// Approximates log2 of a positive normal number: the exponent, plus the first terms of the artanh series for
+/// the rest, which lies within √½..√2.
 #[inline]
 fn approximate_log2(x: f64) -> f64 {
     const MANTISSA: u64 = (1 << 52) - 1;
@@ -94,17 +95,17 @@ fn approximate_log2(x: f64) -> f64 {
     f64::from(octave) + TWO_BY_LN_2 * s * series
 }
 
-/// Terms of artanh(s) / s by powers of s²; the next one is below the error that is allowed.
+/// Terms of artanh(s) / s by powers of s². The next one is below the allowed error.
 const SERIES: [f64; 7] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0];
 
-/// Classes of foreshortening, an octave each: the first holds surfaces that face both the eye and
-/// the light, the others those that need texels half as wide, a quarter, and so on.
+/// Classes of foreshortening, an octave each. The first holds surfaces that face both the eye and the light.
+/// The others hold surfaces that need texels half as wide, a quarter as wide, and so on.
 pub(crate) const CLASSES: usize = 6;
 
 /// Shares of the visible points in each bin and class.
 pub(crate) type Weights = [[f64; CLASSES]; BINS];
 
-/// Equal weights for all depths of surfaces that face the light.
+/// Returns equal weights for all depths, for surfaces that face the light.
 pub(crate) fn even(bins: &Bins) -> Weights {
     let mut weights = [[0.0; CLASSES]; BINS];
     for classes in &mut weights[..bins.count] {
@@ -113,7 +114,7 @@ pub(crate) fn even(bins: &Bins) -> Weights {
     weights
 }
 
-/// The counts as shares, resampled to other bins.
+/// Converts the counts to shares and resamples them to other bins.
 pub(super) fn weights_of_histogram(histogram: &DepthHistogram, bins: &Bins) -> Weights {
     let mut weights = [[0.0; CLASSES]; BINS];
     let (near, far) = (f64::from(histogram.near), f64::from(histogram.far));
@@ -131,14 +132,15 @@ pub(super) fn weights_of_histogram(histogram: &DepthHistogram, bins: &Bins) -> W
     weights
 }
 
-/// Parts that each bin is divided into, to be spread.
+/// Parts that each bin of a histogram is divided into for resampling.
 const PARTS: u32 = 4;
 
-/// Factor by which each further box counts less. Chosen together with the constants before and
-/// after it on ten scenes: counting the first box alone gives bad splits where boxes are loose.
+/// Factor by which each further box on a ray counts less. Chosen together with the constants before and after
+/// it on ten scenes. Counting only the first box gives bad splits if boxes are loose.
 const FURTHER: f64 = 0.85;
 
-/// Shares of the rays that meet boxes in each bin. All depths have equal shares if no box is known.
+/// Computes the share of the rays that meet boxes in each bin. If no box is known, all depths have equal
+/// shares.
 pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, count: RayCount) -> Weights {
     let mut spread = Spread::new(bins);
     for part in content.whole_views() {
@@ -161,7 +163,7 @@ pub(super) fn weights_of_boxes(content: &Content, bins: &Bins, count: RayCount) 
 
 /// Weights spread over bins.
 struct Spread {
-    /// View depths at which the bins begin and the last one ends, in metres.
+    /// View depths at which the bins begin and at which the last one ends, in metres.
     starts: [f64; BINS + 1],
     /// Lengths of the bins, in metres.
     lengths: [f64; BINS],
@@ -185,17 +187,17 @@ impl Spread {
                 *weight += per_metre * length;
             }
         } else {
-            // Depths that are too close to distinguish.
+            // The depths are too close to distinguish.
             self.weights[first] += weight;
         }
     }
 
-    /// The weights as shares; equal ones where there are none.
+    /// Returns the weights as shares, or equal shares if all weights are zero.
     fn shares(&self) -> Weights {
         let total: f64 = self.weights.iter().sum();
         let mut shares = [[0.0; CLASSES]; BINS];
         for (share, weight) in shares.iter_mut().zip(&self.weights).take(self.count) {
-            // Boxes say nothing about slopes, so all are of the first class.
+            // Slopes are unknown for boxes, so all weight goes to the first class.
             share[0] = if total == 0.0 { 1.0 / self.count as f64 } else { weight / total };
         }
         shares

@@ -1,11 +1,11 @@
-//! Estimated size of the map for any run of depth bins.
+//! Estimated map size for any run of depth bins.
 //!
-//! Each bin keeps the extent of what it holds along fixed directions in the light's plane; a run's
-//! extent is the greatest of its bins', and the best of the rectangles along those directions gives
-//! an estimate of its map's size, without fitting it.
+//! Each bin keeps the extent of its content along fixed directions in the light's plane. The extent of a run
+//! is the union of its bins' extents. The best rectangle along those directions estimates the size of the
+//! run's map without fitting it.
 //!
-//! What a bin holds of a box are the corners of (box ∩ view ∩ bin). They are found for all bins in one pass over the
-//! box: neighbouring bins share the plane between them, so each point on it is found once, for both:
+//! A bin holds the corners of (box ∩ view ∩ bin) of each box. One pass over the box finds them for all bins.
+//! Neighbouring bins share the plane between them, so each point on it is found once for both:
 //!
 //! ```text
 //!    bin 0   bin 1     bin 2
@@ -27,27 +27,27 @@ use crate::light::{LightAxes, grid};
 use crate::technique::settings::RectangleKind;
 use crate::view::{Depths, EDGES, Plane, Range, View, at, clip_to_box, inner_part};
 
-/// Directions over half a turn; a rectangle's other side is along the direction a quarter turn
-/// further on.
+/// Directions over half a turn. A rectangle's other side is along the direction a quarter turn further.
 const DIRECTIONS: usize = 32;
 
-/// Estimated texel size of the map of each run of bins, in map widths (metres per map).
+/// Estimated map size of each run of bins, in metres per map, as a measure of the texel size.
 pub(super) struct Sizes {
-    /// By first bin and number of bins less one; log2 of metres.
+    /// log2 of metres, indexed by the first bin and by the number of bins minus one.
     log: [[f32; BINS]; BINS],
 }
 
-/// The bin at which the slice of a map ends that is read up to a bin; the first and the last one end as they must.
+/// Returns the bin at which the slice of a map ends if the map is read up to `bin`. The first and the last
+/// bin do not move.
 pub(super) fn slice_bin(bins: &Bins, bin: usize, beyond: usize) -> usize {
     if bin == 0 || bin >= bins.count { bin } else { bin.saturating_sub(beyond).max(1) }
 }
 
-/// The rule that the maps will be fitted by.
+/// Input of the size estimate: the content, and the rule that the maps will be fitted by.
 pub(super) struct Maps<'a, 'b> {
     pub(super) content: &'a Content<'b>,
     pub(super) axes: LightAxes,
     pub(super) rule: &'a FitRule,
-    /// Whether their extents are rounded up to steps of the world's grid.
+    /// Whether the extents are rounded up to steps of the world's grid.
     pub(super) is_snapped: bool,
     /// View depths at which the first map begins and the last one ends, in metres.
     pub(super) near: f64,
@@ -55,7 +55,7 @@ pub(super) struct Maps<'a, 'b> {
 }
 
 impl Maps<'_, '_> {
-    /// The sizes of the maps of all runs.
+    /// Estimates the map sizes of all runs.
     pub(super) fn sizes(&self, bins: &Bins) -> Sizes {
         if self.rule.form.covers == Covers::Sphere {
             Sizes::of_spheres(self, bins)
@@ -66,7 +66,8 @@ impl Maps<'_, '_> {
 }
 
 impl Sizes {
-    /// The sizes of maps that are read this many bins beyond their slices, by the bins that they are read for.
+    /// Returns the sizes of maps that are read `beyond` bins past their slices, indexed by the bins in which
+    /// they are read.
     pub(super) fn by_reading(&self, bins: &Bins, beyond: usize) -> Self {
         let mut log = self.log;
         for (first, row) in log.iter_mut().enumerate().take(bins.count) {
@@ -78,7 +79,7 @@ impl Sizes {
         Self { log }
     }
 
-    /// log2 of the extent of the bins `first..end`, in metres.
+    /// Returns log2 of the extent of the bins `first..end`, in metres.
     pub(super) fn log_extent(&self, first: usize, end: usize) -> f32 {
         self.log[first][end - first - 1]
     }
@@ -133,7 +134,7 @@ impl Sizes {
     }
 }
 
-/// Collects the extents of the receivers in a view, bin by bin.
+/// Collector of the extents of the receivers in a view, for each bin.
 struct Collector<'a> {
     extents: &'a mut [Dop; BINS],
     slabs: Slabs,
@@ -150,7 +151,7 @@ impl Visit for Collector<'_> {
         let Self { extents, slabs, directions } = self;
         let reached = slabs.reached(bounds.depths);
         let (low, high) = directions.extent(bounds.min, bounds.max, 0.0);
-        // Bins whose extent the box cannot widen, the first at 1.
+        // Bins whose extent the box cannot widen. Bin 0 is at index 1.
         let mut is_held = [true; BINS + 2];
         let mut are_all_held = true;
         for bin in reached.clone() {
@@ -186,7 +187,7 @@ impl Dop {
         }
     }
 
-    /// Widens it to a point's coordinates along the directions.
+    /// Widens the extent to a point's coordinates along the directions.
     fn add(&mut self, along: &[f32; DIRECTIONS]) {
         for (i, along) in along.iter().enumerate() {
             self.min[i] = lesser(*along, self.min[i]);
@@ -194,18 +195,18 @@ impl Dop {
         }
     }
 
-    /// Whether another extent cannot widen this one.
+    /// Returns whether another extent cannot widen this one.
     fn holds(&self, low: &[f32; DIRECTIONS], high: &[f32; DIRECTIONS]) -> bool {
         let mut is_inside = true;
         for i in 0..DIRECTIONS {
-            // Both without a branch, for four directions at a time.
+            // Both comparisons have no branch, and run for four directions at a time.
             is_inside &= high[i] <= self.max[i];
             is_inside &= low[i] >= self.min[i];
         }
         is_inside
     }
 
-    /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
+    /// Returns the longer side of the rectangle around this extent, in metres; tiny for an empty extent.
     fn size(&self, rule: &FitRule) -> f64 {
         const QUARTER: usize = DIRECTIONS / 2;
         let mut lengths = [0.0; DIRECTIONS];
@@ -230,7 +231,7 @@ impl Dop {
 /// Extent of an empty run, in metres.
 const SMALLEST: f64 = 1e-6;
 
-/// Unit vectors across the light at even angles over half a turn, coordinate by coordinate.
+/// Unit vectors across the light at even angles over half a turn, stored by coordinate.
 struct Directions {
     x: [f32; DIRECTIONS],
     y: [f32; DIRECTIONS],
@@ -240,7 +241,7 @@ struct Directions {
 impl Directions {
     fn new(axes: &LightAxes) -> Self {
         let (x, y) = (axes.x.as_dvec3(), axes.y.as_dvec3());
-        // Turned step by step: two sines for all of them.
+        // Turned step by step, which needs one sine and cosine for all of them.
         let (sin, cos) = libm::sincos(core::f64::consts::PI / DIRECTIONS as f64);
         let mut turned = DVec2::X;
         let world: [Vec3; DIRECTIONS] = core::array::from_fn(|_| {
@@ -251,7 +252,7 @@ impl Directions {
         Self { x: world.map(|v| v.x), y: world.map(|v| v.y), z: world.map(|v| v.z) }
     }
 
-    /// Coordinates of a point along all directions.
+    /// Returns the coordinates of a point along all directions.
     fn along(&self, p: DVec3) -> [f32; DIRECTIONS] {
         let p = p.as_vec3();
         let mut along = [0.0; DIRECTIONS];
@@ -261,7 +262,8 @@ impl Directions {
         along
     }
 
-    /// Least and greatest coordinates of a box along all directions, widened by a share of its farthest coordinates.
+    /// Returns the least and greatest coordinates of a box along all directions, widened by a share of its
+    /// farthest coordinates.
     fn extent(&self, min: DVec3, max: DVec3, share: f32) -> ([f32; DIRECTIONS], [f32; DIRECTIONS]) {
         let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
         let half = half + (centre.abs() + half).element_sum() * share;
@@ -275,15 +277,15 @@ impl Directions {
     }
 }
 
-/// Share of its coordinates by which a box is widened so that its extent surely holds those of the boxes in it, as they
-/// are rounded.
+/// Widening of a box, as a share of its coordinates, so that its extent surely holds the rounded extents of
+/// the boxes in it.
 const HIERARCHY: f32 = 32.0 * f32::EPSILON;
 
-/// The planes between the bins, as one view has them.
+/// The planes between the bins in one view.
 pub(super) struct Slabs {
     depth: Plane,
     sides: [Plane; 4],
-    /// View depths of the planes in metres, within the view's own.
+    /// View depths of the planes, in metres, clamped to the view's range.
     pub(super) depths: [f64; BINS + 1],
     /// Corners of the view's cross-section at each plane.
     rectangles: [[DVec3; 4]; BINS + 1],
@@ -296,15 +298,15 @@ struct Body<'a> {
     corners: [DVec3; 8],
     min: DVec3,
     max: DVec3,
-    /// Whether it crosses each side of the view.
+    /// Whether the box crosses each side of the view.
     crossed: [bool; 4],
-    /// Distances of the corners within the sides that are crossed.
+    /// Distances of the corners inside each crossed side.
     inside: [[f64; 8]; 4],
-    /// Number of those sides.
+    /// Number of crossed sides.
     sides: usize,
     /// View depths of the corners, up to a constant.
     along: [f64; 8],
-    /// Bins of the corners, one more than their index: 0 lies before all bins.
+    /// Bins of the corners, plus one. 0 lies before all bins.
     bins: [usize; 8],
     slabs: &'a Slabs,
 }
@@ -319,15 +321,15 @@ impl Slabs {
         Self { depth: view.depth, sides: view.sides, depths, rectangles, filled }
     }
 
-    /// The bins that a range of view depths may reach into.
+    /// Returns the bins that a range of view depths may reach into.
     pub(super) fn reached(&self, Depths { near, far }: Depths) -> ops::Range<usize> {
         let first = self.depths[1..].partition_point(|plane| *plane < near);
         let end = self.depths[..BINS].partition_point(|plane| *plane <= far);
         first.max(self.filled.start)..end.min(self.filled.end)
     }
 
-    /// Gives the corners of (box ∩ view) in each of the bins `reached`, each with the bins that it belongs to.
-    /// The box must not lie outside a side of the view.
+    /// Emits the corners of (box ∩ view) in each of the bins `reached`, each with the bins that it belongs
+    /// to. The box must not lie outside a side of the view.
     pub(super) fn clip(
         &self,
         min: DVec3,
@@ -345,12 +347,12 @@ impl Slabs {
         }
     }
 
-    /// Distance beyond a plane, for what [`Body::along`] has.
+    /// Returns the distance beyond a plane, for a value of [`Body::along`].
     fn beyond(&self, plane: usize, along: f64) -> f64 {
         along + (self.depth.d - self.depths[plane])
     }
 
-    /// One more than the bin of a point.
+    /// Returns the bin of a point, plus one.
     fn bin(&self, along: f64, reached: &ops::Range<usize>) -> usize {
         let planes = &self.depths[reached.start..=reached.end];
         reached.start + planes.partition_point(|depth| along + (self.depth.d - depth) >= 0.0)
@@ -373,12 +375,12 @@ impl<'a> Body<'a> {
         Self { corners, min, max, crossed, inside, sides, along, bins, slabs }
     }
 
-    /// Distances of the corners within the sides that are crossed.
+    /// Returns the distances of the corners inside each crossed side.
     fn inside(&self) -> &[[f64; 8]] {
         &self.inside[..self.sides]
     }
 
-    /// The box's own corners.
+    /// Emits the box's own corners.
     fn add_corners(&self, emit: &mut impl FnMut(ops::Range<usize>, DVec3)) {
         for (i, corner) in self.corners.into_iter().enumerate() {
             if self.inside().iter().all(|side| side[i] >= 0.0) {
@@ -387,7 +389,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Where one of its edges crosses the sides and the planes.
+    /// Emits the points where one of the box's edges crosses the sides and the planes.
     fn add_edge(&self, i: usize, j: usize, emit: &mut impl FnMut(ops::Range<usize>, DVec3)) {
         let Some((enter, leave)) = inner_part(self.inside(), i, j) else { return };
         let (a, b) = (self.corners[i], self.corners[j]);
@@ -409,7 +411,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Where the view's own edges and those of its cross-sections cross the box.
+    /// Emits the points where the view's edges and the edges of its cross-sections enter and leave the box.
     fn add_view(&self, reached: &ops::Range<usize>, emit: &mut impl FnMut(ops::Range<usize>, DVec3)) {
         let mut add = |bins: ops::Range<usize>, a: DVec3, b: DVec3| {
             if let Some((a, b)) = clip_to_box(a, b, self.min, self.max) {
@@ -424,7 +426,7 @@ impl<'a> Body<'a> {
             for (plane, rectangle) in rectangles.iter().enumerate().take(planes.1).skip(planes.0) {
                 add(plane..plane + 2, rectangle[side], rectangle[(side + 1) % 4]);
             }
-            // A corner of the view's cross-sections lies on the side of its number and on that before.
+            // A corner of the view's cross-sections lies on the side with its number and on the one before.
             for bin in reached.clone().filter(|_| crossed_by(side + 3)) {
                 add(bin + 1..bin + 2, rectangles[bin][side], rectangles[bin + 1][side]);
             }

@@ -1,9 +1,9 @@
-//! Maps that are kept as long as they cover what they must: no crawling edges with tight fits.
+//! Held maps, which combine tight fits with edges that do not crawl.
 //!
-//! A held map keeps its angle and its texel size, and moves by whole texels of the world's grid. It
-//! is given up when what must be covered no longer fits into it, or when a fresh fit would have
-//! much finer texels. The new one is made larger, to hold what the camera will see if its motion
-//! goes on, for as many frames as the settings allow:
+//! A held map keeps its angle and its texel size, and moves by whole texels of the world's grid. It is
+//! replaced when the necessary region no longer fits into it, or when a fresh fit would have much finer
+//! texels. The new map is larger, so that it also holds the predicted views of the next frames, within the
+//! growth that the settings allow:
 //!
 //! ```text
 //!    ┌─────────────────┐ new map
@@ -13,7 +13,7 @@
 //!    └─────────────────┘
 //! ```
 //!
-//! The views of the last two frames give the camera's [motion](super::motion), which is assumed to go on.
+//! The views of the last two frames give the camera's [motion](super::motion), which is assumed to continue.
 //!
 //! Depths are found in one of two ways. If only its slice of the view reads a map, casters count over the outline of the
 //! slice. If any point in the map may read it, casters and receivers count over the whole map.
@@ -53,11 +53,11 @@ pub(super) struct HeldMap {
     bounds_from: [BoundSource; 6],
 }
 
-/// Keeps the maps of a frame.
+/// Context for holding the maps of a frame.
 pub(super) struct Holder<'a, 'b> {
     pub(super) frame: &'a Frame<'a, 'b>,
     pub(super) settings: Hysteresis,
-    /// How the camera moved since the frame before.
+    /// Motion of the camera since the last frame.
     pub(super) motion: Option<Motion>,
 }
 
@@ -71,7 +71,7 @@ impl Holder<'_, '_> {
         let Some(kept) = self.keep(&held, &needed) else {
             return self.make(&self.fresh(slice, points)?, slice, points);
         };
-        // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
+        // No rectangle is smaller than the outline in it, so most maps need no comparison with a new one.
         let held_size = held.texel * rule.usable();
         let (held_area, max_oversize) = (held_size.x * held_size.y, f64::from(self.settings.max_oversize));
         let is_small = |needed: &Needed| held_area <= needed.area * (1.0 - SAME_AREA) * max_oversize * max_oversize;
@@ -93,7 +93,7 @@ impl Holder<'_, '_> {
         fits::fit_map(self.frame.content, &self.frame.light, &plain, slice, Snapping::Tight, points)
     }
 
-    /// Moves the held map by whole texels, if what must be covered fits into it.
+    /// Moves the held map by whole texels, if the necessary region fits into it.
     fn keep(&self, held: &HeldMap, needed: &Needed) -> Option<HeldMap> {
         let anchor = grid::anchor(&held.axes, self.frame.input.views[0].origin);
         let low = floor((needed.across.min + anchor.truncate()) / held.texel);
@@ -111,10 +111,10 @@ impl Holder<'_, '_> {
         Some(kept)
     }
 
-    /// Finds what must be covered, along the held axes.
+    /// Finds the region that must be covered, along the held axes.
     fn needed(&self, held: &HeldMap, detail: Detail, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
         let rule = self.frame.rule;
-        // Casters are looked for over the outline, or else over the whole map.
+        // Casters count over the outline, or else over the whole map.
         let detail = if rule.serves_all { detail } else { Detail::Outline };
         let hull = LightHull::of(rule.form.covers, detail, self.frame.content, held.axes, slice, points)?;
         let extent = (held.texel * held.resolution).max_element();
@@ -139,7 +139,7 @@ impl Holder<'_, '_> {
         })
     }
 
-    /// Finds the depths that a map must reach in its present place.
+    /// Finds the depths that a map must reach at its current position.
     fn depths(&self, map: &HeldMap, needed: &Needed) -> Depths {
         let (axes, content) = (&map.axes, self.frame.content);
         if let Some(near) = &needed.over_outline {
@@ -152,7 +152,7 @@ impl Holder<'_, '_> {
         Depths { far, near: near.z, near_from: near.from }
     }
 
-    /// Makes a map with room for the motion to come.
+    /// Makes a map with room for the predicted motion.
     fn make(&self, fresh: &Volume, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
         let rule = self.frame.rule;
         let mut volume = self.look_ahead(fresh, slice, points)?.unwrap_or(*fresh);
@@ -167,14 +167,15 @@ impl Holder<'_, '_> {
         let depths = self.depths(&map, &needed);
         let (far, near) = (depths.far + anchor, depths.near + anchor);
         let ahead = grid::stabilised_depth(None, grid.z.0.min(far), grid.z.1.max(near), 1.0);
-        // A depth range that the next frame would give up at once is not used.
+        // A depth range that the next frame would discard at once is not used.
         map.z = grid::stabilised_depth(Some(ahead), far, near, f64::from(self.settings.max_oversize));
         map.bounds_from[5] = depths.near_from.unwrap_or(map.bounds_from[5]);
         Ok(map)
     }
 
-    /// Fits a slice for the predicted views of the next frames, up to the settings' greatest growth. `None` if the camera
-    /// does not move, or for lack of views: a map without room is still valid for this frame.
+    /// Fits a slice for the predicted views of the next frames, up to the settings' greatest growth. Returns
+    /// `None` if the camera does not move or the views cannot be fitted. A map without room is still valid
+    /// for this frame.
     fn look_ahead(&self, fresh: &Volume, slice: Range, points: &mut [DVec2]) -> Result<Option<Volume>, FitError> {
         let view = &self.frame.input.views[0];
         let Some(motion) = self.motion.filter(|motion| !motion.is_still(view)) else { return Ok(None) };
@@ -197,7 +198,7 @@ impl Holder<'_, '_> {
         }
     }
 
-    /// Fits a slice for the present views and for predicted ones.
+    /// Fits a slice for the current views and for predicted ones.
     fn fit_ahead(
         &self,
         ahead: &[ViewFrustum],
@@ -219,16 +220,17 @@ impl Holder<'_, '_> {
     }
 }
 
-/// Numbers of frames to look ahead, each a quarter less than the one before. All are tried in this order, since a map does
-/// not always grow with the number: a turning camera comes back to its first view.
+/// Returns numbers of frames to look ahead, each a quarter less than the one before. All are tried in this
+/// order, since a map does not always grow with the number: a turning camera returns to its first view.
 fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
     core::iter::successors(Some(horizon), |frames| Some(frames / 4 * 3 + frames % 4 * 3 / 4))
         .take_while(|frames| *frames > 0)
 }
 
-/// Finds a number of frames to look ahead within the growth that is allowed, each half of the one before, by bisection.
-/// It is the greatest one if maps grow with the number. If not, it is still within the growth. That is enough for maps
-/// that cover more than a slice anyway, and saves most of the fits.
+/// Finds a number of frames to look ahead within the allowed growth, by bisection over numbers that are each
+/// half of the one before. It is the greatest such number if maps grow with the number. If not, it is still
+/// within the growth. That is enough for maps that cover more than a slice anyway, and saves most of the
+/// fits.
 fn by_halves(
     horizon: u32,
     mut within_growth: impl FnMut(u32) -> Result<Option<Volume>, FitError>,
@@ -245,26 +247,27 @@ fn by_halves(
     Ok(found)
 }
 
-/// A rule for maps whose depths are found later: the rectangle alone is enough, the contents are not visited.
+/// Returns a rule for maps whose depths are found later. The rectangle is then enough, and the contents are
+/// not visited.
 fn trial(rule: &FitRule) -> FitRule {
     FitRule { serves_all: rule.serves_all && rule.form.alignment == Alignment::OnGrid, ..*rule }
 }
 
-/// What a map must cover in this frame, along its axes and relative to the origin.
+/// Region that a map must cover in this frame, along its axes and relative to the origin.
 struct Needed {
     across: Rectangle,
     /// Depths that must be covered, along the light's z.
     far: f64,
     near: f64,
-    /// The near plane, if casters count over the outline. Otherwise it depends on the place of the map.
+    /// The near plane, if casters count over the outline. Otherwise it depends on the position of the map.
     over_outline: Option<NearPlane>,
-    /// How far beside it casters count, in metres.
+    /// Distance beside the map within which casters count, in metres.
     reach: f64,
-    /// Area of the outline of what must be covered, in square metres.
+    /// Area of the region's outline, in square metres.
     area: f64,
     /// Whether the outline may lack corners, so that its area may be too small.
     is_bounds: bool,
-    /// Whether no part of it is known to receive.
+    /// Whether no part of the region is known to receive shadows.
     is_empty: bool,
 }
 
@@ -272,14 +275,14 @@ struct Needed {
 struct Depths {
     far: f64,
     near: f64,
-    /// What sets the near one, unless it is what must be covered.
+    /// Source of the near depth, unless it is the necessary region.
     near_from: Option<BoundSource>,
 }
 
-/// Share by which the rounding of a map's axes may change an area.
+/// Greatest change of an area by the rounding of a map's axes, as a share of the area.
 const SAME_AREA: f64 = 1e-5;
 
-/// Most views that held maps are fitted to: those of a frame and two predicted ones.
+/// Greatest number of views that held maps are fitted to: the views of a frame and two predicted ones.
 const MAX_VIEWS: usize = MAX_SPHERE_VIEWS + 2;
 
 impl HeldMap {
@@ -295,19 +298,19 @@ impl HeldMap {
         }
     }
 
-    /// The box that it stores, relative to an origin.
+    /// Returns the box that the map stores, relative to an origin.
     pub(super) fn volume(&self, origin: DVec3) -> Volume {
         let grid = Grid { first: self.first, texel: self.texel, z: self.z };
         Volume::on_grid(self.axes, grid, self.resolution, origin, self.bounds_from, self.is_empty)
     }
 
-    /// Whether the map is of the same light and resolution.
+    /// Returns whether the map belongs to this light and resolution.
     fn is_of(&self, axes: &LightAxes, rule: &FitRule) -> bool {
         self.axes.z == axes.z && self.resolution == rule.resolution.as_dvec2()
     }
 }
 
-/// Area of a convex outline (anticlockwise), in square metres.
+/// Computes the area of a convex outline (anticlockwise), in square metres.
 fn area(outline: &[DVec2]) -> f64 {
     let Some(first) = outline.first() else { return 0.0 };
     outline.windows(2).map(|edge| (edge[0] - *first).perp_dot(edge[1] - *first) * 0.5).sum()

@@ -1,4 +1,4 @@
-//! Cascades: each map holds a range of view depths of its own.
+//! Cascades: each map has a separate range of view depths.
 //!
 //! ```text
 //!        ┌─────────────────╱ │   a map for each slice: all that the views see
@@ -31,7 +31,7 @@ use hold::{HeldMap, Holder};
 use motion::Motion;
 use splits::{Chooser, HeldSplits};
 
-/// What cascades begin with in the next frame.
+/// State that cascades start from in the next frame.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct HeldCascades {
@@ -46,7 +46,7 @@ pub(crate) struct HeldCascades {
 struct HeldDepth {
     /// Direction toward the light.
     to_light: Vec3,
-    /// Far and near plane along it from the world's origin, in metres.
+    /// Far and near plane along this direction from the world's origin, in metres.
     z: (f64, f64),
 }
 
@@ -57,9 +57,9 @@ pub(crate) fn place(
     before: Option<&HeldCascades>,
     points: &mut [DVec2],
 ) -> Result<(PlacedMaps, HeldCascades), FitError> {
-    // 1. Where one slice ends and the next begins.
+    // 1. Splits between the slices.
     let splits = Chooser::new(frame, settings).held_or_chosen(before.map(|before| before.splits))?;
-    // 2. The volumes of their maps: new ones, or those of the frame before while they serve.
+    // 2. Volumes of the maps: new ones, or the last frame's while they are good enough.
     let mut placer = Placer { frame, settings, splits: splits.splits, points };
     let mut held = HeldCascades { splits, maps: [None; MAX_MAPS], depths: [None; MAX_MAPS] };
     let mut maps = if let Stabilise::Hysteresis(hold) = settings.stabilise {
@@ -67,21 +67,22 @@ pub(crate) fn place(
     } else {
         placer.fit(before.map(|before| &before.depths), &mut held.depths)?
     };
-    // 3. The farthest vertices of the receivers in view. Only large boxes have some beyond the maps' own corners.
+    // 3. Distance of the receivers' farthest vertices in view. Only large boxes have some beyond the maps'
+    //    own corners.
     let reach = maps.iter().flatten().map(|map| map.volume.farthest_corner()).fold(0.0, f64::max);
     let farthest = frame.content.farthest_seen(frame.range, reach);
     maps.iter_mut().flatten().for_each(|map| map.volume.vertex_distance = farthest);
-    // 4. Depths from which no point chooses a map that has none.
+    // 4. Depths of maps without a range, so that no point selects them.
     set_empty_ranges_apart(&mut maps[..settings.count as usize], frame.range.far);
     Ok((maps, held))
 }
 
-/// The fewest cascades that are enough; see [`fewest_maps`](crate::fewest_maps).
+/// Returns the smallest number of cascades that is enough; see [`fewest_maps`](crate::fewest_maps).
 pub(crate) fn fewest(frame: &Frame, settings: &Cascades, max_oversize: f64) -> u32 {
     Chooser::new(frame, settings).fewest(max_oversize)
 }
 
-/// Places the cascades of a frame.
+/// Context for placing the cascades of a frame.
 struct Placer<'a, 'b> {
     frame: &'a Frame<'a, 'b>,
     settings: &'a Cascades,
@@ -90,7 +91,7 @@ struct Placer<'a, 'b> {
 }
 
 impl Placer<'_, '_> {
-    /// All maps of this frame alone, with depth ranges of the last one while they serve.
+    /// Fits all maps for this frame alone, with depth ranges of the last frame while they are good enough.
     fn fit(
         &mut self,
         before: Option<&[Option<HeldDepth>; MAX_MAPS]>,
@@ -113,7 +114,7 @@ impl Placer<'_, '_> {
         Ok(maps)
     }
 
-    /// All maps, held ones while they serve.
+    /// Places all maps, and holds the last frame's while they are good enough.
     fn hold(
         &mut self,
         hold: Hysteresis,
@@ -137,14 +138,14 @@ impl Placer<'_, '_> {
         Ok(maps)
     }
 
-    /// The volume around a slice, of this frame alone.
+    /// Fits the volume around a slice, for this frame alone.
     #[inline(always)]
     fn fitted(&mut self, map: usize, snapping: Snapping) -> Result<Volume, FitError> {
         let Frame { content, light, rule, .. } = self.frame;
         fits::fit_map(content, light, rule, self.slice(map), snapping, self.points)
     }
 
-    /// A map with the depths that choose it.
+    /// Returns a map with the view depths at which points select it.
     fn placed(&self, map: usize, mut volume: Volume) -> PlacedMap {
         let slice = self.slice_range(map);
         let is_empty = is_empty(self.frame.content.views, slice);
@@ -154,13 +155,13 @@ impl Placer<'_, '_> {
         PlacedMap { volume, depths: Some(DepthRange { near, far: Some(far), covered_from: Some(covered_from) }) }
     }
 
-    /// The view depths that a map covers; those of all maps where it has none.
+    /// Returns the view depths that a map is fitted to. For a map without depths it returns the whole range.
     fn slice(&self, map: usize) -> Range {
         let slice = self.slice_range(map);
         if is_empty(self.frame.content.views, slice) { self.frame.range } else { widened(slice) }
     }
 
-    /// The view depths that a map covers.
+    /// Returns the view depths that a map covers.
     fn slice_range(&self, map: usize) -> Range {
         let splits = &self.splits;
         let overlap = if let MapSelection::ViewDepth { overlap } = self.settings.selection { overlap } else { 0.0 };
@@ -170,21 +171,21 @@ impl Placer<'_, '_> {
     }
 }
 
-/// Whether no view has a part between two view depths, so that a map would have nothing to hold.
+/// Returns whether no view has a part between two view depths, so that a map would have no content.
 fn is_empty(views: &[ViewFrustum], slice: Range) -> bool {
     views.iter().all(|view| slice.near.max(view.near) >= slice.far.min(view.far))
 }
 
-/// The view depths that a map is fitted to, widened: by a shader's rounded view depth a point may
-/// read the map next to its own.
+/// Widens the view depths that a map is fitted to. A shader rounds view depths, so a point may read the map
+/// next to its own.
 fn widened(slice: Range) -> Range {
     let rounding = slice.far.abs() * VIEW_DEPTH_ROUNDING;
     Range { near: slice.near - rounding, far: slice.far + rounding }
 }
 
-/// Keeps maps without a range from being chosen, by rounded depths too: those before all others have none. The last map
-/// with a range has no end, nor do those after it, which points read only if the maps in front do not hold them: they
-/// begin at `end`, where shadows end.
+/// Sets the depths of maps without a range, so that no point selects them, even with a rounded depth. Maps in
+/// front of all others get no depths. The last map with a range and all maps after it get no end. The maps
+/// after it begin at `end`, where shadows end, and points read them only if no map in front covers the point.
 fn set_empty_ranges_apart(maps: &mut [Option<PlacedMap>], end: f32) {
     let is_empty = |range: &DepthRange| range.far.is_some_and(|far| range.near >= far);
     for range in maps.iter_mut().rev().flatten().filter_map(|map| map.depths.as_mut()) {

@@ -1,28 +1,28 @@
-//! The camera's motion from one frame to the next, which held maps assume to go on.
+//! The camera's motion from one frame to the next, which held maps extrapolate.
 
 use glam::{DVec3, Vec3};
 
 use crate::base::checks;
 use crate::view::ViewFrustum;
 
-/// The step of a view from one frame to the next.
+/// Motion of a view from one frame to the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
-    /// Rotation about the eye, as the world axes' images.
+    /// Rotation about the eye, as the images of the world axes.
     turn: [DVec3; 3],
     /// Movement of the eye, in metres.
     step: DVec3,
 }
 
-/// Difference of two views' edges, as an angle in radians, and of their near corners, as a share of the
-/// far ones' distance, above which the lens has changed and nothing can be predicted.
+/// Greatest difference of two views' edges, as an angle in radians, and of their near corners, as a share of
+/// the far corners' distance. Above it the lens has changed, and the motion cannot be predicted.
 const SAME_LENS: f64 = 1e-4;
 
-/// The same for their far corners, for which an f32 matrix of plain depth has an error of 4 · 2⁻²⁴ ·
-/// far / near.
+/// Greatest difference of the views' far corners, as a share of their distance. An f32 matrix of plain depth
+/// has an error of 4 · 2⁻²⁴ · far / near there.
 const SAME_FAR: f64 = 1.0 / 64.0;
 
-/// Orthonormal axes of a view; `None` for a view without them.
+/// Returns the orthonormal axes of a view, or `None` if it is degenerate.
 fn axes(view: &ViewFrustum) -> Option<[DVec3; 3]> {
     let forward = view.forward.as_dvec3();
     let right = (view.corners[5] - view.corners[4]).as_dvec3();
@@ -33,7 +33,7 @@ fn axes(view: &ViewFrustum) -> Option<[DVec3; 3]> {
 }
 
 impl Motion {
-    /// The step between two views, if they look through the same lens.
+    /// Returns the motion between two views, if they look through the same lens.
     pub(super) fn between(before: &ViewFrustum, now: &ViewFrustum) -> Option<Self> {
         let (a, b) = (axes(before)?, axes(now)?);
         // Σ bᵢ aᵢᵀ maps one view's axes to the other's.
@@ -51,7 +51,7 @@ impl Motion {
         if (0..4).all(is_same) { Some(motion) } else { None }
     }
 
-    /// Whether a view stands still, up to rounding.
+    /// Returns whether a view is at rest, up to rounding.
     pub(super) fn is_still(&self, view: &ViewFrustum) -> bool {
         let turn = self.turn;
         let turned = (turn[0] - DVec3::X).abs().max((turn[1] - DVec3::Y).abs()).max((turn[2] - DVec3::Z).abs());
@@ -59,7 +59,7 @@ impl Motion {
         checks::length(self.step) <= STILL * far && turned.max_element() < STILL
     }
 
-    /// A view after a number of further frames of the same motion.
+    /// Returns a view after a number of further frames of the same motion.
     pub(super) fn after(&self, view: &ViewFrustum, frames: u32) -> ViewFrustum {
         let mut turn = [DVec3::X, DVec3::Y, DVec3::Z];
         let mut power = self.turn;
@@ -81,7 +81,7 @@ impl Motion {
     }
 }
 
-/// Turn below which a view counts as still, in radians, and movement as a share of the far corners'
+/// Greatest turn of a view at rest, in radians, and greatest movement, as a share of the far corners'
 /// distance: the rounding of f32 corners.
 const STILL: f64 = 1e-6;
 

@@ -1,57 +1,57 @@
 //! The splits with the least 95% quantile of pixels per texel.
 //!
-//! A point at view depth z in a map of width S has S / (resolution · z · pixel angle) pixels per
-//! texel, so for a bound T on S / z each run of bins leaves those points over the bound that lie
-//! nearer than S / T. Which splits leave the fewest is found exactly by dynamic programming over
-//! the bins (R. Bellman, "On the approximation of curves by line segments using dynamic
-//! programming", 1961); the least T that leaves at most 5% is found by bisection.
+//! A point at view depth z in a map of width S has S / (resolution · z · pixel angle) pixels per texel. For a
+//! bound T on S / z, the points of a run of bins that are nearer than S / T exceed the bound. Dynamic
+//! programming over the bins finds exactly the splits with the fewest such points (R. Bellman, "On the
+//! approximation of curves by line segments using dynamic programming", 1961). Bisection finds the least T
+//! that at most 5% of the points exceed.
 
 use super::bins::{BINS, Bins, CLASSES, Weights};
 use super::extents::Sizes;
 use crate::technique::settings::MAX_MAPS;
 
-/// Share of the points that may lie over the bound.
+/// Share of the points that may exceed the bound.
 const OVER: f64 = 0.05;
 
-/// Octaves below the bound of logarithmic splits that are searched for a better one: no case was
-/// seen to gain as much.
+/// Octaves below the bound of logarithmic splits that are searched for a better one. No case was found to
+/// gain that much.
 const OCTAVES: f64 = 4.0;
 
-/// Bisection steps, each halving what is searched.
+/// Bisection steps, each of which halves the interval.
 const STEPS: usize = 9;
 
-/// Weight of a point's log2 error relative to whether it is over the bound: enough to choose
-/// between splits that leave equally many points over it.
+/// Weight of a point's log2 error relative to whether it exceeds the bound. It is enough to choose between
+/// splits with equally many points over the bound.
 const MEAN: f64 = 0.01;
 
-/// Octaves by which a class shifts the needed texel size: half of what its surfaces need, since they
-/// are usually foreshortened along one direction only, and the longer side of a map, which is its
-/// size here, lies along another one about half of the time. Chosen on ten scenes, where 0, 0.7 and 1
-/// are all worse.
+/// Octaves that each class shifts the needed texel size: half of the octaves that its surfaces need. They are
+/// usually foreshortened along one direction only, and the longer side of a map, which is its size here, lies
+/// along another one about half of the time. Chosen on ten scenes, where 0, 0.7 and 1 are all worse.
 const PER_CLASS: f64 = 0.5;
 
-/// Bins at which the best splits into `count` maps begin; the last one's end follows.
+/// Returns the bins at which the best splits into `count` maps begin, then the end of the last map.
 pub(super) fn best(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> [usize; MAX_MAPS + 1] {
     let search = Search::new(bins, weights, sizes);
     search.best(count, search.least_bound(count, None))
 }
 
-/// Whether the bound that given splits reach is at most `max_oversize` times that of the best ones.
+/// Returns whether the bound of given splits is at most `max_oversize` times the bound of the best ones.
 pub(super) fn is_near_best(bins: &Bins, weights: &Weights, sizes: &Sizes, splits: &[usize], max_oversize: f64) -> bool {
     let search = Search::new(bins, weights, sizes);
     let least = search.quantile(splits) - libm::log2(max_oversize);
     search.least_bound(splits.len() - 1, Some(least)) >= least
 }
 
-/// The fewest maps whose best splits reach a bound `max_oversize` times that of `count` maps.
+/// Returns the smallest number of maps whose best splits reach a bound `max_oversize` times the bound of
+/// `count` maps.
 pub(super) fn fewest(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize, max_oversize: f64) -> usize {
     let search = Search::new(bins, weights, sizes);
     let bound = search.least_bound(count, None) + libm::log2(max_oversize);
     (1..count).find(|fewer| search.is_feasible(*fewer, bound)).unwrap_or(count)
 }
 
-/// The least number above which a condition holds, between one where it may not and one where it does; no closer than
-/// to tell on which side of `enough` it lies.
+/// Bisects for the least number above which a condition holds, between a number where it may not hold and one
+/// where it does. Stops once it is clear on which side of `enough` the result lies.
 fn bisect(low: f64, high: f64, enough: Option<f64>, mut holds: impl FnMut(f64) -> bool) -> f64 {
     let (mut low, mut high) = (low, high);
     for _ in 0..STEPS {
@@ -67,13 +67,14 @@ fn bisect(low: f64, high: f64, enough: Option<f64>, mut holds: impl FnMut(f64) -
 struct Search<'a> {
     bins: &'a Bins,
     sizes: &'a Sizes,
-    /// Weight of all bins before each, by class.
+    /// Weight of all bins before each one, by class.
     before: [[f64; CLASSES]; BINS + 1],
-    /// Weight of all bins before each, and weight times log2 of the depth that needs such texels.
+    /// Weight of all bins before each one, and weight times log2 of the depth that needs the texels of its
+    /// class.
     log_before: [[f64; 2]; BINS + 1],
     /// Number of classes that are not empty.
     classes: usize,
-    /// Bins by which each class shifts the needed texel size.
+    /// Bins that each class shifts the needed texel size.
     shifts: [f64; CLASSES],
 }
 
@@ -94,29 +95,31 @@ impl<'a> Search<'a> {
         Self { bins, sizes, before, log_before, classes, shifts }
     }
 
-    /// The bound that given splits reach.
+    /// Computes the bound that given splits reach.
     fn quantile(&self, splits: &[usize]) -> f64 {
         let runs = || splits.windows(2).filter(|run| run[0] < run[1]).map(|run| (run[0], run[1]));
-        // With the largest map at the nearest depth of the last class all points are within it.
+        // At this bound no point is over it, even in the largest map, at the nearest depth and in the last
+        // class.
         let largest = runs().map(|(first, end)| self.sizes.log_extent(first, end)).fold(f32::MIN, f32::max);
         let high = f64::from(largest) - self.bins.log_near + PER_CLASS * CLASSES as f64;
         let over = |bound: f64| runs().map(|(first, end)| self.over(first, end, bound)).sum::<f64>();
-        // One more octave for each halving keeps the same precision as the search's.
+        // The second bisection refines the last interval, to be at least as precise as the search.
         let coarse = bisect(high - WIDEST, high, None, |bound| over(bound) <= OVER);
         bisect(coarse - WIDEST / f64::from(1_u32 << STEPS), coarse, None, |bound| over(bound) <= OVER)
     }
 
-    /// The least bound that splits into `count` maps reach, [as closely](bisect) as is `enough`.
+    /// Returns the least bound that splits into `count` maps reach, [only as precisely](bisect) as `enough`
+    /// needs.
     fn least_bound(&self, count: usize, enough: Option<f64>) -> f64 {
         let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| self.bins.count * i.min(count) / count);
         let known = self.quantile(&even[..=count]);
         bisect(known - OCTAVES, known, enough, |bound| self.is_feasible(count, bound))
     }
 
-    /// Weight of the points of a run that lie over the bound. It grows with the run.
+    /// Returns the weight of a run's points over the bound. It grows with the run.
     fn over(&self, first: usize, end: usize, bound: f64) -> f64 {
         let log_size = f64::from(self.sizes.log_extent(first, end));
-        // Points nearer than this, in bins, are over the bound; those of later classes farther out.
+        // Points nearer than this, in bins, are over the bound. For later classes the limit is farther out.
         let over = (log_size - bound - self.bins.log_near) / self.bins.log_step;
         let mut weight = 0.0;
         for class in 0..self.classes {
@@ -128,20 +131,20 @@ impl<'a> Search<'a> {
         weight
     }
 
-    /// Weight of a run's points times their log2 of pixels per texel, up to a constant.
+    /// Sums the weight of a run's points times their log2 of pixels per texel, up to a constant.
     fn error(&self, first: usize, end: usize) -> f64 {
         let [[w0, d0], [w1, d1]] = [self.log_before[first], self.log_before[end]];
         f64::from(self.sizes.log_extent(first, end)) * (w1 - w0) - (d1 - d0)
     }
 
-    /// Whether any splits leave no more than the allowed share over a bound.
+    /// Returns whether any splits leave at most the allowed share over a bound.
     fn is_feasible(&self, count: usize, bound: f64) -> bool {
         let bins = self.bins.count;
-        // By number of maps and the bin at which they end.
+        // Indexed by the number of maps and the bin at which they end.
         let mut least = [[f64::MAX; BINS + 1]; MAX_MAPS + 1];
         least[0][0] = 0.0;
         for first in 0..bins {
-            // Weights of the runs from here, each computed when it is first asked for.
+            // Weights of the runs from here, each computed at first use.
             let (mut over, mut known) = ([0.0; BINS + 1], first);
             for map in 0..count {
                 let before = least[map][first];
@@ -163,10 +166,11 @@ impl<'a> Search<'a> {
         least[count][bins] <= OVER
     }
 
-    /// The splits that leave the least weight over the bound and, of those, have the least error.
+    /// Returns the splits with the least weight over the bound and, among those, the least error.
     fn best(&self, count: usize, bound: f64) -> [usize; MAX_MAPS + 1] {
         let bins = self.bins.count;
-        // By number of maps and the bin at which they end, with that at which the last one begins.
+        // Indexed by the number of maps and the bin at which they end, with the bin at which the last one
+        // begins.
         let mut least = [[(f64::MAX, 0); BINS + 1]; MAX_MAPS + 1];
         least[0][0].0 = 0.0;
         for first in 0..bins {
@@ -190,5 +194,5 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Octaves that the bound of given splits is searched in.
+/// Octaves in which the bound of given splits is searched.
 const WIDEST: f64 = 64.0;

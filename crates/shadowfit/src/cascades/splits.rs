@@ -1,7 +1,7 @@
-//! Where one map ends and the next begins.
+//! The splits: view depths where one map ends and the next begins.
 //!
-//! Each map gets a range of view depths of its own. Fixed schemes place the splits by depth alone;
-//! content-aware schemes place them where the most visible pixels gain.
+//! Each map gets a separate range of view depths. Fixed schemes place the splits by depth alone.
+//! Content-aware schemes place them where they improve the most visible pixels.
 
 use core::cell::OnceCell;
 
@@ -16,11 +16,11 @@ use super::bins::{BINS, Bins, Splits, Weights, even, weights_of_boxes, weights_o
 use super::extents::{Maps, Sizes, slice_bin};
 use super::optimise;
 
-/// The splits of a fixed scheme over a range of view depths: `count` maps.
+/// Computes the splits of a fixed scheme for `count` maps over a range of view depths.
 ///
-/// Uniform and logarithmic splits are the two ends between which the practical scheme of parallel-split
-/// shadow maps lies (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
-/// virtual environments", 2006): `λ log + (1 - λ) uniform`.
+/// The practical scheme of parallel-split shadow maps lies between uniform and logarithmic splits (F. Zhang,
+/// H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale virtual environments", 2006):
+/// `λ log + (1 - λ) uniform`.
 fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Splits {
     let mut splits = [far as f32; MAX_MAPS + 1];
     for (i, split) in splits.iter_mut().enumerate().take(count) {
@@ -37,32 +37,32 @@ fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Splits {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct HeldSplits {
     pub(super) splits: Splits,
-    /// View depths over which they were distributed, in metres.
+    /// View depths over which the splits were distributed, in metres.
     spread: (f64, f64),
-    /// View depth at which shadows ended when they were chosen, in metres.
+    /// View depth at which shadows ended when the splits were chosen, in metres.
     far: f32,
-    /// Frames since they were last compared with the best splits.
+    /// Frames since the last comparison with the best splits.
     age: u32,
 }
 
-/// Frames between two comparisons of held splits with the best ones, which take most of the time of
-/// a fit. Whether they reach as far as they must is checked in each frame.
+/// Frames between two comparisons of held splits with the best ones, which take most of the time of a fit.
+/// Every frame checks whether held splits reach far enough.
 const COMPARE_EVERY: u32 = 8;
 
 /// Chooses the splits of a frame.
 pub(super) struct Chooser<'a, 'b> {
     frame: &'a Frame<'a, 'b>,
     settings: &'a Cascades,
-    /// Made once, whether held splits are compared with the best ones, new ones are chosen, or both.
+    /// Computed once, to compare held splits with the best ones, to choose new ones, or both.
     estimate: OnceCell<Estimate>,
 }
 
-/// What the best splits follow from.
+/// Input of the search for the best splits.
 struct Estimate {
     bins: Bins,
-    /// What is visible in each bin.
+    /// Visible share of each bin.
     weights: Weights,
-    /// How large the map of any run of bins would be.
+    /// Map size of any run of bins.
     sizes: Sizes,
 }
 
@@ -71,7 +71,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
         Self { frame, settings, estimate: OnceCell::new() }
     }
 
-    /// This frame's splits: held ones while they serve.
+    /// Returns this frame's splits. Held splits are used while they are good enough.
     pub(super) fn held_or_chosen(&self, held: Option<HeldSplits>) -> Result<HeldSplits, FitError> {
         let is_held = self.settings.stabilise != Stabilise::Off;
         let spread = self.spread();
@@ -90,21 +90,20 @@ impl<'a, 'b> Chooser<'a, 'b> {
         Ok(HeldSplits { splits, spread: (near, far), far: self.frame.range.far, age: 0 })
     }
 
-    /// The depths over which the maps are distributed: those of the receivers in view, if known.
+    /// Returns the depths over which the maps are distributed: the depths of the receivers in view, if known.
     fn spread(&self) -> Depths {
         let (near, far) = (f64::from(self.frame.range.near), f64::from(self.frame.range.far));
         let (near, far) = match self.frame.content.depth_range() {
             Some(seen) => (seen.near.max(near), seen.far.min(far)),
             None => (near, far),
         };
-        // Logarithms need a positive near end; no practical view has a greater depth ratio than
-        // this.
+        // Logarithms need a positive near end. No practical view has a greater depth ratio than this.
         let near = near.max(far * NEAREST);
         Depths { near: if near < far { near } else { far * 0.5 }, far }
     }
 
-    /// The same within the bounds of what is visible, if they are known and the scheme is not
-    /// content-aware itself.
+    /// Limits the depths to the visible depth bounds, if they are known and the scheme is not content-aware
+    /// itself.
     fn bounded(&self, spread: Depths) -> Depths {
         let is_fixed = !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
         let Some(bounds) = self.frame.input.depth_bounds.filter(|_| is_fixed) else { return spread };
@@ -112,9 +111,9 @@ impl<'a, 'b> Chooser<'a, 'b> {
         Depths { near: within(bounds.near), far: within(bounds.far) }
     }
 
-    /// View depth to which the last map reaches: that of what is shadowed where fits clip the
-    /// receivers to their slice, else that of the receivers. If it is to be held, no turn of the
-    /// camera may exceed it, and there is room for some movement.
+    /// Returns the view depth to which the last map reaches. Fits that clip receivers to their slice reach to
+    /// the end of shadows, other fits to the farthest receiver. Held splits leave room for some movement, and
+    /// no turn of the camera exceeds them.
     fn end(&self, spread: Depths) -> f64 {
         let far = f64::from(self.frame.range.far);
         if self.frame.rule.form.whole_distance {
@@ -125,7 +124,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
         end.unwrap_or(spread.far).min(far)
     }
 
-    /// The splits by the technique's scheme over the given depths.
+    /// Chooses splits by the technique's scheme over the given depths.
     fn choose(&self, spread: Depths) -> Result<Splits, FitError> {
         let count = self.settings.count as usize;
         let Depths { near, far } = self.bounded(spread);
@@ -142,8 +141,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
         Ok(self.whole(splits, spread))
     }
 
-    /// The same splits, ascending, from the near end of what is shadowed to the far end of the
-    /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
+    /// Makes splits ascend from the near end of the shadowed range to [`Self::end`].
     fn whole(&self, mut splits: Splits, spread: Depths) -> Splits {
         let count = self.settings.count as usize;
         let end = self.end(spread) as f32;
@@ -154,7 +152,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
         splits
     }
 
-    /// The best splits for what is visible.
+    /// Computes the best splits for the visible surfaces.
     fn by_content(&self, spread: Depths) -> Splits {
         let Estimate { bins, weights, sizes } = self.estimate(spread);
         let chosen = optimise::best(bins, weights, sizes, self.settings.count as usize);
@@ -163,14 +161,14 @@ impl<'a, 'b> Chooser<'a, 'b> {
         for (split, bin) in splits.iter_mut().zip(chosen) {
             let bin = slice_bin(bins, bin, beyond).max(next);
             *split = bins.start(bin) as f32;
-            // Each map has a slice of its own.
+            // Each map gets at least one bin.
             next = bin + 1;
         }
         self.whole(splits, spread)
     }
 
-    /// Splits of an earlier frame, in which shadows ended at `last_far`, if they hold all of this one's
-    /// depths and not far more. The rounding of a camera's matrix changes nothing but their far end.
+    /// Returns the splits of an earlier frame, in which shadows ended at `last_far`, if they hold all depths
+    /// of this frame and not far more. Rounding of the camera's matrix changes only their far end.
     fn kept(&self, splits: &Splits, last_far: f32, now: Depths) -> Option<Splits> {
         let count = self.settings.count as usize;
         let (end, far) = (f64::from(splits[count]), f64::from(self.frame.range.far));
@@ -188,8 +186,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
         Some(kept)
     }
 
-    /// Whether the near end of what is shadowed differs from that of an earlier frame by rounding
-    /// alone.
+    /// Returns whether the near end of the shadowed range differs from an earlier frame's only by rounding.
     fn is_same_near(&self, held: f32) -> bool {
         let Range { near, far } = self.frame.range;
         let distances = checks::length(self.frame.content.origin) + f64::from(far.abs());
@@ -197,15 +194,15 @@ impl<'a, 'b> Chooser<'a, 'b> {
         (f64::from(near) - f64::from(held)).abs() <= rounding
     }
 
-    /// Whether splits of an earlier frame are still good enough for this one, compared with the
-    /// best ones.
+    /// Returns whether splits of an earlier frame are still good enough for this one, compared with the best
+    /// ones.
     fn serves(&self, splits: &Splits, held: Depths, now: Depths) -> bool {
         let count = self.settings.count as usize;
         let max_oversize = f64::from(self.settings.stabilise.max_oversize());
         if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
             let is_near = |now: f64, held: f64| now >= held / max_oversize && now <= held * max_oversize;
             let bounded = self.bounded(now);
-            // Without bounds the far end is what the splits have to reach.
+            // Without bounds, the splits must reach the far end anyway.
             return is_near(bounded.near, held.near) && (bounded == now || is_near(bounded.far, held.far));
         }
         let Estimate { bins, weights, sizes } = self.estimate(now);
@@ -217,13 +214,14 @@ impl<'a, 'b> Chooser<'a, 'b> {
         optimise::is_near_best(bins, weights, sizes, &chosen[..=count], max_oversize)
     }
 
-    /// The fewest maps whose best splits reach `max_oversize` times the bound of the full count.
+    /// Returns the smallest number of maps whose best splits reach `max_oversize` times the bound of the full
+    /// count.
     pub(super) fn fewest(&self, max_oversize: f64) -> u32 {
         let Estimate { bins, weights, sizes } = self.estimate(self.spread());
         optimise::fewest(bins, weights, sizes, self.settings.count as usize, max_oversize) as u32
     }
 
-    /// What the best splits over the given depths follow from.
+    /// Returns the input of the search for the best splits over the given depths.
     fn estimate(&self, spread: Depths) -> &Estimate {
         self.estimate.get_or_init(|| {
             let bins = self.bins(spread);
@@ -231,7 +229,7 @@ impl<'a, 'b> Chooser<'a, 'b> {
         })
     }
 
-    /// How large the map of any run of bins would be.
+    /// Estimates the map size of any run of bins.
     fn sizes(&self, bins: &Bins) -> Sizes {
         let maps = Maps {
             content: self.frame.content,
@@ -248,12 +246,12 @@ impl<'a, 'b> Chooser<'a, 'b> {
         }
     }
 
-    /// The bins of a range of view depths.
+    /// Returns the bins of a range of view depths.
     fn bins(&self, spread: Depths) -> Bins {
         Bins::new(spread.near, spread.far, if self.frame.rule.serves_all { SHARED_BINS } else { BINS })
     }
 
-    /// Number of bins by which maps are read beyond their slices.
+    /// Returns the number of bins that maps are read beyond their slices.
     fn read_beyond(&self, bins: &Bins) -> usize {
         let octaves = match self.frame.rule.form.covers {
             _ if !self.frame.rule.serves_all => return 0,
@@ -281,48 +279,48 @@ impl<'a, 'b> Chooser<'a, 'b> {
     }
 }
 
-/// Two weights in one, with a share of the second.
+/// Mixes two weights, with a share of the second.
 fn mixed(one: &Weights, other: &Weights, share: f64) -> Weights {
     core::array::from_fn(|i| core::array::from_fn(|c| one[i][c] * (1.0 - share) + other[i][c] * share))
 }
 
-/// Octaves of view depth by which maps that are read by coverage are read beyond their slices, for spheres and for
-/// rectangles: what they hold there need not come from coarser ones. Chosen on fifteen scenes; none and 0.9
-/// make the texels of stable maps coarser by a tenth in the mean.
+/// Octaves of view depth that maps are read beyond their slices by coverage, for spheres and for rectangles.
+/// Points at these depths need no coarser map. Chosen on fifteen scenes. With 0 and 0.9 the texels of stable
+/// maps are a tenth coarser on average.
 const SPHERE_BEYOND: f64 = 0.35;
 const RECTANGLE_BEYOND: f64 = 0.1;
 
-/// Weight of all depths alike beside what is seen from where a path begins, for stable maps, whose splits are held
-/// for long. Chosen with the octaves above.
+/// Share of equal weights for all depths, for stable maps. Their splits are held for long, beyond the
+/// surfaces visible at the start of a path. Chosen with the octaves above.
 const UNSEEN: f64 = 0.1;
 
-/// Bins for maps that are read by coverage. Where exactly they are split matters less, since they are read
-/// beyond their splits.
+/// Bins for maps that are read by coverage. Their exact splits matter less, since they are read beyond their
+/// splits.
 const SHARED_BINS: usize = 32;
 
-/// Weight of the estimate from boxes beside a histogram, for what came into view since and what few
-/// samples missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
+/// Weight of the estimate from boxes beside a histogram, for surfaces that have come into view since or that
+/// the few samples missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
 const GUESS: f64 = 0.3;
 
-/// The same where no boxes are known and all depths have equal weight: less than the share above
-/// the quantile, so that it only decides where the histogram does not.
+/// Weight of equal shares beside a histogram if no boxes are known. It is less than the share above the
+/// quantile, so that it only decides where the histogram does not.
 const BLIND_GUESS: f64 = 0.02;
 
-/// Relative error of a far plane's view depth: from an f32 matrix of plain depth it is 4 · 2⁻²⁴ ·
-/// far / near, which reaches this value at 65,000 times the near depth.
+/// Relative error of a far plane's view depth. For an f32 matrix of plain depth it is 4 · 2⁻²⁴ · far / near,
+/// which reaches this value at 65,000 times the near depth.
 const FAR_ROUNDING: f64 = 1.0 / 64.0;
 
-/// The same for a near plane, in addition to the errors from the eye's distance to the world's
-/// origin and from the view's extent.
+/// Relative error of a near plane's view depth, in addition to the errors from the eye's distance to the
+/// world's origin and from the view's extent.
 const NEAR_ROUNDING: f64 = 1e-3;
 
-/// Room beyond the farthest receiver that held splits leave, as a share of its distance.
+/// Room that held splits leave beyond the farthest receiver, as a share of its distance.
 const FAR_ROOM: f64 = 0.1;
 
-/// Nearest view depth at which the distribution of maps starts, as a share of the farthest.
+/// Least view depth at which the distribution of maps starts, as a share of the farthest.
 const NEAREST: f64 = 1.0 / 65_536.0;
 
-/// Splits given by hand.
+/// Checks and returns manual splits.
 fn manual(given: &[f32; MAX_MAPS - 1], count: usize, range: Range) -> Result<Splits, FitError> {
     let mut splits = [range.far; MAX_MAPS + 1];
     splits[0] = range.near;

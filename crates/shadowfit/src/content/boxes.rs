@@ -1,4 +1,4 @@
-//! The boxes of a frame: their checks, their view depths, and the order in which some are looked at.
+//! The boxes of a frame: their checks, their view depths, and a scattered order.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -13,12 +13,12 @@ use crate::view::{Depths, View, ViewFrustum};
 pub(crate) struct Bounds {
     pub(crate) min: DVec3,
     pub(crate) max: DVec3,
-    /// Least and greatest view depth. They are infinite for runs of a list, and for queries without a view.
+    /// Least and greatest view depth. They are infinite for runs of a list and for queries without a view.
     pub(crate) depths: Depths,
 }
 
 impl Bounds {
-    /// Bounds without known view depths.
+    /// Returns bounds without known view depths.
     #[inline]
     pub(super) fn anywhere(min: DVec3, max: DVec3) -> Self {
         Self { min, max, depths: Depths { near: f64::NEG_INFINITY, far: f64::INFINITY } }
@@ -37,7 +37,7 @@ pub(super) fn compute_depths(input: &Scene, groups: &Groups, depths: &mut [DVec2
     }
 }
 
-/// Computes the depths in one view. Boxes that are out of view, or face away from the light, keep theirs.
+/// Computes the depths in one view. Boxes that are out of view or face away from the light keep their depths.
 fn compute_depths_in(view: &ViewFrustum, input: &Scene, receivers: &Boxes, groups: &Groups, depths: &mut [DVec2]) {
     let origin = input.views[0].origin;
     let (eye, offset) = (view.origin - receivers.origin, receivers.origin - origin);
@@ -62,10 +62,10 @@ fn compute_depths_in(view: &ViewFrustum, input: &Scene, receivers: &Boxes, group
     }
 }
 
-/// All indices below a count, with large steps between them. Neighbouring boxes tell much the same: the
-/// extent of all is nearly known after a few that lie apart, and the others cannot widen it.
+/// Returns all indices below a count, with large steps between them. Neighbouring boxes have similar extents.
+/// A few boxes that lie apart nearly determine the extent of all boxes, and the others rarely widen it.
 pub(super) fn scattered(count: usize) -> impl Iterator<Item = usize> {
-    // The golden ratio leaves no large gaps; steps that divide the count would come back too early.
+    // The golden ratio leaves no large gaps. A step that divides the count would return too early.
     let step = (count * 5 / 8..count).find(|step| is_coprime(*step, count)).unwrap_or(1);
     let mut index = 0;
     (0..count).map(move |_| {
@@ -81,12 +81,12 @@ fn is_coprime(mut a: usize, mut b: usize) -> bool {
     a == 1
 }
 
-/// Whether receivers and casters are the same boxes in memory.
+/// Returns whether receivers and casters are the same boxes in memory.
 pub(super) fn is_same(receivers: Option<Boxes>, casters: Option<Boxes>) -> bool {
     receivers.zip(casters).is_some_and(|(a, b)| a.origin == b.origin && core::ptr::eq(a.boxes, b.boxes))
 }
 
-/// Refuses boxes with a coordinate that is not a number or too large; empty ones are allowed.
+/// Returns an error if a coordinate is not a number or is too large. Empty boxes are allowed.
 pub(super) fn check(boxes: &Boxes) -> Result<(), FitError> {
     checks::point("the boxes' origin", boxes.origin)?;
     let limit = checks::MAX_LENGTH as f32;

@@ -1,4 +1,4 @@
-//! How far the boxes of a frame extend: in view depth, from the eyes and across the light.
+//! Extents of the boxes of a frame: in view depth, from the eyes and across the light.
 
 use glam::{DVec2, DVec3};
 
@@ -21,8 +21,8 @@ impl Content<'_> {
         near.zip(far).map(|(near, far)| Depths { near, far }).filter(|depths| depths.near < depths.far)
     }
 
-    /// Returns the greatest distance of any receiver from an eye, in view or not: no turn of the camera makes a view
-    /// depth exceed it. `None` if no receiver is known.
+    /// Returns the greatest distance of any receiver from an eye, in view or not. View depths do not exceed
+    /// it in any camera direction. `None` if no receiver is known.
     pub(crate) fn farthest(&self) -> Option<f64> {
         let mut squared = None;
         for view in self.views {
@@ -34,8 +34,8 @@ impl Content<'_> {
         squared.map(libm::sqrt)
     }
 
-    /// Returns the greatest distance from the origin of a corner of the lit receivers in a range of view depths, in
-    /// metres, and at least `least`.
+    /// Returns the greatest distance from the origin to a corner of the lit receivers in a range of view
+    /// depths, in metres. Returns at least `least`.
     pub(crate) fn farthest_seen(&self, range: Range, least: f64) -> f64 {
         let mut farthest = Farthest::new(DVec3::ZERO, range, Some(least * least));
         if self.knows_receivers() {
@@ -83,7 +83,7 @@ impl Visit for SeenDepths<'_> {
         let (view, nearest) = (&self.part.view, &mut self.near);
         let far = bounds.depths.far.min(view.far);
         self.far = Some(self.far.map_or(far, |known| known.max(far)));
-        // The part of a box that is in view may begin much farther out than the box.
+        // The part of a box that is in view may begin much farther away than the box.
         if nearest.is_none_or(|near| bounds.depths.near < near) {
             self.whole.clip(bounds.min, bounds.max, &mut |p| {
                 let near = view.depth.distance(p).max(view.near);
@@ -95,10 +95,10 @@ impl Visit for SeenDepths<'_> {
 
 /// The farthest corner of boxes in a range of view depths.
 struct Farthest {
-    /// From the point that distances are measured from to the fit's origin.
+    /// Offset from the point that distances are measured from to the fit's origin.
     offset: DVec3,
     depths: Depths,
-    /// Square of its distance so far.
+    /// Squared distance of the farthest corner so far.
     squared: Option<f64>,
 }
 
@@ -119,7 +119,7 @@ impl Farthest {
     }
 }
 
-/// Enlargement of the distance of bounds, so that rounding hides no box in them.
+/// Enlargement of the distance of bounds, so that rounding does not skip a box in them.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
 impl Visit for Farthest {

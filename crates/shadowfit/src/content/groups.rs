@@ -4,11 +4,11 @@ use glam::{DVec2, DVec3};
 
 use crate::base::{Aabb, Boxes, moved};
 
-/// Boxes in a run: few enough that runs stay small, enough that their tests cost little. 8 and 32 are both
+/// Number of boxes in a run. Smaller runs cost more tests, larger ones hold more space. 8 and 32 are both
 /// slower with 1,024 clusters of real scenes.
 const RUN: usize = 16;
 
-/// Elements of storage that the bounds of a run take.
+/// Number of storage elements for the bounds of a run.
 const ELEMENTS: usize = 3;
 
 /// Boxes in runs, with the bounds of each.
@@ -16,17 +16,18 @@ const ELEMENTS: usize = 3;
 pub(crate) struct Groups<'a> {
     boxes: &'a [Aabb],
     bounds: &'a [DVec2],
-    /// From the origin that the boxes are seen from to their own.
+    /// Offset from the fit's origin to the origin of the boxes.
     offset: DVec3,
 }
 
 impl<'a> Groups<'a> {
-    /// Elements of storage for the runs of a number of boxes.
+    /// Returns the number of storage elements for the runs of a number of boxes.
     pub(crate) const fn required(boxes: usize) -> usize {
         boxes.div_ceil(RUN) * ELEMENTS
     }
 
-    /// The runs of boxes as seen from an origin; storage is as long as [`Self::required`] or longer.
+    /// Computes the runs of boxes relative to an origin. The storage has at least [`Self::required`]
+    /// elements.
     pub(crate) fn new(boxes: &Boxes<'a>, origin: DVec3, storage: &'a mut [DVec2]) -> Self {
         for (run, bounds) in boxes.boxes.chunks(RUN).zip(storage.chunks_exact_mut(ELEMENTS)) {
             let all = run.iter().filter(|aabb| !aabb.is_empty()).fold(Aabb::EMPTY, |all, aabb| all.union(*aabb));
@@ -42,14 +43,14 @@ impl<'a> Groups<'a> {
         !self.boxes[index].is_empty()
     }
 
-    /// Returns the least and the greatest corner of a box of the list, from the origin.
+    /// Returns the least and the greatest corner of a listed box, relative to the fit's origin.
     #[inline]
     pub(crate) fn corners(&self, index: usize) -> (DVec3, DVec3) {
         moved(&self.boxes[index], self.offset)
     }
 
-    /// The runs: indices of their boxes, and the corners of the bounds of those that are not empty, from the
-    /// origin. Runs of empty boxes are left out.
+    /// Returns the runs: the indices of their boxes, and the corners of their bounds relative to the fit's
+    /// origin. Empty boxes do not count for the bounds. Runs of empty boxes are skipped.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (core::ops::Range<usize>, DVec3, DVec3)> + use<'a> {
         let (offset, count) = (self.offset, self.boxes.len());
         self.bounds.chunks_exact(ELEMENTS).enumerate().filter_map(move |(i, bounds)| {

@@ -1,8 +1,8 @@
 //! The views and boxes of one frame, in the form that fits use.
 //!
-//! Neighbours in a list of objects or clusters are mostly neighbours in space. So the bounds of runs of neighbours are
-//! computed once a frame, and boxes in runs that cannot matter are skipped. [Visitors](Visit) receive the boxes of the
-//! lists and of the tree.
+//! Neighbours in a list of objects or clusters are mostly neighbours in space, so the bounds of runs of
+//! neighbours are computed once per frame. Runs that cannot change a result are skipped. [Visitors](Visit)
+//! receive the boxes of the lists and of the tree.
 
 mod boxes;
 #[cfg(feature = "alloc")]
@@ -31,16 +31,16 @@ pub(crate) use static_boxes::StaticBoxes;
 pub(crate) use views::{MAX_SPHERE_VIEWS, ViewPart};
 pub(crate) use visit::{Found, Query, Visit, VisitCorners};
 
-/// The views, the light and the boxes that content is made of, as an engine gives them.
+/// The views, the light and the boxes of a frame, as an engine passes them.
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub(crate) views: &'a [ViewFrustum],
-    /// Direction of travel of the light.
+    /// Travel direction of the light.
     pub(crate) direction: Vec3,
     pub(crate) receivers: Option<Boxes<'a>>,
     pub(crate) receiver_cones: &'a [NormalCone],
     pub(crate) casters: Option<Boxes<'a>>,
-    /// Boxes that receive and cast beside those of the lists.
+    /// Boxes that receive and cast shadows in addition to the lists.
     pub(crate) static_boxes: Option<&'a StaticBoxes>,
 }
 
@@ -53,8 +53,8 @@ pub(crate) struct Content<'a> {
     /// The list of casters.
     casters: Option<Boxes<'a>>,
     static_boxes: Option<&'a StaticBoxes>,
-    /// Least and greatest view depth of each receiver of the list, view by view; the least is above the
-    /// greatest where the box is out of view.
+    /// Least and greatest view depth of each listed receiver, view by view. For a box out of view the least
+    /// is above the greatest.
     depths: &'a [DVec2],
     receiver_groups: Groups<'a>,
     caster_groups: Groups<'a>,
@@ -63,8 +63,7 @@ pub(crate) struct Content<'a> {
 }
 
 impl<'a> Content<'a> {
-    /// Checks the boxes and computes their view depths; returns the rest of the storage, for
-    /// points.
+    /// Checks the boxes and computes their view depths. Returns the rest of the storage, for points.
     pub(crate) fn new<'w>(
         input: Scene<'w>,
         storage: &'w mut [DVec2],
@@ -106,7 +105,7 @@ impl<'a> Content<'a> {
         Ok((content, points))
     }
 
-    /// The views of an input alone, for fits that use nothing else.
+    /// Returns the views of an input without its boxes, for fits that use only the views.
     #[inline(always)]
     pub(crate) fn of_views(input: Scene<'a>) -> Self {
         Self {
@@ -123,27 +122,27 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// Whether it is known what receives shadows.
+    /// Returns whether the receivers are known.
     pub(crate) fn knows_receivers(&self) -> bool {
         self.receivers.is_some() || self.static_boxes.is_some()
     }
 
-    /// Whether anything is known to cast shadows.
+    /// Returns whether there are known casters.
     pub(crate) fn has_casters(&self) -> bool {
         self.static_boxes.is_some() || self.casters.is_some_and(|casters| !casters.boxes.is_empty())
     }
 
-    /// The list of receivers, and that of casters; `None` of the second one where it is the same in memory.
+    /// Returns the lists of receivers and casters. The second is `None` if both are the same list in memory.
     pub(crate) fn lists(&self) -> [Option<Boxes<'a>>; 2] {
         [self.receivers, self.casters.filter(|_| !is_same(self.receivers, self.casters))]
     }
 
-    /// Number of receivers of the list.
+    /// Returns the number of listed receivers.
     fn listed(&self) -> usize {
         self.receivers.map_or(0, |receivers| receivers.boxes.len())
     }
 
-    /// Depths of the listed receivers in a view.
+    /// Returns the depths of the listed receivers in a view.
     #[inline]
     fn depths_in(&self, view: usize) -> &[DVec2] {
         let listed = self.listed();

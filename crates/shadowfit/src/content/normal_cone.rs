@@ -1,7 +1,7 @@
-//! Where the surfaces of a cluster face, and whether that is away from the light.
+//! Cones around the surface normals of clusters, and a test whether surfaces face away from the light.
 //!
-//! Both sides of a surface count, so a normal and its opposite are the same here: a cone is always
-//! the double cone of the two, joined at their tips.
+//! Both sides of a surface count, so a normal and its opposite are equivalent: each cone is a double cone,
+//! joined at the tips.
 
 use glam::{DVec3, Vec3};
 
@@ -10,32 +10,32 @@ use crate::base::checks::length;
 
 /// A double cone that holds the geometric normal of each triangle of a cluster, or its opposite.
 ///
-/// Zero-area triangles have no normal and are not drawn; they are ignored.
+/// Zero-area triangles are ignored, since they have no normal and are not drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct NormalCone {
-    /// Middle of the cone, a unit vector in the axes of the triangles.
+    /// Axis of the cone, a unit vector in the axes of the triangles.
     pub axis: Vec3,
-    /// Cosine of the angle between the axis and the cone's side, from 0 (every direction is in the
-    /// double cone) to just under 1 (all triangles are parallel).
+    /// Cosine of the angle between the axis and the cone's side, from 0 (the double cone holds every
+    /// direction) to just under 1 (all triangles are parallel).
     pub cos_half_angle: f32,
 }
 
 impl NormalCone {
-    /// The cone that holds every direction, so that nothing is ever proven of it.
+    /// The cone that holds every direction, so that it proves nothing.
     pub const ALL: Self = Self { axis: Vec3::Y, cos_half_angle: 0.0 };
 
-    /// Whether all that can be seen of surfaces within a box, with normals in this cone, is turned
-    /// away from the light: dark without a map, so that a fit may ignore the box.
+    /// Returns whether all visible surfaces within a box, with normals in this cone, face away from the
+    /// light. They are dark without a map, so a fit may ignore the box.
     ///
-    /// `bounds` and `eye` are in metres relative to one origin, `to_light` is the direction
-    /// **toward** the light, of any length; all in the axes of the triangles. `true` is proven: (n
-    /// · (eye - p)) (n · `to_light`) <= 0 for every point p of the box and every normal n of the
-    /// cone, wherever the eye is. `false` may be returned for a surface that is turned away, and is
-    /// returned for NaN, an empty box and an axis of zero length. Shading normals that differ from
-    /// the geometric ones, and light through leaves, are not taken into account.
+    /// `bounds` and `eye` are in metres relative to one origin. `to_light` is the direction **toward** the
+    /// light, of any length. All are in the axes of the triangles. `true` is proven for this eye: (n · (eye -
+    /// p)) (n · `to_light`) <= 0 for every point p of the box and every normal n of the cone. `false` may
+    /// also be returned for surfaces that face away. It is returned for NaN, an empty box and an axis of zero
+    /// length. Shading normals that differ from the geometric normals, and light through leaves, are not
+    /// taken into account.
     ///
     /// ```text
     ///          eye          The product is never above 0 if the eye is before every such plane and
@@ -50,21 +50,21 @@ impl NormalCone {
     ///              \ to_light
     /// ```
     ///
-    /// Beyond f + h = 180° the formula is above the least value, -|v|, but below 0 like it. Source:
-    /// the cone test of mesh clusters (Kubisch, Christoph: "Introduction to Turing Mesh Shaders",
-    /// 2018), made exact for boxes and used twice, for the eye and for the light.
+    /// Beyond f + h = 180° the formula exceeds the least value, -|v|, but both are below 0. Source: the cone
+    /// test of mesh clusters (Kubisch, Christoph: "Introduction to Turing Mesh Shaders", 2018), made exact
+    /// for boxes and used twice, for the eye and for the light.
     pub fn faces_away(&self, bounds: &Aabb, eye: Vec3, to_light: Vec3) -> bool {
         self.faces_away_from(bounds, eye.as_dvec3(), to_light.as_dvec3())
     }
 
-    /// [`Self::faces_away`] for an eye that is far from the box's origin: rounded to f32 there, it
-    /// might stand on the other side of a surface.
+    /// Computes [`Self::faces_away`] for an eye far from the box's origin. Rounding such an eye to f32 could
+    /// move it to the other side of a surface.
     pub(crate) fn faces_away_from(&self, bounds: &Aabb, eye: DVec3, to_light: DVec3) -> bool {
         let axis = self.axis.as_dvec3() / length(self.axis.as_dvec3());
         let cos = f64::from(self.cos_half_angle);
         let sin = libm::sqrt((1.0 - cos * cos).max(0.0));
-        // Whether n · v is above 0 for all normals on the axis' side, by more than the rounding of v,
-        // a difference of numbers up to |v| + `reach`, and of the products.
+        // Whether n · v is above 0 for all normals on the axis' side, by more than the rounding of the
+        // products and of v, a difference of numbers up to |v| + `reach`.
         let is_before = |v: DVec3, reach: f64| {
             let along = axis.dot(v);
             cos * along - sin * length(v - axis * along) > CONE_ROUNDING * (length(v) + reach)
@@ -90,13 +90,13 @@ mod tests {
 
     #[test]
     fn an_eye_far_from_the_origin_is_not_put_on_the_other_side() {
-        // A facet 100 km out, where f32 steps by 1/128 m, and an eye 2 mm behind it.
+        // A facet 100 km away, where the step of f32 is 1/128 m, and an eye 2 mm behind it.
         let place = Vec3::splat(100_000.0);
         let facet = Aabb::new(place, place);
         let eye = place.as_dvec3() + DVec3::new(0.004, 0.004, -0.0116);
         let cone = NormalCone { axis: Vec3::ONE, cos_half_angle: 1.0 - f32::EPSILON };
         let light_behind = -Vec3::ONE;
-        assert!(!cone.faces_away_from(&facet, eye, light_behind.as_dvec3()), "it sees the lit side");
-        assert!(cone.faces_away(&facet, eye.as_vec3(), light_behind), "f32 would not know");
+        assert!(!cone.faces_away_from(&facet, eye, light_behind.as_dvec3()), "the eye is on the lit side");
+        assert!(cone.faces_away(&facet, eye.as_vec3(), light_behind), "f32 rounds the eye to the other side");
     }
 }

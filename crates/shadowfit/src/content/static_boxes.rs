@@ -1,4 +1,4 @@
-//! The tree of static boxes, which needs an allocator, and a type without values in its place where there is none.
+//! The tree of static boxes, which needs an allocator. Without one, an empty type takes its place.
 
 #[cfg(not(feature = "alloc"))]
 use glam::DVec3;
@@ -9,7 +9,7 @@ use crate::base::Aabb;
 #[cfg(feature = "alloc")]
 pub(crate) use super::tree::StaticBoxes;
 
-/// There are no trees without an allocator.
+/// A type without values, because trees need an allocator.
 #[cfg(not(feature = "alloc"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StaticBoxes {}

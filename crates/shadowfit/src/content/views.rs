@@ -1,4 +1,4 @@
-//! The views of a frame: their slices, spheres around these, and the parts that boxes are looked for in.
+//! The views of a frame: their slices, enclosing spheres, and the parts for box queries.
 
 use glam::{DVec3, Vec3};
 
@@ -8,7 +8,7 @@ use crate::base::FitError;
 use crate::base::enclosing::{EnclosingSphere, SymmetricFrustum, minimal};
 use crate::view::{Depths, Range, Slice, View, slice_corners};
 
-/// Most views that share a stable map.
+/// Greatest number of views that share a stable map.
 pub(crate) const MAX_SPHERE_VIEWS: usize = 8;
 
 /// The part of a view between two view depths.
@@ -16,13 +16,13 @@ pub(crate) struct ViewPart {
     /// Index of the view.
     pub(crate) index: usize,
     pub(crate) view: View,
-    /// View depths of its ends, in metres. They lie within the view.
+    /// Least and greatest view depth of the part, in metres. They lie within the view.
     pub(crate) near: f64,
     pub(crate) far: f64,
 }
 
 impl ViewPart {
-    /// The part as a convex body.
+    /// Returns the part as a convex body.
     pub(crate) fn slice(&self) -> Slice {
         self.view.slice(self.near, self.far)
     }
@@ -42,7 +42,7 @@ impl ViewPart {
 }
 
 impl Content<'_> {
-    /// The minimal sphere around all views' slices, relative to the origin.
+    /// Returns the minimal sphere around all views' slices, relative to the origin.
     #[inline(always)]
     pub(crate) fn enclosing_sphere(&self, range: Range) -> Result<EnclosingSphere, FitError> {
         if let ([view], Some(symmetric)) = (self.views, self.symmetric()) {
@@ -57,7 +57,7 @@ impl Content<'_> {
         self.enclosing_sphere_of_any(range)
     }
 
-    /// The same for several views, or for one that is not symmetric.
+    /// Returns the sphere for several views, or for one that is not symmetric.
     #[inline(never)]
     fn enclosing_sphere_of_any(&self, range: Range) -> Result<EnclosingSphere, FitError> {
         let mut corners = [DVec3::ZERO; 8 * MAX_SPHERE_VIEWS];
@@ -81,17 +81,17 @@ impl Content<'_> {
         Ok(minimal(&corners[..8 * count]))
     }
 
-    /// The first view, if it is a symmetric frustum.
+    /// Returns the first view, if it is a symmetric frustum.
     fn symmetric(&self) -> Option<&SymmetricFrustum> {
         self.symmetric.get_or_init(|| SymmetricFrustum::new(&self.views[0].corners.map(Vec3::as_dvec3))).as_ref()
     }
 
-    /// The views as fits use them.
+    /// Returns the views in the form that fits use.
     pub(crate) fn views(&self) -> impl Iterator<Item = View> {
         self.views.iter().map(|view| View::new(view, self.origin))
     }
 
-    /// All of each view.
+    /// Returns the whole of each view.
     pub(crate) fn whole_views(&self) -> impl Iterator<Item = ViewPart> {
         self.views().enumerate().map(|(index, view)| {
             let (near, far) = (view.near, view.far);
@@ -99,7 +99,7 @@ impl Content<'_> {
         })
     }
 
-    /// The part of each view between two view depths, unless it is empty.
+    /// Returns the part of each view between two view depths, unless it is empty.
     pub(crate) fn parts(&self, range: Range) -> impl Iterator<Item = ViewPart> {
         let parts = self.whole_views().map(move |part| ViewPart {
             near: f64::from(range.near).max(part.near).min(part.far),
@@ -109,12 +109,12 @@ impl Content<'_> {
         parts.filter(|part| part.near < part.far)
     }
 
-    /// Corners of the views' slices.
+    /// Returns the corners of the views' slices.
     pub(crate) fn corners(&self, range: Range) -> impl Iterator<Item = DVec3> {
         self.slices(range).flatten()
     }
 
-    /// Corners of each view's slice that is not empty.
+    /// Returns the corners of each view's slice. Skips empty slices.
     pub(crate) fn slices(&self, range: Range) -> impl Iterator<Item = [DVec3; 8]> {
         self.views.iter().filter_map(move |view| slice_corners(view, self.origin, range.near, range.far))
     }

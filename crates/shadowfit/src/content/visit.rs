@@ -1,8 +1,8 @@
-//! One way to ask for the boxes of a frame: a [`Query`] names them, a [`Visit`] receives them.
+//! The only way to read the boxes of a frame: a [`Query`] selects them, a [`Visit`] receives them.
 //!
-//! The boxes of the lists and of the tree are asked for here and nowhere else. Both are hierarchies: a list has
-//! [runs](super::groups) of neighbours, the tree has nodes. A visitor first sees the bounds of a run or node and skips
-//! all boxes in it if none of them can change its result.
+//! Both the lists and the tree are hierarchies: a list has [runs](super::groups) of neighbours, the tree has
+//! nodes. A visitor gets the bounds of a run or node first, and skips all boxes in it if they cannot change
+//! its result.
 
 use glam::{DVec2, DVec3};
 
@@ -13,7 +13,7 @@ use super::views::ViewPart;
 use crate::base::{Aabb, moved};
 use crate::view::{Depths, Range, Slice};
 
-/// The boxes that are asked for.
+/// Selection of boxes.
 #[derive(Clone, Copy)]
 pub(crate) enum Query<'q> {
     /// All casters, in view or not.
@@ -26,8 +26,8 @@ pub(crate) enum Query<'q> {
     Visible(&'q ViewPart),
     /// Receivers in a part of a view, except boxes whose surfaces face away from the light.
     Lit(&'q ViewPart),
-    /// The boxes of [`Self::Lit`]. Boxes of the list come with [large steps](scattered) between them, and without runs:
-    /// for visitors whose result few boxes that lie apart nearly determine.
+    /// The boxes of [`Self::Lit`]. Listed boxes come with [large steps](scattered) between them and without
+    /// runs, for visitors whose result depends mostly on a few boxes that lie far apart.
     Scattered(&'q ViewPart),
 }
 
@@ -35,16 +35,17 @@ pub(crate) enum Query<'q> {
 #[derive(Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) bounds: Bounds,
-    /// Number of the box: its index in its list, or the number of listed receivers plus its number in the tree.
+    /// Number of the box: its index in its list, or its number in the tree plus the number of listed
+    /// receivers.
     pub(crate) index: usize,
 }
 
-/// Receives the boxes of a query. Boxes of the tree that are asked for by view come about the nearest first.
+/// Receives the boxes of a query. For queries by view, boxes of the tree come roughly nearest first.
 pub(crate) trait Visit {
     /// Returns whether a box within these bounds may still change the result.
     fn wants(&self, bounds: &Bounds) -> bool;
 
-    /// Takes a box. Boxes of a list may come without being wanted.
+    /// Takes a box. Boxes of a list may come even if they are not wanted.
     fn take(&mut self, found: &Found);
 }
 
@@ -53,8 +54,8 @@ pub(crate) trait VisitCorners {
     /// Returns whether a corner within these bounds may still change the result.
     fn wants(&self, bounds: &Bounds) -> bool;
 
-    /// Returns whether a corner of a box may still change the result. Visitors that know the box by its index may
-    /// answer faster.
+    /// Returns whether a corner of a box may still change the result. Visitors that identify the box by its
+    /// index can answer faster.
     #[inline]
     fn wants_box(&self, found: &Found) -> bool {
         self.wants(&found.bounds)
@@ -167,7 +168,8 @@ impl Content<'_> {
     }
 }
 
-/// Passes the boxes of a list to a visitor, except boxes whose index is not `is_in` or that have no `bounds`.
+/// Passes the boxes of a list to a visitor, except boxes whose index is not `is_in` and boxes without
+/// `bounds`.
 #[inline]
 fn visit_list(
     groups: &Groups,
@@ -188,7 +190,7 @@ fn visit_list(
     }
 }
 
-/// View depths of a listed receiver as they are stored.
+/// Returns the view depths of a listed receiver from their stored form.
 #[inline]
 fn depths_of(stored: DVec2) -> Depths {
     Depths { near: stored.x, far: stored.y }

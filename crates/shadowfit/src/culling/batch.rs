@@ -1,11 +1,10 @@
-//! Many shapes against several volumes at once.
+//! Tests many shapes against several volumes at once.
 //!
-//! Shapes are stored in lanes (structure of arrays), so that the compiler turns every loop over
-//! them into vector instructions, on any target. How far a shape reaches along a normal does not
-//! depend on the plane's distance, and the maps of one light share most of their normals, so it is
-//! computed once for each normal. Most shapes lie outside all volumes, so they are first tested
-//! against a few planes around all volumes, the *screen*; those that pass are collected until the
-//! lanes are full.
+//! Shapes are stored in lanes (structure of arrays), so that the compiler vectorises every loop over them on
+//! any target. A shape's support along a normal does not depend on the plane's distance, and the maps of one
+//! light share most of their normals, so it is computed once per normal. Most shapes lie outside all volumes.
+//! So they are first tested against a few planes around all volumes, the *screen*. Shapes that pass are
+//! collected until the lanes are full.
 //!
 //! ```text
 //!    shapes ──▶ lanes ──▶ screen ──few──▶ collected ──▶ lanes ──▶ planes of each volume ──▶ masks
@@ -17,24 +16,23 @@ use glam::{DVec3, Vec3, Vec4};
 use super::shapes::{Bounds, LANES, Lane, Lanes};
 use super::volume::{CasterVolume, widened};
 
-/// Most volumes that one call tests: the bits of a mask.
+/// Greatest number of volumes in a call: the bits of a mask.
 pub(super) const MAX_VOLUMES: usize = 8;
 
-/// Most planes of all volumes together.
+/// Greatest number of planes of all volumes together.
 const MAX_PLANES: usize = MAX_VOLUMES * CasterVolume::MAX_PLANES;
 
-/// Most planes of the screen: a silhouette has no more edges.
+/// Greatest number of planes of the screen: a silhouette has no more edges.
 const MAX_SCREEN: usize = 6;
 
-/// Tests shapes against up to eight volumes: bit i of a shape's mask says whether it may cast a
-/// shadow into map i, with exactly the same results as the tests of
-/// `volumes[i].relative_to(origin)`.
+/// Tests shapes against up to eight volumes. Bit i of a shape's mask is set if the shape may cast a shadow
+/// into map i. The results equal the tests of `volumes[i].relative_to(origin)` exactly.
 ///
-/// `shapes` are in world axes, in metres, relative to `origin` (for [`Boxes`](crate::Boxes):
-/// `cull(volumes, boxes.origin, boxes.boxes, masks)`). Shapes past the length of `masks` and
-/// volumes past the eighth are ignored; masks past the number of shapes are left as they are.
+/// `shapes` are in world axes, in metres, relative to `origin` (for [`Boxes`](crate::Boxes): `cull(volumes,
+/// boxes.origin, boxes.boxes, masks)`). Shapes past the length of `masks` and volumes past the eighth are
+/// ignored. Masks past the number of shapes stay unchanged.
 ///
-/// A call has a fixed cost of about a microsecond for four volumes: give it all shapes at once.
+/// A call has a fixed cost of about a microsecond for four volumes, so pass all shapes at once.
 pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], masks: &mut [u8]) {
     let table = PlaneTable::new(volumes, origin);
     let count = shapes.len().min(masks.len());
@@ -46,7 +44,7 @@ pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], ma
         waiting.pass(&mut block, chunk, start, masks);
     }
     waiting.flush(&mut block, masks);
-    // Shapes that do not fill the lanes are tested directly; the unused lanes are never read.
+    // The remaining shapes do not fill the lanes and skip the screen. The unused lanes are never read.
     let start = count - rest.len();
     waiting.shapes[..rest.len()].copy_from_slice(rest);
     for (waiting, index) in waiting.indices.iter_mut().zip(start..count) {
@@ -56,7 +54,7 @@ pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], ma
     waiting.flush(&mut block, masks);
 }
 
-/// Shapes that passed the screen, and where their masks go.
+/// Shapes that passed the screen, with the indices of their masks.
 struct Waiting<S> {
     shapes: [S; LANES],
     indices: [usize; LANES],
@@ -64,8 +62,8 @@ struct Waiting<S> {
 }
 
 impl<S: Bounds> Waiting<S> {
-    /// Screens a chunk whose masks begin at `start`: tests it directly, or collects the shapes that
-    /// pass.
+    /// Screens a chunk whose masks begin at `start`. Tests the chunk directly if many shapes pass, otherwise
+    /// collects them.
     fn pass(&mut self, block: &mut Block<S>, chunk: &[S; LANES], start: usize, masks: &mut [u8]) {
         block.load(chunk);
         let passed = block.screen();
@@ -105,7 +103,7 @@ struct Passed {
     count: usize,
 }
 
-/// Shapes in lanes, with what has been computed for them.
+/// Shapes in lanes, with their intermediate results.
 struct Block<'a, S: Bounds> {
     table: &'a PlaneTable,
     lanes: S::Lanes,
@@ -115,7 +113,7 @@ struct Block<'a, S: Bounds> {
     least: [Lane; MAX_VOLUMES],
     /// Whether all lanes of the last block were outside the screen.
     was_outside: bool,
-    /// Plane of the screen to begin with.
+    /// Index of the screen's plane to test first.
     first_plane: usize,
 }
 
@@ -126,17 +124,16 @@ impl<'a, S: Bounds> Block<'a, S> {
         Self { table, lanes, slack, reach, least, was_outside: false, first_plane: 0 }
     }
 
-    /// Puts shapes into the lanes.
+    /// Loads shapes into the lanes.
     fn load(&mut self, shapes: &[S; LANES]) {
         gather::<S>(shapes, &mut self.lanes);
         slacks::<S>(&self.lanes, &mut self.slack);
     }
 
-    /// The lanes that are inside the screen.
+    /// Returns the lanes that are inside the screen.
     ///
-    /// Neighbours in a list are often neighbours in the world. Where one whole block was outside,
-    /// the next one starts with the plane that decided the last, and stops as soon as all of it is
-    /// outside.
+    /// Neighbours in a list are often neighbours in the world. If a whole block was outside, the next one
+    /// starts with the plane that decided the last, and stops as soon as all of it is outside.
     fn screen(&mut self) -> Passed {
         let screen = &self.table.screen[..self.table.screen_count];
         let least = &mut self.least[0];
@@ -153,7 +150,7 @@ impl<'a, S: Bounds> Block<'a, S> {
         mark(least, &self.slack, 1, &mut bits);
         let mut passed = Passed { lanes: [0; LANES], count: 0 };
         for (lane, bit) in bits.iter().enumerate() {
-            // Written unconditionally and overwritten later: a branch here would be unpredictable.
+            // Written unconditionally and overwritten later, because a branch here would be unpredictable.
             passed.lanes[passed.count] = lane as u8;
             passed.count += usize::from(*bit);
         }
@@ -161,7 +158,7 @@ impl<'a, S: Bounds> Block<'a, S> {
         passed
     }
 
-    /// Measures all lanes against the planes of all volumes.
+    /// Computes the distances of all lanes to the planes of all volumes.
     fn test(&mut self) {
         let Self { table, lanes, reach, least, .. } = self;
         let volumes = &mut least[..table.volume_count];
@@ -176,7 +173,7 @@ impl<'a, S: Bounds> Block<'a, S> {
         }
     }
 
-    /// The masks of all lanes.
+    /// Returns the masks of all lanes.
     fn results(&self) -> [u8; LANES] {
         let mut bits = [0; LANES];
         for (volume, least) in self.least[..self.table.volume_count].iter().enumerate() {
@@ -186,8 +183,8 @@ impl<'a, S: Bounds> Block<'a, S> {
     }
 }
 
-// The loops over the lanes. Each is a function of its own: when they are inlined into each other,
-// the compiler splits them into scalar operations.
+// The loops over the lanes. Each is a separate function, because the compiler turns them into scalar
+// operations when they are inlined into each other.
 
 #[inline(never)]
 fn gather<S: Bounds>(shapes: &[S; LANES], lanes: &mut S::Lanes) {
@@ -216,7 +213,7 @@ fn nearer(reach: &Lane, d: f32, least: &mut Lane) {
     }
 }
 
-/// Sets a bit where a lane is not behind a plane.
+/// Sets a bit for lanes that are not behind a plane.
 #[inline(never)]
 fn mark(least: &Lane, slack: &Lane, bit: u8, bits: &mut [u8; LANES]) {
     for ((bits, least), slack) in bits.iter_mut().zip(least).zip(slack) {
@@ -224,14 +221,14 @@ fn mark(least: &Lane, slack: &Lane, bit: u8, bits: &mut [u8; LANES]) {
     }
 }
 
-/// Whether all lanes are behind a plane.
+/// Returns whether all lanes are behind a plane.
 #[inline(never)]
 fn are_behind(least: &Lane, slack: &Lane) -> bool {
-    // Counts all lanes: an early exit would keep the loop from being vectorised.
+    // Counts all lanes, because an early exit would prevent vectorisation.
     least.iter().zip(slack).map(|(least, slack)| u32::from(*least < -*slack)).sum::<u32>() == LANES as u32
 }
 
-/// The lesser of two distances. NaN is ignored: such a shape counts as touching.
+/// Returns the lesser of two distances. Ignores NaN, so that shapes with NaN count as touching.
 fn lesser(least: f32, distance: f32) -> f32 {
     if distance < least { distance } else { least }
 }
@@ -240,10 +237,10 @@ fn lesser(least: f32, distance: f32) -> f32 {
 struct PlaneTable {
     normals: [Vec3; MAX_PLANES],
     normal_count: usize,
-    /// The planes' d for each normal and volume; infinite where a volume has no such plane.
+    /// The planes' d for each normal and volume. Infinite if a volume has no such plane.
     offsets: [[f32; MAX_VOLUMES]; MAX_PLANES],
     volume_count: usize,
-    /// Planes that hold all volumes.
+    /// Planes around all volumes.
     screen: [Vec4; MAX_SCREEN],
     screen_count: usize,
 }
@@ -269,7 +266,7 @@ impl PlaneTable {
         table
     }
 
-    /// Index of a normal in the list; adds it if it is new.
+    /// Returns the index of a normal in the list. Adds it if it is new.
     fn normal_index(&mut self, normal: Vec3) -> usize {
         let known = self.normals[..self.normal_count].iter().position(|known| *known == normal);
         known.unwrap_or_else(|| {
@@ -279,7 +276,7 @@ impl PlaneTable {
         })
     }
 
-    /// Takes the first normals that all volumes have.
+    /// Selects the first normals that all volumes share.
     fn find_screen(&mut self) {
         for (normal, offsets) in self.normals[..self.normal_count].iter().zip(&self.offsets) {
             let farthest = offsets[..self.volume_count].iter().fold(f32::MIN, |d, other| d.max(*other));

@@ -1,8 +1,8 @@
-//! Which casters a shadow pass has to draw.
+//! Culling: the casters that a shadow pass has to draw.
 //!
-//! A [`CasterVolume`] is a convex volume as planes: either all that a map can store, or the part of
-//! it that can cast a shadow into view. Tests against it are conservative: they may keep a caster
-//! whose shadow is not visible, but never cull one whose shadow is.
+//! A [`CasterVolume`] is a convex volume, given by planes. It contains either all casters that a map can
+//! store, or only the casters that can cast a shadow into view. Tests are conservative: they may keep a
+//! caster without a visible shadow, but never cull one with a visible shadow.
 
 mod batch;
 mod readers;

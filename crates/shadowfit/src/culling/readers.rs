@@ -1,8 +1,8 @@
-//! The casters that each of several maps needs for what the views see.
+//! Caster volumes of several maps: the casters that each map needs for the visible shadows.
 //!
-//! A map that is drawn anew in each frame needs only the casters that can cast a shadow on a point that reads it: those
-//! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
-//! points look for a map.
+//! A map that is redrawn in each frame needs only the casters that can shadow a point that reads it. They lie
+//! in the part of the view that reads the map, swept toward the light. The order in which points look for a
+//! map determines this part.
 
 use glam::{DVec2, DVec3, DVec4, Vec3};
 
@@ -18,32 +18,34 @@ use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapSelection};
 use crate::view::ViewFrustum;
 
-/// From where maps are read: what the positions and view depths in a shader are counted from.
+/// The origin of positions and view depths in a shader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reader {
     /// World position that the shader's positions are relative to, in metres.
     pub origin: DVec3,
-    /// World position of the eye that view depths are counted from, in metres.
+    /// World position of the eye that view depths are measured from, in metres.
     pub eye: DVec3,
-    /// Unit direction in which that eye looks, world axes.
+    /// Unit viewing direction of that eye, in world axes.
     pub forward: Vec3,
 }
 
 impl Reader {
-    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
+    /// Returns a reader whose positions and view depths are relative to an eye with the unit viewing
+    /// direction `forward` (world axes).
     pub const fn from_eye(eye: DVec3, forward: Vec3) -> Self {
         Self { origin: eye, eye, forward }
     }
 }
 
-/// Greatest rounding error of texture coordinates in a shader, as a share of the terms that they are summed from:
-/// eight roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
+/// Greatest rounding error of texture coordinates in a shader, as a share of their summed terms: eight
+/// roundings of 2⁻²⁴, two for the position, one each for the matrix and the product, and four for the sum.
 const UV_ROUNDING: f64 = 8.0 * UNIT;
 
 impl FittedMaps {
-    /// The casters of each map: those that can cast a shadow, through this map, on what `views` see, relative to the
-    /// map's [origin](LightProjection::origin). `views` are those of the fit; positions and view depths are counted from the
-    /// first one's eye. Volumes beyond the number of maps hold nothing. See [`caster_volumes`].
+    /// Returns the caster volume of each map: all casters that can cast a shadow, through this map, on a
+    /// visible point. Each is relative to the map's [origin](LightProjection::origin). `views` are the views
+    /// of the fit. Positions and view depths are relative to the first view's eye. Volumes beyond the number
+    /// of maps are empty. See [`caster_volumes`].
     ///
     /// ```
     /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -74,7 +76,7 @@ impl FittedMaps {
     ///
     /// # Errors
     ///
-    /// [`FitError::NoView`] without a view, and those of [`CasterVolume::swept`].
+    /// Returns [`FitError::NoView`] without a view, and the errors of [`CasterVolume::swept`].
     pub fn caster_volumes(
         &self,
         views: &[ViewFrustum],
@@ -89,27 +91,28 @@ impl FittedMaps {
     }
 }
 
-/// Writes the casters of each map: those that can cast a shadow, through this map, on what `views` see. The shadows in
-/// view stay the same when only these are drawn. `views` are all that is drawn with these maps, up to the cameras' far
-/// planes; `reading` and `reader` say how and from where the maps are read. Each volume is relative to its map's
-/// [origin](LightProjection::origin). Maps past [`MAX_MAPS`], and those without a place in `volumes`, are left out.
+/// Computes the caster volume of each map: all casters that can cast a shadow, through this map, on a visible
+/// point. Drawing only these casters does not change the visible shadows. `views` must be all views that read
+/// these maps, up to the cameras' far planes. `reading` describes the look-up, and `reader` the origin of
+/// positions and view depths. Each volume is relative to its map's [origin](LightProjection::origin). Maps
+/// past [`MAX_MAPS`] or past the end of `volumes` are ignored.
 ///
-/// The volumes serve maps with depth clamp and without: nothing bounds them toward the light
-/// ([`CasterVolume::cut_at_near_plane`] does). They are for maps that are drawn anew in each frame: a map that is kept,
-/// or [scrolled](crate::scroll::Scroll), shows casters to later frames too, so that it needs
+/// The volumes serve maps with and without depth clamp, because they are unbounded toward the light
+/// ([`CasterVolume::cut_at_near_plane`] bounds them). They are for maps that are redrawn in each frame. A
+/// kept or [scrolled](crate::scroll::Scroll) map shows casters to later frames too, so it needs
 /// [`CasterVolume::of_map`].
 ///
-/// By coverage a map serves every point that it holds, unless a finer map provably holds it: points up to some view
-/// depth, at most.
+/// With selection by coverage, a map serves every point that it covers, unless a finer map provably covers
+/// it. The finer maps provably cover all points up to some view depth.
 ///
-/// By view depth a point reads the first map that ends beyond its view depth and covers it. So a map is read from where
-/// the map in front of it ends, or begins to be blended into it; but if no map in front of it provably covers the whole
-/// of some nearer slice of the views, the map counts as read from that slice on: a map that is fitted to receivers alone
-/// does not cover whole slices, and a point that it leaves out reads the next one.
+/// With selection by view depth, a point reads the first map that ends beyond its view depth and covers it.
+/// So a map is read from the end of the map in front of it, or from the start of the blend into it. A map
+/// that is fitted only to receivers does not cover whole slices of the views, and points outside it read the
+/// next map. So if no map in front provably covers a nearer slice, the map counts as read from that slice on.
 ///
 /// # Errors
 ///
-/// Those of [`CasterVolume::swept`]. The maps before the one that fails have their volumes then.
+/// Returns the errors of [`CasterVolume::swept`]. The maps before the failing one then have their volumes.
 pub fn caster_volumes(
     maps: &[FittedMap],
     reading: &MapReading,
@@ -138,7 +141,7 @@ pub fn caster_volumes(
     Ok(())
 }
 
-/// The casters of a map that the views read at these depths, if at any.
+/// Returns the casters of a map that the views read at these depths. Empty volume for `None`.
 fn swept(
     map: &FittedMap,
     read: Option<DepthSpan>,
@@ -157,7 +160,7 @@ fn swept(
     })
 }
 
-/// The view depths at which points read a map, in metres.
+/// The view depths of the points that read a map, in metres.
 #[derive(Clone, Copy, Debug)]
 struct DepthSpan {
     near: f32,
@@ -168,40 +171,40 @@ impl DepthSpan {
     const ALL: Self = Self { near: f32::MIN, far: f32::MAX };
 }
 
-/// Finds which part of the views reads a map by view depth.
+/// Finds the part of the views that reads a map by view depth.
 struct Readers<'a> {
     maps: &'a [FittedMap],
     reader: &'a Reader,
     views: &'a [ViewFrustum],
-    /// Greatest difference between a visible point's view depth in the shader and in its frustum, in metres.
+    /// Greatest difference of a visible point's view depth between the shader and its frustum, in metres.
     mismatch: f64,
 }
 
 impl Readers<'_> {
-    /// The view depths at which a point may read a map; `None` where none can.
+    /// Returns the view depths of the points that may read a map, or `None` if there are none.
     fn read(&self, index: usize) -> Option<DepthSpan> {
         let is_read_from = |from: &usize| {
             let slice = self.slice(*from);
             slice.near < slice.far && !(*from..index).any(|map| self.covers(map, slice))
         };
         let first = (0..=index).find(is_read_from)?;
-        // Nearer points may be blended into it.
+        // Nearer points may be blended into the map.
         let near = self.slice(first).near.min(self.maps[index].shader_blend_start());
         Some(DepthSpan { near, far: self.end(index) })
     }
 
-    /// The view depths whose points look into a map first.
+    /// Returns the view depths of the points that try a map first.
     fn slice(&self, index: usize) -> DepthSpan {
         let near = if index == 0 { f32::MIN } else { self.end(index - 1) };
         DepthSpan { near, far: self.end(index) }
     }
 
-    /// View depth at which a map ends.
+    /// Returns the view depth at a map's end.
     fn end(&self, index: usize) -> f32 {
         self.maps[index].shader_end()
     }
 
-    /// A slice, widened by the depths that rounding or another eye may move into it.
+    /// Returns a slice, widened by the depths that rounding or another eye may move into it.
     fn widened(&self, slice: DepthSpan) -> DepthSpan {
         let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * f64::from(VIEW_DEPTH_ROUNDING);
         let bounded = |depth: f64| depth.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
@@ -211,26 +214,27 @@ impl Readers<'_> {
         }
     }
 
-    /// Whether a map provably holds everything that the views have in a slice, by a shader's test.
+    /// Returns whether a map provably covers everything in a slice of the views, by the shader's test.
     fn covers(&self, index: usize, slice: DepthSpan) -> bool {
         let fit = self.maps[index].projection.relative_to(self.reader.origin);
         holds_slice(&fit, self.reader, self.views, self.widened(slice), 0.0)
     }
 }
 
-/// Returns whether a map, relative to the reader's origin, provably holds everything that the views have in a span of view
-/// depths, with `free` texels around it.
+/// Returns whether a map, relative to the reader's origin, provably holds everything in a span of view depths
+/// of the views, with `free` texels around it.
 ///
-/// **Lemma.** A map holds a slice of a view if it holds the slice's eight corners with room for the greatest rounding at
-/// the corners. For a slice is the convex hull of its corners, and a map is a box, so that each side has the whole slice
-/// on its inner side if it has the corners there. The rounding of a point is bounded by a sum of absolute values of terms
-/// that are linear in the point. That is a convex function, so that no point of the slice has a greater bound than all
-/// corners. [Proofs](crate::proof) of coverage use the lemma for boxes that are clipped to slices.
+/// **Lemma.** A map holds a slice of a view if it holds the slice's eight corners with room for the greatest
+/// rounding at the corners. Proof: A slice is the convex hull of its corners, and a map is a box. So the
+/// whole slice is on the inner side of each side of the map if the corners are. The rounding of a point is
+/// bounded by a sum of absolute values of terms that are linear in the point. This bound is a convex
+/// function, so it is greatest at a corner. [Proofs](crate::proof) of coverage use the lemma for boxes that
+/// are clipped to slices.
 fn holds_slice(fit: &LightProjection, reader: &Reader, views: &[ViewFrustum], span: DepthSpan, free: f64) -> bool {
     views.iter().all(|frustum| {
         let offset = frustum.origin - reader.origin;
         let holds = |corner: &Vec3| holds_point(fit, corner.as_dvec3() + offset, free);
-        // A view without a part between these depths has no point to be held.
+        // A view without a part between these depths has no points to hold.
         frustum.slice(span.near, span.far).map_or(true, |part| part.corners.iter().all(holds))
     })
 }
@@ -246,8 +250,8 @@ fn holds_point(fit: &LightProjection, point: DVec3, free: f64) -> bool {
     uv.cmpge(border).all() && uv.cmple(DVec3::ONE - border).all()
 }
 
-/// How far the view depth of a point in a frustum may be from that of the shader, which counts it from another eye or
-/// along another direction, in metres.
+/// Returns the greatest difference between a point's view depth in a frustum and in the shader, in metres.
+/// The shader may measure from another eye or along another direction.
 fn depth_mismatch(reader: &Reader, frustum: &ViewFrustum) -> f64 {
     let own = frustum.forward.as_dvec3();
     let (forward, own) = (reader.forward.as_dvec3(), own / checks::length(own));
@@ -255,44 +259,47 @@ fn depth_mismatch(reader: &Reader, frustum: &ViewFrustum) -> f64 {
     checks::length(forward - own) * farthest + (frustum.origin - reader.eye).dot(forward).abs()
 }
 
-/// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
-/// its own depth wherever the filter looks, and falls by the tangent of its slope; biases that are negative move the
-/// point itself.
+/// Returns the greatest depth of a comparison below a point, along the light, in metres. With a
+/// receiver-plane bias, the filter compares at the plane's own depth, which falls by the tangent of the
+/// slope. Negative biases move the point itself.
 fn depth_below(map: &FittedMap, reach: FilterRadius) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
     let (bias, range) = (map.bias, f64::from(map.projection.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
     let size = map.projection.texel_size.as_dvec2();
     let texel = libm::sqrt(size.x * size.x + size.y * size.y);
-    // Look-ups lie a texel less far away than the texels that they read; at the map's border they move by half of one.
+    // Look-ups lie a texel less far away than the texels that they read. At the map's border they move by
+    // half a texel.
     let disc = (reach.disc * map.projection.texel_size).max_element();
     let aside = f64::from((reach.taps - 1.0).max(0.5)) * texel + f64::from(disc + bias.normal_offset.abs());
     let plane = if bias.receiver_plane == 0.0 { 0.0 } else { aside + away(bias.receiver_plane) * texel };
     (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
 }
 
-/// A swept volume that reaches deeper along the light, in metres, but not below what the map stores.
+/// Returns a swept volume, extended along the light by a depth in metres, but not beyond the map's stored
+/// range.
 fn lowered(mut volume: CasterVolume, fit: &LightProjection, depth: f64) -> CasterVolume {
-    // Its planes are four sides and the far one.
+    // Its planes are the four sides and the far plane.
     let stored = CasterVolume::of_map(fit, CasterPolicy::DepthClamp);
     let to_light: Vec3 = -fit.direction;
     let planes = volume.planes.iter_mut().take(volume.count as usize);
     for plane in planes.filter(|plane| !stored.active_planes().contains(plane)) {
         let upward = f64::from(plane.truncate().dot(to_light).max(0.0));
-        // Biases may be of any size, planes stay finite.
+        // Biases may have any size, but planes must stay finite.
         plane.w = (plane.w + (upward * depth) as f32).min(f32::MAX);
     }
     volume
 }
 
-/// Halvings of the views' depths in the search for what a finer map holds: to a four thousandth of them.
+/// Number of halvings of the views' depths in the search for the part that a finer map holds. The result is
+/// exact to 1/4096 of the depths.
 const HALVINGS: u32 = 12;
 
-/// For each map the view depths, in metres, from which points of the views read it, in the order of `maps`; `None`
-/// where no point does.
+/// Returns the least view depth, in metres, of the points that read each map, in the order of `maps`. `None`
+/// if no point reads it.
 ///
-/// Points nearer than that are held by a finer map, with the filter's reach and the blend, whatever a shader rounds.
-/// From there on a map is read at any depth, wherever it holds a point that the finer ones leave out.
+/// A finer map holds all nearer points, with the filter's radius and the blend, for any rounding in a shader.
+/// From this depth on, a map is read by all points that it covers and the finer maps do not.
 fn read_by_coverage(
     maps: &[FittedMap],
     reader: &Reader,
@@ -310,15 +317,16 @@ fn read_by_coverage(
     from
 }
 
-/// How much of the views finer maps hold.
+/// The part of the views that finer maps hold.
 enum Held {
-    /// All up to a view depth, in metres.
+    /// Everything up to a view depth, in metres.
     To(f32),
-    /// All.
+    /// Everything.
     Whole,
 }
 
-/// Finds up to which view depth a map holds everything that the views have from `from` on, with `free` texels around it.
+/// Finds the view depth up to which a map holds everything in the views from `from` on, with `free` texels
+/// around it.
 fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> Held {
     let fit = map.projection.relative_to(reader.origin);
     let holds = |far: f32| holds_slice(&fit, reader, views, DepthSpan { near: from, far }, free);
@@ -333,7 +341,7 @@ fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, f
         let middle = held + (beyond - held) * 0.5;
         *(if holds(middle) { &mut held } else { &mut beyond }) = middle;
     }
-    // If it holds nothing, no depth has been found.
+    // If the map holds nothing, the search has found no depth.
     Held::To(if held > near { held } else { from })
 }
 
@@ -348,14 +356,14 @@ mod tests {
     const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
     const ENDS: [f32; 3] = [5.0, 20.0, f32::MAX];
 
-    /// The view of a camera with a vertical field of view, in radians.
+    /// Returns the view of a camera with a vertical field of view, in radians.
     fn frustum(fov_y: f32) -> ViewFrustum {
         let (forward, up) = (Vec3::NEG_Z, Vec3::Y);
         let camera = PerspectiveCamera { eye: DVec3::ZERO, forward, up, fov_y, aspect: 1.6, near: 0.1, far: 60.0 };
         camera.frustum().expect("a camera")
     }
 
-    /// Maps around the slices of a view.
+    /// Returns maps around the slices of a view.
     fn maps(view: &ViewFrustum) -> Vec<FittedMap> {
         let mut near = f32::MIN;
         let map = |far: f32| {
@@ -371,7 +379,7 @@ mod tests {
         MapReading { selection, ..Technique::default().reading() }
     }
 
-    /// Where each map begins to be read, in metres.
+    /// Returns the least view depth of the points that read each map, in metres.
     fn read_from(maps: &[FittedMap], views: &[ViewFrustum]) -> Vec<Option<f32>> {
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let readers = Readers { maps, reader: &reader, views, mismatch: 0.0 };
@@ -383,9 +391,9 @@ mod tests {
         let view = frustum(0.9);
         let mut maps = maps(&view);
         assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(5.0), Some(20.0)]);
-        // Wider than what the maps were fitted to: none covers its slice.
+        // This view is wider than the view of the fits, so no map covers its slice.
         assert_eq!(read_from(&maps, &[view, frustum(1.1)]), [Some(f32::MIN); 3]);
-        // The second one leaves out its sides, so that the last one is read in both of their slices.
+        // The second map lacks the sides of its slice, so the last one is read in both slices.
         maps[1].projection = self::maps(&frustum(0.5))[1].projection;
         assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(5.0), Some(5.0)]);
     }
@@ -418,16 +426,17 @@ mod tests {
             let from = read_by_coverage(maps, &reader, views, &reading);
             from[..maps.len()].to_vec()
         };
-        // The order is that of the texels' sizes, whatever the order of the maps; a map holds its slice and the filter.
+        // Maps are ordered by texel size, in any order of the list. A map holds its slice and the filter
+        // around it.
         let read = from(&[c, a, b], &[view], 0.0);
         assert_eq!(read[1], Some(f32::MIN));
         let near = |index: usize, depth: f32| read[index].is_some_and(|from| (from / depth - 1.0).abs() < 1e-2);
         assert!(near(2, 5.0) && near(0, 20.0), "{read:?}");
-        // With a blend its slice alone is not enough.
+        // With a blend, holding the slice alone is not enough.
         assert!(from(&[a, b, c], &[view], 8.0)[1].is_some_and(|from| from < 4.9));
         // Another view, beside the maps.
         assert_eq!(from(&[a, b, c], &[view, frustum(1.5)], 0.0), [Some(f32::MIN); 3]);
-        // A map of the whole view leaves nothing to coarser ones, and one that is empty holds nothing.
+        // A map of the whole view leaves no points to coarser maps. An empty map holds no points.
         let light = fit(&view, DIRECTION, &FitSettings::default()).expect("a fit");
         let whole = FittedMap::new(light, Bias::default());
         let mut coarse = whole;
@@ -454,7 +463,7 @@ mod tests {
             depth_mismatch(&Reader { eye, ..Reader::from_eye(DVec3::ZERO, forward) }, &frustum)
         };
         assert_eq!(from(DVec3::ZERO, Vec3::NEG_Z), 0.0);
-        // The other eye of a headset sees the same depths.
+        // The other eye of a headset has the same view depths.
         assert_eq!(from(DVec3::X * 0.03, Vec3::NEG_Z), 0.0);
         assert_eq!(from(DVec3::Z * 10.0, Vec3::NEG_Z), 10.0);
         assert!(from(DVec3::ZERO, Vec3::Z) > 120.0);

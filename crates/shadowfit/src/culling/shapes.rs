@@ -1,24 +1,24 @@
-//! Shapes that are tested against a caster volume, each by its support: how far it reaches along a
+//! Shapes for tests against a caster volume. The tests use a shape's support: its greatest extent along a
 //! direction.
 //!
-//! The single and the batched tests use the same operations in the same order, so that both give
-//! the same result to the last bit.
+//! The single and the batched tests use the same operations in the same order, so that their results are
+//! equal to the last bit.
 
 use glam::{Mat4, Vec3};
 
 use crate::base::Aabb;
 use crate::base::checks::UNIT;
 
-/// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴.
-/// A test has at most ten operations in f32; the planes' normals are rounded once, and are off by
-/// two more roundings along the light.
+/// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴. A test has
+/// at most ten operations in f32. The planes' normals are rounded once, and have two more roundings along the
+/// light.
 pub(super) const TEST_ROUNDING: f32 = 16.0 * UNIT as f32;
 
-/// Shapes that are tested together. Loops this long are not unrolled, which keeps them simple
-/// enough for every compiler to vectorise, and all lanes stay in the innermost cache.
+/// Number of shapes that are tested together. Loops of this length are not unrolled, so every compiler can
+/// vectorise them, and all lanes stay in the innermost cache.
 pub(super) const LANES: usize = 64;
 
-/// A sphere around a caster, relative to an origin that the user of the sphere defines.
+/// A bounding sphere of a caster, relative to an origin that its user defines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -26,12 +26,11 @@ pub(super) const LANES: usize = 64;
 pub struct Sphere {
     /// Centre in world axes, in metres.
     pub centre: Vec3,
-    /// Radius in metres; a sphere with a negative radius is empty.
+    /// Radius in metres. A sphere with a negative radius is empty.
     pub radius: f32,
 }
 
-/// A box around a caster that may be turned (or sheared), relative to an origin that the user of
-/// the box defines.
+/// A bounding box of a caster that may be rotated (or sheared), relative to an origin that its user defines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -39,13 +38,13 @@ pub struct Sphere {
 pub struct OrientedBox {
     /// Centre in world axes, in metres.
     pub centre: Vec3,
-    /// From the centre to the middles of three faces, in world axes, in metres.
+    /// Vectors from the centre to the middles of three faces, in world axes, in metres.
     pub half_axes: [Vec3; 3],
 }
 
 impl OrientedBox {
-    /// A box in local space, moved by an affine transform. Perspective is not applied; an empty box
-    /// becomes one that touches everything.
+    /// Returns a box in local space, moved by an affine transform. Perspective is not applied. An empty box
+    /// becomes a box that touches everything.
     pub fn from_local(world_from_local: &Mat4, local: &Aabb) -> Self {
         if local.is_empty() {
             return Self { centre: Vec3::NAN, half_axes: [Vec3::NAN; 3] };
@@ -72,28 +71,28 @@ mod sealed {
 
     use super::LANES;
 
-    /// What the tests need of a shape.
+    /// Operations of a shape that the tests need.
     pub trait Shape: Copy {
         /// Several shapes, as a structure of arrays.
         type Lanes: Lanes<Self>;
 
-        /// Greatest n·p of its points.
+        /// Returns the greatest n·p of its points.
         fn support(&self, normal: Vec3) -> f32;
 
-        /// Rounding error that the support may have; negative infinity for an empty shape, NaN or
-        /// infinite where one of the shape's numbers is.
+        /// Returns the greatest rounding error of the support. Negative infinity for an empty shape, NaN or
+        /// infinite if one of the shape's numbers is.
         fn slack(&self) -> f32;
     }
 
-    /// The same for several shapes.
+    /// Operations on several shapes.
     pub trait Lanes<S>: Default {
         /// Fills the lanes.
         fn gather(&mut self, shapes: &[S; LANES]);
 
-        /// Passes on [`Shape::support`] of each lane.
+        /// Calls `put` with [`Shape::support`] of each lane.
         fn support(&self, normal: Vec3, put: impl FnMut(usize, f32));
 
-        /// Passes on [`Shape::slack`] of each lane.
+        /// Calls `put` with [`Shape::slack`] of each lane.
         fn slack(&self, put: impl FnMut(usize, f32));
     }
 }
@@ -129,13 +128,13 @@ impl Points {
     }
 }
 
-/// The dot product, in one order of operations for all.
+/// Computes the dot product, always in the same order of operations.
 #[inline]
 fn dot(n: Vec3, x: f32, y: f32, z: f32) -> f32 {
     n.x * x + n.y * y + n.z * z
 }
 
-/// Sum of the magnitudes of a vector's numbers.
+/// Returns the sum of the absolute values of a vector's components.
 #[inline]
 fn sum(v: Vec3) -> f32 {
     v.x.abs() + v.y.abs() + v.z.abs()
@@ -180,7 +179,7 @@ impl Lanes<Aabb> for AabbLanes {
 
     #[inline]
     fn support(&self, n: Vec3, mut put: impl FnMut(usize, f32)) {
-        // The same corner of all boxes, so that there is no branch inside the loop.
+        // Uses the same corner of all boxes, so that the loop has no branch.
         let x = if n.x < 0.0 { &self.min.x } else { &self.max.x };
         let y = if n.y < 0.0 { &self.min.y } else { &self.max.y };
         let z = if n.z < 0.0 { &self.min.z } else { &self.max.z };

@@ -1,8 +1,7 @@
 //! The volume that can cast shadows into a slice of the view: the slice swept toward the light.
 //!
-//! It is bounded by the slice's planes that face away from the light, and by one plane along the
-//! light through each edge of the slice's outline as the light sees it (its silhouette). Nothing
-//! bounds it toward the light.
+//! Its planes are the slice's planes that face away from the light, and one plane along the light through
+//! each silhouette edge of the slice as seen from the light. It is unbounded toward the light.
 //!
 //! ```text
 //!      │ toward the light │
@@ -15,8 +14,8 @@
 //!            facing away: these planes bound the volume below
 //! ```
 //!
-//! The choice of normals decides only how tight the volume is: every plane is moved out until all
-//! corners of the slices are inside, and further by the reach of the filter.
+//! The choice of normals affects only how tight the volume is. Every plane is moved outward until all corners
+//! of the slices are inside, and further by the filter radius.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -28,32 +27,32 @@ use crate::bias::FilterRadius;
 use crate::projection::LightProjection;
 use crate::view::{Slice, View, ViewFrustum};
 
-/// Which receivers read a map, and how far around them.
+/// The receivers that read a map, and the radius of the filter around them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep<'a> {
     /// The views that read the map.
     pub views: &'a [ViewFrustum],
-    /// View depth from which they read it, in metres. Default: `f32::MIN`, from the nearest on.
+    /// Least view depth of the receivers, in metres. Default: `f32::MIN`, no limit.
     pub near: f32,
-    /// View depth up to which they read it, in metres. Default: `f32::MAX`, to the farthest.
+    /// Greatest view depth of the receivers, in metres. Default: `f32::MAX`, no limit.
     pub far: f32,
-    /// Radius of the filter. A penumbra search counts as a disc, see [`FilterRadius::over_disc`]; the
-    /// texel that a caster's edge is rasterised to is added to it. Default: [`FilterRadius::HARDWARE_2X2`].
+    /// Radius of the filter. A penumbra search counts as a disc, see [`FilterRadius::over_disc`]. The sweep
+    /// adds one texel, because the edge of a caster is rasterised to whole texels. Default:
+    /// [`FilterRadius::HARDWARE_2X2`].
     pub filter_radius: FilterRadius,
-    /// How far from the receiver, in any direction, the looked-up point may lie, in metres:
-    /// [`Bias::normal_offset`](crate::Bias::normal_offset), and any other offset of the shader.
-    /// Default: 0.
+    /// Greatest distance between receiver and look-up point, in any direction, in metres:
+    /// [`Bias::normal_offset`](crate::Bias::normal_offset) plus any other offset of the shader. Default: 0.
     pub normal_offset: f32,
 }
 
 impl<'a> Sweep<'a> {
-    /// Views that read the map at every depth with the hardware's 2×2 filter and without a normal
-    /// offset.
+    /// Returns a sweep for views that read the map at every depth, with the hardware's 2×2 filter and no
+    /// normal offset.
     pub const fn new(views: &'a [ViewFrustum]) -> Self {
         Self { views, near: f32::MIN, far: f32::MAX, filter_radius: FilterRadius::HARDWARE_2X2, normal_offset: 0.0 }
     }
 
-    /// Refuses values that are not finite or out of range.
+    /// Returns an error for values that are not finite or out of range.
     fn checked(&self) -> Result<(), FitError> {
         let Self { near, far, .. } = *self;
         checks::finite("the sweep's near distance", f64::from(near))?;
@@ -70,36 +69,37 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// What the texel that a caster's edge is rasterised to adds to the filter's reach, in texels.
+/// Texel that a caster's edge is rasterised to. It adds to the filter radius, in texels.
 const RASTER_TEXELS: f32 = 1.0;
 
-/// Edges of the outline that are kept of several views; that of one view has no more.
+/// Greatest number of outline edges for several views. The outline of one view never has more.
 const MAX_OUTLINE: usize = 6;
 
-/// Storage for the outline of several views: enough for any 15 of them.
+/// Storage elements for the outline of several views: enough for any 15 views.
 const OUTLINE_STORAGE: usize = 256;
 
 impl CasterVolume {
-    /// Every caster that can cast a shadow through a map on what views see of it, relative to the
-    /// fit's origin.
+    /// Returns the volume of all casters that can cast a shadow, through a map, on a visible point. It is
+    /// relative to the fit's origin.
     ///
-    /// [`FittedMaps::caster_volumes`](crate::FittedMaps::caster_volumes) sweeps the depths of all
-    /// maps. The depths must be those at which the shader reads this map: by view depth as there, or,
-    /// where the shader reads the first map that covers a point, all depths from which this map may be
-    /// read, in doubt the whole range.
+    /// [`FittedMaps::caster_volumes`](crate::FittedMaps::caster_volumes) computes the volumes of all maps.
+    /// The depths must include the view depths of all points that read this map. If the shader selects maps
+    /// by view depth, this is the map's own range. If it reads the first map that covers a point, use all
+    /// depths at which it may read this map, or the whole range if in doubt.
     ///
-    /// The planes are those of the view's slice that face away from the light, its silhouette
-    /// edges swept along the light, the map's far plane and its four sides. For one view that is
-    /// the exact sweep, widened by the reach; several views share an outline of at most six edges
-    /// around them all. No plane bounds the volume toward the light, so that it serves maps with
-    /// depth clamp too; [`Self::cut_at_near_plane`] adds the map's own.
+    /// The planes are the planes of the view's slice that face away from the light, its silhouette edges
+    /// swept along the light, the map's far plane and its four sides. For one view this is the exact sweep,
+    /// widened by the filter radius. Several views share an outline of at most six edges around them all. The
+    /// volume is unbounded toward the light, so that it serves maps with depth clamp too.
+    /// [`Self::cut_at_near_plane`] adds the map's near plane.
     ///
-    /// A range of depths in which no view has a part gives the empty volume.
+    /// If no view has a part in the range of depths, the volume is empty.
     ///
     /// # Errors
     ///
-    /// [`FitError::NoView`]; [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the depths,
-    /// the reach and the offset; [`FitError::NearNotBelowFar`]; those of an invalid frustum.
+    /// Returns [`FitError::NoView`] without a view, [`FitError::NotFinite`] and [`FitError::OutOfRange`] for
+    /// the depths, the filter radius and the offset, [`FitError::NearNotBelowFar`] for an empty range, and
+    /// the errors of an invalid frustum.
     pub fn swept(fit: &LightProjection, sweep: &Sweep) -> Result<Self, FitError> {
         sweep.checked()?;
         Ok(Planes { fit, sweep }.volume())
@@ -121,8 +121,8 @@ impl Planes<'_> {
         let (sides, [far, _]) = map_planes(self.fit);
         let to_light = -self.fit.direction.as_dvec3();
         if self.sweep.views.len() == 1 {
-            // The whole view has the same normals as its slices, to the last bit: maps share
-            // them, and `cull` works them out once.
+            // The whole view has exactly the same normals as its slices. Maps then share these normals, and
+            // `cull` computes their supports once.
             let whole = self.view(&self.sweep.views[0]).slice(f64::MIN, f64::MAX);
             silhouette(&whole, to_light, |normal| self.push(&mut volume, normal));
         } else {
@@ -144,16 +144,16 @@ impl Planes<'_> {
         View::new(frustum, self.fit.origin)
     }
 
-    /// The parts of the views in the range.
+    /// Returns the parts of the views in the range.
     fn slices(&self) -> impl Iterator<Item = Slice> {
         let (near, far) = (f64::from(self.sweep.near), f64::from(self.sweep.far));
         let slices = self.sweep.views.iter().map(move |view| self.view(view).slice(near, far));
         slices.filter(|slice| slice.near < slice.far)
     }
 
-    /// Adds the plane with a normal (pointing inward) that holds all slices and the reach around them.
+    /// Adds the plane with an inward normal that holds all slices and the filter radius around them.
     fn push(&self, volume: &mut CasterVolume, normal: DVec3) {
-        // The rounded normal is what the plane is made of, so it is what the corners are measured by.
+        // The plane uses the rounded normal, so the corners are measured with it too.
         let rounded = normal.as_vec3();
         let normal = rounded.as_dvec3();
         let (mut least, mut farthest) = (f64::MAX, 0.0_f64);
@@ -165,7 +165,7 @@ impl Planes<'_> {
         volume.push(rounded.extend((self.reach_along(rounded) + pad - least) as f32));
     }
 
-    /// How far the filter reads along a direction, in metres.
+    /// Returns the distance that the filter reads along a direction, in metres.
     fn reach_along(&self, normal: Vec3) -> f64 {
         let reach = FilterRadius { taps: self.sweep.filter_radius.taps + RASTER_TEXELS, ..self.sweep.filter_radius };
         let texel = self.fit.texel_size.as_dvec2();
@@ -174,20 +174,21 @@ impl Planes<'_> {
         reach.rise(normal.dot(x) * texel.x, normal.dot(y) * texel.y) + f64::from(self.sweep.normal_offset)
     }
 
-    /// The map's axes in world space.
+    /// Returns the map's axes in world space.
     fn map_axes(&self) -> [DVec3; 2] {
         let rows = self.fit.light_from_world.transpose();
         [rows.x_axis, rows.y_axis].map(|row| row.truncate().as_dvec3())
     }
 
-    /// Gives the normals of the outline of all slices in the light's plane, simplified to few.
+    /// Emits the normals of a simplified outline of all slices in the light's plane.
     fn outline(&self, mut emit: impl FnMut(DVec3)) {
         let [x, y] = self.map_axes();
         let mut storage = [DVec2::ZERO; OUTLINE_STORAGE];
         let mut hull = HullBuilder::new(&mut storage);
         for corner in self.slices().flat_map(|slice| slice.corners) {
             if hull.push(DVec2::new(x.dot(corner), y.dot(corner))).is_err() {
-                // More corners than there is room for: the map's own sides are used instead.
+                // There are more corners than the storage holds. The map's own sides bound the volume
+                // instead.
                 return;
             }
         }
@@ -203,8 +204,8 @@ impl Planes<'_> {
     }
 }
 
-/// Gives the inward normals of the planes along the light through the edges between faces toward
-/// it and faces away from it.
+/// Emits the inward normals of planes along the light, one through each edge between a face toward the light
+/// and a face away from it.
 ///
 /// ```text
 ///      0───────1      side i joins the edges from corner i to i + 4 and from i + 1 to i + 5;
@@ -223,7 +224,7 @@ fn silhouette(view: &Slice, to_light: DVec3, mut emit: impl FnMut(DVec3)) {
         }
     };
     for i in 0..4 {
-        // Near and far edges are parallel; the far one is never the shorter.
+        // Near and far edges are parallel, and the far one is at least as long.
         let across = view.corners[(i + 1) % 4 + 4] - view.corners[i + 4];
         edge(i, 4, i, across);
         edge(i, 5, i + 4, across);
@@ -231,9 +232,9 @@ fn silhouette(view: &Slice, to_light: DVec3, mut emit: impl FnMut(DVec3)) {
     }
 }
 
-/// Cuts a convex polygon (anticlockwise corners) down to a number of edges by dropping edges one
-/// by one, each time the one whose neighbours, drawn out until they meet, add the least area; what
-/// was inside stays inside. Gives the number of corners left.
+/// Simplifies a convex polygon (anticlockwise corners) to a number of edges by dropping edges one by one.
+/// Extends the neighbours of a dropped edge until they meet. Drops the edge that adds the least area. The
+/// result holds the original polygon. Returns the number of corners left.
 ///
 /// ```text
 ///             X
@@ -249,7 +250,7 @@ fn simplify(corners: &mut [DVec2], most: usize) -> usize {
             let [before, a, b, after] = [i + count - 1, i, i + 1, i + 2].map(|k| corners[k % count]);
             let (first, second) = (a - before, after - b);
             let turn = first.perp_dot(second);
-            // Neighbours that turn by half a circle or more never meet.
+            // Neighbours with a turn of half a circle or more never meet.
             if turn > 0.0 {
                 let meeting = a + first * ((b - a).perp_dot(second) / turn);
                 let area = (b - a).perp_dot(b - meeting);
@@ -267,7 +268,7 @@ fn simplify(corners: &mut [DVec2], most: usize) -> usize {
     count
 }
 
-/// A vector's direction, if it has one.
+/// Returns the direction of a vector, or `None` for zero.
 fn unit(v: DVec3) -> Option<DVec3> {
     let length = checks::length(v);
     if length > 0.0 { Some(v / length) } else { None }

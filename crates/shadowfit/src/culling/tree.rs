@@ -1,4 +1,4 @@
-//! The boxes of a tree against several volumes at once.
+//! Culls the boxes of a tree against several volumes at once.
 
 use super::batch::MAX_VOLUMES;
 use super::shapes::Shape;
@@ -6,7 +6,7 @@ use super::volume::CasterVolume;
 use crate::base::Aabb;
 use crate::content::tree::StaticBoxes;
 
-/// What is known of a box of the hierarchy: bits of the volumes that it may touch, and of those that hold all of it.
+/// The volumes that a box of the hierarchy may touch, and the volumes that hold all of it, one bit each.
 #[derive(Clone, Copy)]
 struct Touched {
     touched: u8,
@@ -14,11 +14,11 @@ struct Touched {
 }
 
 impl StaticBoxes {
-    /// Tests the boxes against up to eight volumes and passes on those that may cast a shadow into one of the maps, by
-    /// number, in no particular order: bit i of the mask stands for map i. Masks are exactly those of
-    /// [`cull`](super::cull); volumes past the eighth are ignored.
+    /// Tests the boxes against up to eight volumes. Calls `visit` with the number and the mask of each box
+    /// that may cast a shadow into one of the maps, in no particular order. Bit i of the mask is map i. Masks
+    /// are equal to the results of [`cull`](super::cull). Volumes past the eighth are ignored.
     ///
-    /// It takes as long as there are boxes in the volumes, whatever there is beside them.
+    /// The time depends on the number of boxes in the volumes, not on the total.
     pub fn cull(&self, volumes: &[CasterVolume], mut visit: impl FnMut(u32, u8)) {
         let mut relative = [CasterVolume::everywhere(self.origin()); MAX_VOLUMES];
         let count = volumes.len().min(MAX_VOLUMES);
@@ -39,8 +39,8 @@ impl StaticBoxes {
     }
 }
 
-/// Whether all of a box lies inside a volume, so that whatever is in the box touches the volume. Rounding is monotonic:
-/// no part of a box is farther outside than the box's own corner.
+/// Returns whether a volume holds all of a box. Then everything in the box touches the volume, because
+/// rounding is monotonic: no part of a box is farther outside than the box's own corner.
 fn holds(volume: &CasterVolume, aabb: &Aabb) -> bool {
     volume.active_planes().iter().all(|plane| plane.w - aabb.support(-plane.truncate()) >= 0.0)
 }

@@ -1,4 +1,4 @@
-//! The volume of the casters of a map, its planes for shaders, and the tests of single shapes.
+//! The volume that holds the casters of a map, its planes for shaders, and tests of single shapes.
 
 use glam::{DVec3, Vec3, Vec4};
 
@@ -9,8 +9,8 @@ use crate::keep::texels::TexelRect;
 use crate::projection::LightProjection;
 use crate::technique::settings::CasterPolicy;
 
-/// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for
-/// shaders alike.
+/// A convex volume that holds casters of one map, given by planes. It is plain data for the CPU and for
+/// shaders.
 ///
 /// | made by | holds |
 /// |---|---|
@@ -19,50 +19,48 @@ use crate::technique::settings::CasterPolicy;
 /// | [`SpotFit::caster_volume`](crate::spot::SpotFit::caster_volume) | every caster that the map of a spot light can store |
 /// | [`CasterVolume::swept`] | every caster that can cast a shadow into a slice of the view |
 ///
-/// A shape is culled when it lies wholly behind one of the planes. That is conservative and not
-/// exact: a shape beyond an edge or a corner of the volume, behind none of the planes, is kept, and
-/// the larger it is the more often. For each 100 boxes that cast a shadow into the view of the
-/// tests' camera, a swept volume keeps at most 7 others when their half extents are up to a tenth
-/// of the view's, and at most 25 when they are up to its half. The map's own box keeps more than
-/// three times as many.
+/// A shape is culled if it lies completely behind one of the planes. The test is conservative: a shape
+/// outside the volume near an edge or a corner, but behind none of the planes, is kept. Larger shapes are
+/// kept more often. For each 100 boxes that cast a shadow into the view of the tests' camera, a swept volume
+/// keeps at most 7 other boxes if their half extents are up to a tenth of the view's, and at most 25 if they
+/// are up to half of it. The map's own box keeps more than three times as many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CasterVolume {
-    /// World position that the planes, and all shapes tested one by one, are relative to, in
-    /// metres.
+    /// World position that the planes and single test shapes are relative to, in metres.
     pub origin: DVec3,
-    /// Planes (n, d) with unit normals that point inward: a point p in world axes, in metres
-    /// relative to [`Self::origin`], is inside where n·p + d >= 0 for all of them. Those past
-    /// [`Self::count`] are (0, 0, 0, 1), and everything is inside those.
+    /// Planes (n, d) with unit normals that point inward. A point p in world axes, in metres relative to
+    /// [`Self::origin`], is inside if n·p + d >= 0 for all planes. Planes past [`Self::count`] are (0, 0, 0,
+    /// 1), and every point is inside them.
     pub planes: [Vec4; Self::MAX_PLANES],
     /// Number of planes in use.
     pub count: u32,
 }
 
-/// A plane that everything is inside of.
+/// A plane with every point inside.
 const EVERYWHERE: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
 
-/// A plane that nothing is inside of.
+/// A plane with every point outside.
 const NOWHERE: Vec4 = Vec4::new(0.0, 0.0, 0.0, f32::MIN);
 
 impl CasterVolume {
-    /// Most planes of a volume: four sides and far plane of the map, five planes of a view that
-    /// face away from the light and its six silhouette edges.
+    /// Greatest number of planes: four sides and the far plane of the map, and for the view five planes that
+    /// face away from the light and six silhouette edges.
     pub const MAX_PLANES: usize = 16;
 
-    /// A volume that holds everything.
+    /// Returns the volume that holds everything.
     pub const fn everywhere(origin: DVec3) -> Self {
         Self { origin, planes: [EVERYWHERE; Self::MAX_PLANES], count: 0 }
     }
 
-    /// A volume that holds nothing.
+    /// Returns the empty volume.
     pub const fn nowhere(origin: DVec3) -> Self {
         let mut planes = [EVERYWHERE; Self::MAX_PLANES];
         planes[0] = NOWHERE;
         Self { origin, planes, count: 1 }
     }
 
-    /// The volume of these planes, up to [`Self::MAX_PLANES`], with unit normals that point inward.
+    /// Returns the volume of up to [`Self::MAX_PLANES`] planes with unit normals that point inward.
     pub(crate) fn of_planes(origin: DVec3, planes: impl IntoIterator<Item = Vec4>) -> Self {
         let mut volume = Self::everywhere(origin);
         for plane in planes {
@@ -71,22 +69,23 @@ impl CasterVolume {
         volume
     }
 
-    /// Every caster that a map can store, relative to the fit's origin. Planes in the light's
-    /// axes: -x, +x, -y, +y, far, and near unless `casters` is [`CasterPolicy::DepthClamp`]: a map
-    /// drawn with depth clamp stores casters before its near plane too.
+    /// Returns the volume of all casters that a map can store, relative to the fit's origin. Its planes are
+    /// -x, +x, -y, +y, far and near in the light's axes. The near plane is left out for
+    /// [`CasterPolicy::DepthClamp`], because a map with depth clamp stores casters in front of its near plane
+    /// too.
     pub fn of_map(fit: &LightProjection, casters: CasterPolicy) -> Self {
         let (sides, [far, near]) = map_planes(fit);
         let near = (casters != CasterPolicy::DepthClamp).then_some(near);
         Self::of_planes(fit.origin, sides.into_iter().chain([far]).chain(near))
     }
 
-    /// As [`Self::of_map`], of the casters that can be drawn into a part of the map, with a texel around it for the
-    /// rasteriser's rounding.
+    /// Returns the volume of the casters that can be drawn into a part of the map, as [`Self::of_map`]. It
+    /// includes one texel around the part for the rasteriser's rounding.
     pub fn of_part(fit: &LightProjection, casters: CasterPolicy, part: TexelRect) -> Self {
         let (mut sides, [far, near]) = map_planes(fit);
         let end = (part.min + part.size).as_dvec2() + 1.0;
         let (first, size) = (part.min.as_dvec2() - 1.0, fit.resolution.as_dvec2());
-        // Texels that each side moves inward: left, right, bottom, top; rows count downward.
+        // Texels that each side moves inward: left, right, bottom, top. Rows count downward.
         let inward = [first.x, size.x - end.x, size.y - end.y, first.y];
         let texel = fit.texel_size.as_dvec2();
         for ((side, texels), texel) in sides.iter_mut().zip(inward).zip([texel.x, texel.x, texel.y, texel.y]) {
@@ -96,8 +95,8 @@ impl CasterVolume {
         Self::of_planes(fit.origin, sides.into_iter().chain([far]).chain(near))
     }
 
-    /// This volume cut at the near plane of a map, for passes without depth clamp: casters before
-    /// that plane would be clipped, so drawing them is wasted.
+    /// Returns this volume, cut at the near plane of a map, for passes without depth clamp. They clip casters
+    /// in front of that plane, so drawing these casters is wasted.
     #[must_use]
     pub fn cut_at_near_plane(&self, fit: &LightProjection) -> Self {
         let (_, [_, near]) = map_planes(&fit.relative_to(self.origin));
@@ -106,12 +105,12 @@ impl CasterVolume {
         volume
     }
 
-    /// The planes in use.
+    /// Returns the planes in use.
     pub fn active_planes(&self) -> &[Vec4] {
         &self.planes[..(self.count as usize).min(Self::MAX_PLANES)]
     }
 
-    /// Adds a plane if there is room for it; without it the volume is only larger.
+    /// Adds a plane if there is room for it. Without it the volume is only larger.
     pub(super) fn push(&mut self, plane: Vec4) {
         if let Some(free) = self.planes.get_mut(self.count as usize) {
             *free = plane;
@@ -119,16 +118,15 @@ impl CasterVolume {
         }
     }
 
-    /// The same volume with its planes relative to another world position, in metres. The planes
-    /// are moved in f64 and are moved outward by the rounding of their normals over that distance,
-    /// 1e-7 of it.
+    /// Returns the same volume with its planes relative to another world position, in metres. The planes are
+    /// moved in f64, then outward by the rounding of their normals over the distance, 1e-7 of it.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
         let offset = origin - self.origin;
         let slack = (offset.x.abs() + offset.y.abs() + offset.z.abs()) * NORMAL_ROUNDING;
         let mut volume = Self { origin, ..*self };
         for plane in &mut volume.planes {
-            // Planes without a normal hold everything or nothing, wherever they are.
+            // Planes without a normal hold all points or none, at any origin.
             if plane.truncate() != Vec3::ZERO {
                 let moved = f64::from(plane.w) + plane.truncate().as_dvec3().dot(offset) + slack;
                 plane.w = moved as f32;
@@ -137,34 +135,35 @@ impl CasterVolume {
         volume
     }
 
-    /// The boxes that may touch the volume, by their indices.
+    /// Returns the indices of the boxes that may touch the volume.
     pub fn casters_in<'a>(&self, boxes: &Boxes<'a>) -> impl Iterator<Item = usize> + use<'a> {
         let volume = self.relative_to(boxes.origin);
         let touches = move |(index, aabb): (usize, &Aabb)| volume.intersects(aabb).then_some(index);
         boxes.boxes.iter().enumerate().filter_map(touches)
     }
 
-    /// Whether an axis-aligned box may touch the volume. `min` and `max` are its corners in world
-    /// axes **relative to [`Self::origin`]**, in metres. A box with a `min` above its `max` holds
-    /// nothing and touches nothing; one with NaN counts as touching.
+    /// Returns whether an axis-aligned box may touch the volume. `min` and `max` are its corners in world
+    /// axes **relative to [`Self::origin`]**, in metres. A box with a `min` above its `max` is empty and does
+    /// not touch. A box with NaN counts as touching.
     ///
-    /// Known false positives: boxes that lie outside near an edge or corner of the volume without
-    /// being wholly behind one of its planes.
+    /// Known false positives: boxes outside the volume near an edge or corner that are not completely behind
+    /// one of its planes.
     pub fn intersects_aabb(&self, min: Vec3, max: Vec3) -> bool {
         self.intersects(&Aabb { min, max })
     }
 
-    /// Whether a sphere may touch the volume: centre in world axes relative to [`Self::origin`]
-    /// and radius, in metres. A negative radius touches nothing; NaN counts as touching.
+    /// Returns whether a sphere may touch the volume. The centre is in world axes relative to
+    /// [`Self::origin`], centre and radius are in metres. A sphere with a negative radius does not touch. A
+    /// sphere with NaN counts as touching.
     ///
-    /// Known false positives are those of [`Self::intersects_aabb`]; the test against a single
-    /// plane is exact.
+    /// It has the known false positives of [`Self::intersects_aabb`]. The test against a single plane is
+    /// exact.
     pub fn intersects_sphere(&self, centre: Vec3, radius: f32) -> bool {
         self.intersects(&Sphere { centre, radius })
     }
 
-    /// Whether an oriented box, relative to [`Self::origin`], may touch the volume. NaN counts as
-    /// touching. Known false positives are those of [`Self::intersects_aabb`].
+    /// Returns whether an oriented box, relative to [`Self::origin`], may touch the volume. A box with NaN
+    /// counts as touching. It has the known false positives of [`Self::intersects_aabb`].
     pub fn intersects_obb(&self, oriented: &OrientedBox) -> bool {
         self.intersects(oriented)
     }
@@ -177,10 +176,10 @@ impl CasterVolume {
 }
 
 impl LightProjection {
-    /// Every caster that the map can store: the map's own box, relative to [`Self::origin`].
-    /// Casters nearer to the light than the map's near plane are left out; for maps with depth
-    /// clamp see [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can cast
-    /// a shadow into view.
+    /// Returns the volume of all casters that the map can store: the map's own box, relative to
+    /// [`Self::origin`]. It excludes casters in front of the map's near plane. For maps with depth clamp see
+    /// [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only the casters that can cast a shadow into
+    /// view.
     pub fn caster_volume(&self) -> CasterVolume {
         CasterVolume::of_map(self, CasterPolicy::None)
     }
@@ -189,12 +188,12 @@ impl LightProjection {
 /// Rounding of a unit normal's direction, in f64.
 const NORMAL_ROUNDING: f64 = 2.0 * UNIT;
 
-/// A plane's d, enlarged by the rounding that it adds to the test.
+/// Returns a plane's d, enlarged by its rounding in the test.
 pub(super) fn widened(d: f32) -> f32 {
     d + d.abs() * TEST_ROUNDING
 }
 
-/// The planes -x, +x, -y, +y of a map, and far and near, relative to the fit's origin.
+/// Returns the planes -x, +x, -y, +y of a map, and the far and near planes, relative to the fit's origin.
 pub(super) fn map_planes(fit: &LightProjection) -> ([Vec4; 4], [Vec4; 2]) {
     let (min, max) = fit.clip_box();
     let rows = fit.light_from_world.transpose();
@@ -205,8 +204,8 @@ pub(super) fn map_planes(fit: &LightProjection) -> ([Vec4; 4], [Vec4; 2]) {
     ([low(0), high(0), low(1), high(1)], [low(2), high(2)])
 }
 
-/// The planes of a [`CasterVolume`] for a shader, with the layout of this WGSL in uniform and in
-/// storage buffers, 272 bytes:
+/// The planes of a [`CasterVolume`] for a shader. The layout equals this WGSL struct in uniform and storage
+/// buffers, 272 bytes:
 ///
 /// ```wgsl
 /// struct CasterPlanes {
@@ -215,18 +214,18 @@ pub(super) fn map_planes(fit: &LightProjection) -> ([Vec4; 4], [Vec4; 2]) {
 /// }
 /// ```
 ///
-/// The volume itself has an origin in f64, which no shader can read: move it to the origin that
-/// the shader's positions have first, with [`CasterVolume::relative_to`].
+/// A volume's origin is in f64, which shaders cannot read. Move it to the origin of the shader's positions
+/// first, with [`CasterVolume::relative_to`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct CasterPlanes {
-    /// [`CasterVolume::planes`]. All of them may be tested: everything is inside the unused ones.
+    /// [`CasterVolume::planes`]. Shaders may test all of them, because every point is inside the unused ones.
     pub planes: [[f32; 4]; CasterVolume::MAX_PLANES],
     /// Number of planes in use.
     pub count: u32,
-    /// Padding at the end of the struct, as in WGSL; zero.
+    /// Padding at the end of the struct, as in WGSL. Zero.
     pub padding: [u32; 3],
 }
 

@@ -1,27 +1,27 @@
-//! The boxes that views see: the nearest few along each ray of a coarse grid.
+//! The boxes in view: the nearest few along each ray of a coarse grid.
 //!
-//! Fits estimate from them what is visible if no earlier frame has shown it. A box is not its surface. Where the estimate
-//! is wrong, maps are less sharp than they could be, but still hold all receivers. Windows and splits read the same rays,
-//! each in its own way.
+//! Fits estimate the visible surfaces from these boxes if no earlier frame gives the visible demand. A box is
+//! not its surface. If the estimate is wrong, maps are less sharp than possible, but still hold all
+//! receivers. Windows and splits weigh the same rays differently.
 
 use glam::DVec3;
 
 use crate::content::{Bounds, Found, ViewPart, Visit};
 use crate::view::{Picture, RayCount, covered, crossing};
 
-/// Boxes kept along each ray. A box is mostly air, so that a box behind the first one may be seen.
+/// Boxes kept along each ray. A box is mostly air, so a box behind the first one may be visible.
 const LAYERS: usize = 4;
 
-/// Weight of the box that a ray begins in, which may hold a surface anywhere up to its end.
+/// Weight of the box that a ray begins in. A surface may lie anywhere up to the end of this box.
 pub(crate) const AROUND: f32 = 1.0 / 3.0;
 
-/// Most rays through a picture.
+/// Greatest number of rays through a picture.
 const MOST_RAYS: usize = RayCount::FINE.columns * RayCount::FINE.rows;
 
 /// Rounding of shares of a ray to f32, and of view depths to such shares.
 const SHARE_ROUNDING: f64 = 1e-6;
 
-/// A box that a ray goes through.
+/// A box that a ray passes through.
 #[derive(Clone, Copy)]
 pub(crate) struct Layer {
     /// Shares of the ray at which it enters and leaves the box.
@@ -31,25 +31,26 @@ pub(crate) struct Layer {
     pub(crate) index: u32,
 }
 
-/// A ray through a picture, from its near to its far rectangle. Shares of it are shares of the view depth.
+/// A ray through a picture, from its near to its far rectangle. A share of the ray is the same share of the
+/// view depth.
 #[derive(Clone, Copy)]
 pub(crate) struct Ray {
-    /// Its start, in metres relative to the fit's origin, and the way to its end.
+    /// Start, in metres relative to the fit's origin, and vector from there to the end.
     pub(crate) start: DVec3,
     pub(crate) along: DVec3,
-    /// The nearest boxes that it enters.
+    /// The nearest boxes that the ray enters.
     layers: [Option<Layer>; LAYERS],
-    /// The box that it begins in and leaves last.
+    /// The box that the ray begins in and leaves last.
     pub(crate) around: Option<Layer>,
 }
 
 impl Ray {
-    /// The nearest boxes that the ray enters, in order.
+    /// Returns the nearest boxes that the ray enters, in order.
     pub(crate) fn layers(&self) -> impl Iterator<Item = &Layer> {
         self.layers.iter().flatten()
     }
 
-    /// Returns whether the ray may enter a box at a share before all that are kept, or begin in it.
+    /// Returns whether the ray may enter a box before the kept ones, at this share, or begin in it.
     fn may_meet(&self, share: f64) -> bool {
         share <= 0.0 || self.layers[LAYERS - 1].is_none_or(|last| share < f64::from(last.enter))
     }
@@ -81,8 +82,8 @@ pub(crate) struct Rays<'a> {
 }
 
 impl<'a> Rays<'a> {
-    /// Rays that have met no box.
-    #[expect(clippy::large_stack_arrays, reason = "72 KiB, for the time that it takes to look around")]
+    /// Creates rays that have met no box.
+    #[expect(clippy::large_stack_arrays, reason = "72 KiB, only while the rays are traced")]
     pub(crate) fn new(part: &'a ViewPart, count: RayCount) -> Self {
         let (c, zero) = (part.slice().corners, DVec3::ZERO);
         let mut all = [Ray { start: zero, along: zero, layers: [None; LAYERS], around: None }; MOST_RAYS];
@@ -97,12 +98,12 @@ impl<'a> Rays<'a> {
         Self { part, count, picture: part.view.picture(), all }
     }
 
-    /// The rays.
+    /// Returns the rays.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Ray> {
         self.all[..self.count.columns * self.count.rows].iter()
     }
 
-    /// The least share of a ray at which it may enter a box.
+    /// Returns the least share of a ray at which it may enter a box.
     fn least_share(&self, bounds: &Bounds) -> f64 {
         let ViewPart { near, far, .. } = *self.part;
         (bounds.depths.near - near) / (far - near) * (1.0 - SHARE_ROUNDING) - SHARE_ROUNDING

@@ -1,27 +1,27 @@
-//! The depths in the picture: a histogram that the engine computes from its last depth buffer.
+//! Visible depths: a histogram that the engine computes from its last depth buffer.
 
 use glam::Vec3;
 
-/// Counts of visible points that face the light, in bins of equal log view depth, and optionally in
-/// classes by how much finer their texels must be than their depth alone requires.
+/// Counts of visible points that face the light, in bins of equal width in log view depth. Optionally,
+/// classes sort them by how much finer their texels must be than their depth alone requires.
 ///
-/// Fill it from the depth buffer of the frame before, as coarsely as you like (64 × 36 samples
-/// serve), leaving out the sky: [`Self::bin`] gives the bin of a point. The histogram only decides
-/// where the maps are split: a late or wrong histogram costs sharpness, never coverage.
+/// Fill it from the depth buffer of the last frame, without the sky. Coarse sampling is enough, such as 64 ×
+/// 36 samples. [`Self::bin`] returns the bin of a point. The histogram only decides where the maps are split,
+/// so a late or wrong histogram costs sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthHistogram<'a> {
     /// View depth at which the first bin begins, in metres; positive.
     pub near: f32,
     /// View depth at which the last bin ends, in metres.
     pub far: f32,
-    /// Counts: all depths of the first class, then all of the second, and so on.
+    /// Counts: all depths of the first class, then all depths of the second, and so on.
     pub bins: &'a [u32],
     /// Number of classes of foreshortening, each a factor of two wide; 1 for depths alone.
     pub classes: usize,
 }
 
-/// View depths of the nearest and the farthest visible point, as a reduction of a depth buffer
-/// gives them (A. Lauritzen, M. Salvi, A. Lefohn, "Sample distribution shadow maps", 2011).
+/// View depths of the nearest and the farthest visible point, from a reduction of a depth buffer (A.
+/// Lauritzen, M. Salvi, A. Lefohn, "Sample distribution shadow maps", 2011).
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -47,27 +47,28 @@ pub struct DepthHistogram<'a> {
 ///     Ok::<_, FitError>(maps[0].depths.and_then(|range| range.far).expect("only the last map has no end"))
 /// };
 /// assert!(split(None)? < 1.0); // the whole view, from its near plane on
-/// assert!(split(Some(DepthBounds { near: 4.0, far: 50.0 }))? > 4.0); // what the last frame showed
+/// assert!(split(Some(DepthBounds { near: 4.0, far: 50.0 }))? > 4.0); // the visible depths of the last frame
 /// # Ok::<(), FitError>(())
 /// ```
 ///
-/// They only decide where the maps are split. The first map still begins where shadows do and the last
+/// They only decide where the maps are split. The first map still begins where shadows begin, and the last
 /// one ends where they end, so late or wrong bounds cost sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthBounds {
     /// Least view depth, in metres.
     pub near: f32,
-    /// Greatest view depth, in metres; no less than the least.
+    /// Greatest view depth, in metres; not below the least.
     pub far: f32,
 }
 
-/// Widest texel, in metres across the light, with which a point shows no more than one pixel per
-/// texel: the least singular value of the pixel's outline on the surface as the light sees it.
+/// Returns the width of the widest texel, in metres across the light, at which a point shows at most one
+/// pixel per texel. One pixel covers a parallelogram of the surface, spanned by `right` and `down`. The
+/// result is the least singular value of the matrix of these two vectors, projected across the light.
 ///
-/// `right` and `down` are the surface's movements in the world, in metres, for one pixel to the
-/// right and one down; `direction` is the light's direction of travel, of unit length. The
-/// foreshortening class of a point is `log2(depth · pixel / texel)`, `pixel` being the width that
-/// one pixel has at a view depth of one metre.
+/// `right` and `down` are the movements of the visible point on its surface, in metres in world axes, from
+/// this pixel to the next one on the right and below. `direction` is the light's direction of travel, of unit
+/// length. The foreshortening class of a point is `log2(depth · pixel / texel)`, where `depth` is its view
+/// depth and `pixel` the width of one pixel at a view depth of one metre.
 pub fn needed_texel(right: Vec3, down: Vec3, direction: Vec3) -> f32 {
     let along = direction.as_dvec3();
     let seen = |v: Vec3| v.as_dvec3() - along * v.as_dvec3().dot(along);
@@ -80,8 +81,9 @@ pub fn needed_texel(right: Vec3, down: Vec3, direction: Vec3) -> f32 {
 }
 
 impl DepthHistogram<'_> {
-    /// Index into [`Self::bins`] for a visible point, `None` for one outside the depths: its view
-    /// depth in metres and its class, `log2(depth · pixel / needed_texel)`, 0 if unknown.
+    /// Returns the index into [`Self::bins`] for a visible point, or `None` if it lies before the first bin
+    /// or behind the last. `depth` is its view depth in metres. `class` is `log2(depth · pixel /
+    /// needed_texel)`, as for [`needed_texel`], or 0 if unknown.
     pub fn bin(near: f32, far: f32, depth_bins: usize, classes: usize, depth: f32, class: f32) -> Option<usize> {
         if !(depth >= near && depth < far && near > 0.0) || depth_bins == 0 || classes == 0 {
             return None;
@@ -93,7 +95,7 @@ impl DepthHistogram<'_> {
         Some(class * depth_bins + depth_bin)
     }
 
-    /// Whether nothing was counted, or the depths are invalid: splits are chosen by the boxes then.
+    /// Returns whether the histogram has no counts or invalid depths. Splits then come from the boxes.
     pub fn is_empty(&self) -> bool {
         let is_valid = self.near > 0.0 && self.near < self.far && self.far.is_finite();
         let is_whole = self.classes > 0 && self.bins.len().is_multiple_of(self.classes);

@@ -1,4 +1,4 @@
-//! Counts the visible points of a depth buffer that was read back, for graphics APIs without compute shaders.
+//! Visible demand counted from a depth buffer that was read back, for graphics APIs without compute shaders.
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
@@ -11,38 +11,41 @@ use crate::view::ViewFrustum;
 /// A depth buffer that was read back.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthRows<'a> {
-    /// Stored depths, row by row from the top, without gaps. Where nothing was drawn they are those of the far plane.
+    /// Stored depths, row by row from the top, without gaps. Pixels without a surface have the far plane's
+    /// depth.
     pub depths: &'a [f32],
-    /// Pixels in a row.
+    /// Pixels per row.
     pub width: u32,
-    /// The matrix that it was drawn with, for positions relative to the eye
+    /// Matrix that the depth buffer was drawn with, for positions relative to the eye
     /// ([`ViewFrustum::origin`](crate::ViewFrustum::origin)), in metres.
     pub clip_from_world: Mat4,
-    /// Depth convention of that matrix. Buffers of OpenGL store -1..1 as 0..1: give them as they are.
+    /// Depth convention of that matrix. OpenGL stores -1..1 as 0..1: pass its buffers unchanged.
     pub depth: DepthConvention,
-    /// Frustum of the view, for the view depths of points and for the part of the picture that it shows.
+    /// Frustum of the view. It gives the view depths of points, and the part of the picture that belongs to
+    /// the view.
     pub view: &'a ViewFrustum,
 }
 
 impl VisibleDemand {
-    /// Counts the points of a depth buffer that face the light: one of each `stride` pixels across and down. Few are
-    /// enough: some 300 points, a stride of 56 in a picture of 1280 × 720 pixels, gave 0.301% wrong pixels where 129,600
-    /// gave 0.311%.
+    /// Counts the points of a depth buffer that face the light: one for each `stride` pixels across and down.
+    /// Few points are enough. In a picture of 1280 × 720 pixels, a stride of 56 with some 300 points gave
+    /// 0.301% wrong pixels, and 129,600 points gave 0.311%.
     ///
-    /// The slope of a surface follows from the depths of the pixels beside its own, so read the whole rows back, or
-    /// groups of three by three pixels as a picture of their own with another matrix.
+    /// The slope of a surface is computed from the depths of neighbouring pixels. So read back whole rows, or
+    /// read back groups of three by three pixels and count each group as a separate picture with its own
+    /// matrix.
     ///
     /// # Errors
     ///
-    /// [`FitError::OutOfRange`] for rows that are not full, a width below 3 and a stride of 0, and
+    /// [`FitError::OutOfRange`] for incomplete rows, a width below 3 and a stride of 0.
     /// [`FitError::NotFinite`] for a matrix without an inverse.
     pub fn count_rows(&mut self, rows: &DepthRows, stride: u32) -> Result<(), FitError> {
         let picture = Picture::new(rows)?;
         checks::within("the stride of depth rows", f64::from(stride), 1.0, f64::from(u32::MAX))?;
         let stride = stride as usize;
-        // A grid is counted for pictures of a certain height.
+        // A grid is counted for pictures of a fixed height.
         let pixels = picture.height as f32 / PIXELS * rows.view.height_in_picture(&rows.clip_from_world);
-        // From the middle of the first stride, with a neighbour on all sides.
+        // Starts in the middle of the first stride, with a neighbour on all sides.
         let first = |pixels: usize| (stride / 2).clamp(1, pixels - 2);
         for y in (first(picture.height)..picture.height - 1).step_by(stride) {
             for x in (first(picture.width)..picture.width - 1).step_by(stride) {
@@ -77,15 +80,15 @@ impl VisibleDemand {
     }
 }
 
-/// A point that a pixel shows, relative to the eye, in metres.
+/// The visible point of a pixel, relative to the eye, in metres.
 struct Point {
     position: DVec3,
     /// Direction of the view ray, away from the eye; of any length.
     ray: DVec3,
-    /// How it moves on its surface from a pixel to the next, to the right and down.
+    /// Movement on the surface from one pixel to the next, to the right and down.
     right: DVec3,
     down: DVec3,
-    /// Width of a pixel that faces the eye there.
+    /// Width of a pixel at this point if it faced the eye.
     pixel: f64,
 }
 
@@ -96,7 +99,7 @@ struct Picture<'a> {
     world_from_clip: DMat4,
     forward: DVec3,
     far: f32,
-    /// Stored depths to those of the matrix: a factor and an offset.
+    /// Factor and offset from stored depths to the matrix's depths.
     depth: (f64, f64),
 }
 
@@ -121,13 +124,13 @@ impl<'a> Picture<'a> {
         Ok(Self { depths: rows.depths, width, height, world_from_clip, forward, far, depth })
     }
 
-    /// The stored depth of a pixel; `None` where nothing was drawn.
+    /// Returns the stored depth of a pixel, or `None` if no surface was drawn.
     fn stored(&self, x: usize, y: usize) -> Option<f64> {
         let depth = self.depths[y * self.width + x];
         (depth != self.far && depth.is_finite()).then_some(f64::from(depth))
     }
 
-    /// The point at a pixel's middle and a stored depth.
+    /// Returns the point at a pixel's middle and a stored depth.
     fn at(&self, x: f64, y: f64, stored: f64) -> DVec3 {
         let (scale, offset) = self.depth;
         let ndc = |pixel: f64, pixels: usize| (pixel + 0.5) / pixels as f64 * 2.0 - 1.0;
@@ -136,22 +139,22 @@ impl<'a> Picture<'a> {
         world.truncate() / world.w
     }
 
-    /// The way from a point to the view ray through another, at the same view depth: where the near plane is tilted, the
-    /// same stored depth is another view depth.
+    /// Returns the vector from a point to the view ray through another point, at the same view depth. If the
+    /// near plane is tilted, equal stored depths are different view depths.
     fn across(&self, other: DVec3, point: DVec3) -> DVec3 {
         let (way, ray) = (other - point, self.ray(other));
         way - ray * (way.dot(self.forward) / ray.dot(self.forward))
     }
 
-    /// The direction of the view ray through a point, away from the eye; of any length.
+    /// Returns the direction of the view ray through a point, away from the eye, of any length.
     fn ray(&self, point: DVec3) -> DVec3 {
         let along = self.world_from_clip.z_axis;
         let ray = along.truncate() - point * along.w;
         if ray.dot(self.forward) < 0.0 { -ray } else { ray }
     }
 
-    /// Change of depth from a pixel to the next, from the neighbour that is nearer in depth: what lies behind a
-    /// silhouette does not count.
+    /// Returns the change of depth from one pixel to the next. It uses the neighbour that is nearer in depth,
+    /// so surfaces behind a silhouette do not count.
     fn change(depth: f64, next: Option<f64>, previous: Option<f64>) -> Option<f64> {
         match (next.map(|next| next - depth), previous.map(|previous| depth - previous)) {
             (Some(after), Some(before)) => Some(if after.abs() <= before.abs() { after } else { before }),
@@ -195,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Stored depths of a ground 2 m below the eye, and the sky above it.
+    /// Returns stored depths of ground 2 m below the eye, with the sky above it.
     fn ground(depth: DepthConvention) -> Vec<f32> {
         let clip_from_world = camera().clip_from_world(depth).as_dmat4();
         let world_from_clip = clip_from_world.inverse();
@@ -266,7 +269,7 @@ mod tests {
         let (eye, forward, up) = (DVec3::ZERO, Vec3::NEG_Z, Vec3::Y);
         let camera = crate::view::Camera { eye, forward, up, lens, aspect: 1.0, near: 0.0, far: 100.0 };
         let (view, depth) = (camera.frustum().expect("a camera"), DepthConvention::ZeroToOne);
-        // A plane that turns away from the eye, but not from the rays of its right half.
+        // A plane that faces away from the eye, but not from the rays of its right half.
         let stored = |x: u16| (60.0 - (f32::from(x) - 31.5) / 32.0 * 50.0 * 0.75) / 100.0;
         let depths: Vec<f32> = (0..64 * 64_u16).map(|i| stored(i % 64)).collect();
         let direction = Vec3::new(0.6, 0.0, -0.8);

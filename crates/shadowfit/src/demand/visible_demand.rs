@@ -1,8 +1,9 @@
-//! What an earlier picture showed: the counts that fits place their maps by, whoever made them.
+//! The visible demand of an earlier picture: the counts that decide where fits place their maps.
 //!
-//! Three things can tell: a depth buffer (`shadowfit-wgpu` has a compute pass for it), rays against the triangles, or
-//! nothing, in which case fits estimate from the boxes what is visible. The first two count into a [`VisibleDemand`],
-//! which [`ShadowFitter::set_visible_demand`](crate::ShadowFitter::set_visible_demand) takes.
+//! The counts come from a depth buffer (`shadowfit-wgpu` has a compute pass for it), or from rays against the
+//! triangles. Pass them as a [`VisibleDemand`] to
+//! [`ShadowFitter::set_visible_demand`](crate::ShadowFitter::set_visible_demand). Without counts, fits
+//! estimate the visible surfaces from the boxes.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -14,16 +15,16 @@ use super::histogram::DepthHistogram;
 use crate::base::FitError;
 use crate::view::ViewFrustum;
 
-/// Bins of the histogram, at even steps of log view depth.
+/// Bins of the histogram, in even steps of log view depth.
 pub const DEPTHS: usize = 128;
 
-/// Octaves of foreshortening that the histogram tells apart.
+/// Classes of the histogram: octaves of foreshortening.
 pub const CLASSES: usize = 6;
 
-/// Numbers that are counted: cells of the grid, then bins of the histogram.
+/// Length of the counts: cells of the grid, then bins of the histogram.
 pub const COUNTS: usize = CELLS + DEPTHS * CLASSES;
 
-/// What the counts of a picture mean.
+/// Space in which the points of a picture are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleDemandSpace {
     /// The cells of the grid.
@@ -35,7 +36,7 @@ pub struct VisibleDemandSpace {
 }
 
 impl VisibleDemandSpace {
-    /// The space for what a view sees under a light; arguments and errors are those of [`DemandSpace::new`].
+    /// Creates the space for a view and a light. The arguments are the same as for [`DemandSpace::new`].
     ///
     /// # Errors
     ///
@@ -46,35 +47,35 @@ impl VisibleDemandSpace {
     }
 }
 
-/// What a picture showed that faces the light.
+/// Visible demand: counts of the points in a picture that face the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisibleDemand {
     space: VisibleDemandSpace,
-    /// [`COUNTS`] of them.
+    /// The [`COUNTS`] counts.
     counts: Vec<u32>,
 }
 
 impl VisibleDemand {
-    /// Nothing yet.
+    /// Creates a demand without points.
     pub fn new(space: VisibleDemandSpace) -> Self {
         Self { space, counts: vec![0; COUNTS] }
     }
 
-    /// Counts that were made elsewhere, [`COUNTS`] of them: the cells of the grid, then the bins of the histogram, class
-    /// by class. `None` for another number of them.
+    /// Creates a demand from counts: the cells of the grid, then the bins of the histogram, class by class.
+    /// Returns `None` if their number is not [`COUNTS`].
     pub fn from_counts(space: VisibleDemandSpace, counts: Vec<u32>) -> Option<Self> {
         (counts.len() == COUNTS).then_some(Self { space, counts })
     }
 
-    /// Counts a point in a cell of the grid, by [`DemandSpace::index`]. A cell that is not there is ignored.
+    /// Counts a point in a cell of the grid, by [`DemandSpace::index`]. An index outside the grid is ignored.
     pub fn count_cell(&mut self, index: usize) {
         if let Some(count) = self.counts[..CELLS].get_mut(index) {
             *count = count.saturating_add(1);
         }
     }
 
-    /// Counts a point in a bin of the histogram: its view depth, in metres, and its class, as
-    /// [`DepthHistogram::bin`] has them.
+    /// Counts a point in a bin of the histogram. `depth` is its view depth, in metres, and `class` its class,
+    /// as for [`DepthHistogram::bin`].
     pub fn count_depth(&mut self, depth: f32, class: f32) {
         let VisibleDemandSpace { near, far, .. } = self.space;
         if let Some(bin) = DepthHistogram::bin(near, far, DEPTHS, CLASSES, depth, class) {
@@ -83,24 +84,24 @@ impl VisibleDemand {
         }
     }
 
-    /// What the counts mean.
+    /// Returns the space of the counts.
     pub fn space(&self) -> &VisibleDemandSpace {
         &self.space
     }
 
-    /// The same, counted from another world position: moved by this many metres along each axis.
+    /// Returns this demand with its origin moved by this many metres along each axis.
     #[must_use]
     pub fn moved(mut self, by: DVec3) -> Self {
         self.space.demand.origin += by;
         self
     }
 
-    /// How fine a texel the points ask for, and where they are.
+    /// Returns the grid of visible points and the texel sizes that they need.
     pub fn demand(&self) -> DemandGrid<'_> {
         DemandGrid { space: self.space.demand, counts: &self.counts[..CELLS] }
     }
 
-    /// How far away they are.
+    /// Returns the histogram of the points' view depths.
     pub fn histogram(&self) -> DepthHistogram<'_> {
         let VisibleDemandSpace { near, far, .. } = self.space;
         DepthHistogram { near, far, bins: &self.counts[CELLS..], classes: CLASSES }

@@ -1,6 +1,6 @@
-//! The axis-aligned box of the camera frustum in the light's axes: the fit that most engines use.
-//! Depth is tight to the frustum, and the near plane is moved toward the light by a caster
-//! extension, since objects between the light and the frustum cast shadows into it.
+//! The axis-aligned box of the camera frustum in the light's axes, which most engines use. Depth is tight to
+//! the frustum. The near plane is moved toward the light by a caster extension, since objects between the
+//! light and the frustum cast shadows into it.
 //!
 //! ```text
 //!   toward the light
@@ -12,8 +12,8 @@
 //!    min.z └─────────┘  far plane
 //! ```
 //!
-//! The roll about the light comes from the shortest arc from straight down, so the map turns
-//! continuously with the sun.
+//! The roll about the light comes from the shortest arc from straight down, so the map turns continuously
+//! with the sun.
 
 use super::Form;
 

@@ -1,5 +1,6 @@
-//! What a map must hold: its hull as seen from the light, and the box around that along the light's axes, padded for
-//! rounding and by the margin, and not yet laid on a grid, widened by a border or moved to the casters.
+//! The region that a map must cover: its hull as seen from the light, and the box around the hull along the
+//! light's axes. The box is padded for rounding and by the margin. It is not yet on a grid, widened by a
+//! border or extended to the casters.
 
 use glam::{DVec2, DVec3};
 
@@ -13,12 +14,11 @@ use crate::light::{BoundSource, LightAxes, Volume};
 use crate::technique::settings::RectangleKind;
 use crate::view::Range;
 
-/// What a map must hold.
+/// The region that a map must cover.
 pub(crate) struct Covered<'a> {
-    /// The box, as yet without a light.
+    /// The box, without a light yet.
     pub(crate) volume: Volume,
-    /// Greatest distance by which rounding may shift a receiver or a caster across the light, in
-    /// metres.
+    /// Greatest shift of a receiver or a caster across the light by rounding, in metres.
     pub(crate) rounding: f64,
     /// The part of the light's plane in which casters count.
     pub(crate) shadowed: Shadowed<'a>,
@@ -29,12 +29,12 @@ pub(crate) struct Covered<'a> {
 pub(crate) enum Shadowed<'a> {
     /// A convex outline, anticlockwise in the plane of these axes.
     Outline(LightAxes, &'a [DVec2]),
-    /// All of the map, so that turning the camera moves no plane.
+    /// The whole map, so that turning the camera moves no plane.
     WholeMap,
 }
 
 impl<'a> Covered<'a> {
-    /// The box that a rule covers for a range of view depths.
+    /// Computes the region that a rule covers for a range of view depths.
     #[inline(always)]
     pub(crate) fn new(
         rule: &FitRule,
@@ -53,7 +53,7 @@ impl<'a> Covered<'a> {
         }
     }
 
-    /// The box of the slices' corners, with the margin and without room for rounding.
+    /// Computes the box of the slices' corners, with the margin and without room for rounding.
     #[inline(always)]
     fn corners(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
         let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
@@ -72,7 +72,7 @@ impl<'a> Covered<'a> {
         Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
     }
 
-    /// The cube around the slices' enclosing sphere.
+    /// Computes the cube around the slices' enclosing sphere.
     #[inline(always)]
     fn sphere(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
         let sphere = content.enclosing_sphere(range)?;
@@ -91,7 +91,7 @@ impl<'a> Covered<'a> {
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
 
-    /// The box of the hull's rectangle and its range along the light.
+    /// Computes the box of the hull's rectangle and its range along the light.
     fn hull(rule: &FitRule, content: &Content, hull: &LightHull<'a>, range: Range) -> Self {
         let resolution = rule.resolution.as_dvec2();
         let texels = resolution - 2.0 * rule.border;
@@ -104,7 +104,7 @@ impl<'a> Covered<'a> {
             RectangleKind::MinimumSquare => square(rectangle::min_square(hull.outline)),
         };
         let longest = rectangle.size().max_element();
-        // The rounding of the map itself, which the border widens.
+        // Rounding of the map itself, which the border widens.
         let widening = resolution / texels;
         let rounding = (rectangle.size().max(rule.least_size) * widening + hull.farthest) * ROUNDING;
         let pad = rounding + rule.margin;
@@ -124,8 +124,8 @@ impl<'a> Covered<'a> {
     }
 }
 
-/// A box of constant size, no wider than all receivers together and moved to where they are: nothing beyond them is
-/// looked up. Its size is constant as long as that of the receivers is.
+/// Limits a box of constant size to the extent of all receivers and moves it to them, since no point beyond
+/// them is looked up. The size stays constant while the receivers' extent does.
 fn within_receivers(min: DVec3, max: DVec3, content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
     let Some((low, high)) = content.receivers_across(axes) else { return (min, max) };
     let (low, high) = (low - pad, high + pad);
@@ -135,22 +135,24 @@ fn within_receivers(min: DVec3, max: DVec3, content: &Content, axes: &LightAxes,
     (first.extend(min.z), (first + size).extend(max.z))
 }
 
-/// The square with the rectangle's longer side, about the same middle.
+/// Returns the square with the rectangle's longer side, about the same middle.
 fn square(r: Rectangle) -> Rectangle {
     let (centre, half) = ((r.min + r.max) * 0.5, r.size().max_element() * 0.5);
     Rectangle { axis: r.axis, min: centre - half, max: centre + half }
 }
 
-/// The range, widened about its middle to at least `least`.
+/// Widens a range about its middle to at least `least`.
 fn widened(min: DVec2, max: DVec2, least: DVec2) -> (DVec2, DVec2) {
     let missing = (least - (max - min)).max(DVec2::ZERO) * 0.5;
     (min - missing, max + missing)
 }
 
-/// Share of a box's longest side within which its planes count as the view's own.
+/// Greatest distance between a plane and the view's own plane at which they count as one, as a share of the
+/// box's longest side.
 const SAME_PLANE: f64 = 1e-5;
 
-/// What set each plane: the view where the plane lies at the view's own extent, else the receivers.
+/// Returns the source of each plane: the view if the plane lies at the view's own extent, otherwise the
+/// receivers.
 fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [BoundSource; 6] {
     if !content.knows_receivers() || hull.is_empty {
         return [BoundSource::View; 6];
@@ -168,8 +170,8 @@ fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range
     [by(low.x), by(high.x), by(low.y), by(high.y), by(low.z), by(high.z)]
 }
 
-/// What a map must hold, seen from the light: an outline across the light and a depth range along
-/// it.
+/// The region that a map must cover, as seen from the light: an outline across the light and a depth range
+/// along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightHull<'a> {
     pub(crate) axes: LightAxes,
@@ -179,27 +181,28 @@ pub(crate) struct LightHull<'a> {
     pub(crate) z: (f64, f64),
     /// Greatest distance from the origin, for the rounding of f32 coordinates.
     pub(crate) farthest: f64,
-    /// Whether no receiver was found and the views' slices are used instead.
+    /// Whether no receiver was found, so that the views' slices are used instead.
     pub(crate) is_empty: bool,
 }
 
-/// What a hull is asked for.
+/// Requested detail of a hull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Detail {
-    /// All of it.
+    /// The complete outline.
     Outline,
-    /// The bounds of its outline along the axes, which are found much faster: the outline may lack corners.
+    /// Only the bounds of the outline along the axes, which are found much faster. The outline may lack
+    /// corners.
     Bounds,
 }
 
-/// Collects a light hull.
+/// Collector of a light hull.
 struct Collector<'a> {
     axes: LightAxes,
     detail: Detail,
     hull: HullBuilder<'a>,
     z: (f64, f64),
     farthest_squared: f64,
-    /// The first corner without room is an error. Later ones are left out.
+    /// Error of the first corner without room. Later corners are left out.
     pushed: Result<(), FitError>,
 }
 
@@ -209,8 +212,7 @@ impl<'a> Collector<'a> {
         Self { axes, detail, hull, z: (f64::MAX, f64::MIN), farthest_squared: 0.0, pushed: Ok(()) }
     }
 
-    /// Whether a box lies inside what has been collected so far, so that no part of it can change
-    /// the hull.
+    /// Returns whether a box lies inside the hull so far, so that no part of it can change the hull.
     fn holds(&self, min: DVec3, max: DVec3) -> bool {
         if self.hull.is_empty() {
             return false;
@@ -253,7 +255,7 @@ impl VisitCorners for Collector<'_> {
 }
 
 impl<'a> LightHull<'a> {
-    /// The hull of what a rule covers.
+    /// Computes the hull of the region that a rule covers.
     pub(crate) fn of(
         covers: Covers,
         detail: Detail,
@@ -268,15 +270,15 @@ impl<'a> LightHull<'a> {
         }
     }
 
-    /// The hull of the views' slices.
+    /// Computes the hull of the views' slices.
     fn of_views(content: &Content, axes: LightAxes, range: Range, points: &'a mut [DVec2]) -> Result<Self, FitError> {
         let mut collector = Collector::new(axes, Detail::Outline, points);
         content.corners(range).for_each(|corner| collector.take(corner));
         collector.finish(false)?.checked()
     }
 
-    /// The hull of the receivers' boxes clipped to the views' slices; that of the slices themselves
-    /// where no boxes are known or none is in view.
+    /// Computes the hull of the receivers' boxes, clipped to the views' slices. If no boxes are known or none
+    /// is in view, it is the hull of the slices themselves.
     pub(crate) fn of_receivers(
         detail: Detail,
         content: &Content,

@@ -1,10 +1,9 @@
-//! The least rectangle around what the camera can see of the receivers' boxes.
+//! The least rectangle around the visible parts of the receivers' boxes.
 //!
-//! Most of a frustum is empty air. Each receiver's box is clipped to the frustum and seen from the
-//! light; the rectangle lies around the outlines of all of them, and depth ends at the lowest one.
-//! No pixel of a receiver lies outside its box, so none is missed; the more closely the boxes hug
-//! the surfaces, the finer the texels, which is why it pays to cut a large mesh into clusters
-//! (`Clusters`, with the feature `alloc`).
+//! Most of a frustum is empty air. Each receiver's box is clipped to the frustum and projected along the
+//! light. The rectangle encloses the outlines of all boxes, and depth ends at the lowest one. No pixel of a
+//! receiver lies outside its box, so none is missed. Tighter boxes give finer texels, so it pays to cut a
+//! large mesh into clusters (`Clusters`, with the feature `alloc`).
 
 use super::{Covers, Form};
 

@@ -1,4 +1,4 @@
-//! One frame as placements see it, and the maps that they return.
+//! Input of a placement for one frame, and the maps that it returns.
 
 use crate::content::Content;
 use crate::fits::FitRule;
@@ -9,24 +9,24 @@ use crate::technique::Technique;
 use crate::technique::settings::MAX_MAPS;
 use crate::view::{Range, ViewFrustum};
 
-/// One frame, checked.
+/// One frame, with checked input.
 pub(crate) struct Frame<'a, 'b> {
     pub(crate) input: &'a FitInput<'b>,
     pub(crate) technique: &'a Technique,
-    /// How each of its maps is fitted.
+    /// Fit rule of each map.
     pub(crate) rule: &'a FitRule,
     pub(crate) light: Light,
     pub(crate) content: &'a Content<'b>,
-    /// The view depths that are shadowed at all.
+    /// View depths that have shadows.
     pub(crate) range: Range,
-    /// The first view of the frame before.
+    /// First view of the last frame.
     pub(crate) last_view: Option<&'a ViewFrustum>,
 }
 
 /// A map before it becomes matrices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedMap {
-    /// The box that it stores, from the near plane to the far plane.
+    /// Box that the map stores, from the near plane to the far plane.
     pub(crate) volume: Volume,
     /// [`FittedMap::depths`](crate::FittedMap::depths).
     pub(crate) depths: Option<DepthRange>,

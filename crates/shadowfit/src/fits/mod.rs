@@ -1,8 +1,8 @@
-//! The family of fits, one file per algorithm, and what they share.
+//! The fits, one file per algorithm, and their shared code.
 //!
-//! Every fit decides which box along the light's axes the shadow map stores: a hull in the light's
-//! space says what must be inside, a rectangle lies around it, and the caster policy places the near
-//! plane. [`fit`] and [`fit_scene`] take the rule from the settings. A further fit is a file beside this one with a
+//! Every fit computes the box along the light's axes that the shadow map stores. A hull in light space
+//! encloses the covered points, a rectangle encloses the hull, and the caster policy places the near plane.
+//! [`fit`] and [`fit_scene`] take the rule from the settings. To add a fit, add a file beside this one with a
 //! [`Form`], and a line in [`Form::of`].
 
 mod aabb;
@@ -33,7 +33,7 @@ use crate::technique::settings::{FitKind, FitSettings};
 use crate::view::{Range, ViewFrustum};
 
 impl Form {
-    /// The form of a kind of fit. The kind is looked at here and nowhere else.
+    /// Returns the form of a kind of fit. No other code depends on the kind.
     const fn of(kind: FitKind) -> Self {
         match kind {
             FitKind::XnaSample => xna::FORM,
@@ -45,26 +45,25 @@ impl Form {
     }
 }
 
-/// Fits the light's orthographic view-projection to a camera frustum, by the rule that
-/// [`Shape::kind`](crate::settings::Shape::kind) names.
+/// Fits the light's orthographic view-projection to a camera frustum, by the rule in
+/// [`Shape::kind`](crate::settings::Shape::kind).
 ///
-/// The frustum is cut at [`MapSettings::max_distance`](crate::settings::MapSettings::max_distance) first (`f32::MAX` leaves it whole; infinity
-/// is refused like every number that is not finite). `direction` is the light's **direction of
-/// travel** in world axes (right-handed); sources that speak of the direction toward the light use
-/// the opposite sign. Its length is ignored. Nothing is known about the scene here: [`fit_scene`]
-/// takes boxes, [`FitState`](crate::FitState) makes several maps and keeps them still.
+/// The frustum is first cut at [`MapSettings::max_distance`](crate::settings::MapSettings::max_distance).
+/// `f32::MAX` leaves it whole; infinity is refused like every number that is not finite. `direction` is the
+/// light's **direction of travel** in world axes (right-handed), of any length. If you have the direction
+/// toward the light, negate it. This function does not know the scene. [`fit_scene`] takes boxes, and
+/// [`FitState`](crate::FitState) makes several maps and keeps them stable.
 ///
 /// # Errors
 ///
-/// Every input that is NaN or infinite, [`FitError::BadDirection`], [`FitError::ZeroResolution`],
-/// [`FitError::NearNotBelowFar`] for a maximum distance that is not positive and ends before the near plane, and
-/// [`FitError::EmptyFrustum`].
+/// An error for every input that is NaN or infinite, [`FitError::BadDirection`],
+/// [`FitError::ZeroResolution`], [`FitError::NearNotBelowFar`] for a maximum distance that is not positive
+/// and ends before the near plane, and [`FitError::EmptyFrustum`].
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightProjection, FitError> {
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
     let (rule, light) = prepare(&input, settings, MapUse::alone(settings))?;
     if rule.form.alignment == Alignment::Exact {
-        // It uses nothing but the corners, and is as cheap as the sample's own code only without
-        // storage.
+        // This fit uses only the corners. Without storage it is as cheap as the sample's own code.
         return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.map.max_distance, &mut []);
     }
     let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
@@ -72,16 +71,17 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
-/// Fits one map around what the views see of the scene, by the rule that [`Shape::kind`](crate::settings::Shape::kind)
-/// names. As [`fit`], with the boxes of receivers and casters.
+/// Fits one map around the visible parts of the scene, by the rule in
+/// [`Shape::kind`](crate::settings::Shape::kind). It works like [`fit`], with the boxes of receivers and
+/// casters.
 ///
-/// Where no receiver's box is in view the fit is that of the view alone, and
-/// [`LightProjection::is_empty`] says so. So it does where all views begin beyond the maximum distance: the map is a box
-/// around the eye then, which nothing reads.
+/// If no receiver's box is in view, the map is fitted to the view alone, and [`LightProjection::is_empty`] is
+/// true. It is also true if all views begin beyond the maximum distance. In this case the map is a box around
+/// the eye that no point reads.
 ///
 /// # Errors
 ///
-/// As [`fit`]; [`FitError::NoView`] without a view; [`FitError::ScratchTooSmall`], see
+/// As [`fit`]. Also [`FitError::NoView`] without a view, and [`FitError::ScratchTooSmall`]; see
 /// [`Scratch::required`].
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, scratch: &mut Scratch) -> Result<LightProjection, FitError> {
     let (rule, light) = prepare(input, settings, MapUse::alone(settings))?;
@@ -89,7 +89,7 @@ pub fn fit_scene(input: &FitInput, settings: &FitSettings, scratch: &mut Scratch
     fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
-/// One map around everything that receives shadows.
+/// Fits one map around everything that receives shadows.
 #[inline(always)]
 fn fit_whole(
     content: &Content,
@@ -109,12 +109,12 @@ fn fit_whole(
     LightProjection::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 
-/// View depth at which the first view begins, in metres.
+/// Returns the view depth at which the first view begins, in metres.
 fn nearest(views: &[ViewFrustum]) -> f32 {
     views.iter().map(|view| view.near).fold(f32::MAX, f32::min)
 }
 
-/// Whether a part of any view lies before the distance at which shadows end, in metres of view depth.
+/// Returns whether a part of any view lies before the shadow distance, in metres of view depth.
 pub(crate) fn is_shadowed(views: &[ViewFrustum], distance: f32) -> bool {
     views.iter().any(|view| view.begins_before(distance))
 }
@@ -138,17 +138,18 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, map: MapUse) -> 
     Ok((rule, Light::new(direction, up, rule.form.roll)))
 }
 
-/// Whether a fit is as tight as possible or lies on the world's grid.
+/// Alignment of a fit: as tight as possible, or on the world's grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Snapping {
     Tight,
-    /// With extents and position across the light [on the grid](FitRule::snap); the depth range is left
-    /// for [`Volume::stabilise_depth`].
+    /// Extents and position across the light are [on the grid](FitRule::snap). [`Volume::stabilise_depth`]
+    /// sets the depth range later.
     OnGrid,
 }
 
-/// One map around a range of view depths, from the input to the box that becomes its
-/// [matrices](LightProjection::from_volume). The sphere fit is always on the grid, the XNA sample's never.
+/// Fits one map around a range of view depths, from the input to the box that becomes its
+/// [matrices](LightProjection::from_volume). The sphere fit is always on the grid, the XNA sample's fit
+/// never.
 #[inline(always)]
 pub(crate) fn fit_map(
     content: &Content,
@@ -158,12 +159,12 @@ pub(crate) fn fit_map(
     snapping: Snapping,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
-    // 1. The light's axes, along which everything is measured from here on.
+    // 1. The light's axes. All steps below measure along them.
     let axes = light.axes(rule.form.roll);
-    // 2. What must be inside: its hull in the light's space, the rectangle around that, and the depth
-    //    of both, padded for rounding and by the margin.
+    // 2. The covered region: its hull in light space, the rectangle around that, and the depth of both,
+    //    padded for rounding and by the margin.
     let Covered { mut volume, rounding, shadowed } = Covered::new(rule, content, axes, range, points)?;
-    // 3. The map around it, with the border that the filter reads: on the grid or as tight as can be.
+    // 3. The map around it, with the border that the filter reads, on the grid or as tight as possible.
     match (rule.form.alignment, snapping) {
         (Alignment::Exact, _) => {}
         (Alignment::Free, Snapping::Tight) => rule.add_border(&mut volume),

@@ -1,7 +1,7 @@
-//! Where the near plane lies, so that every caster that can cast a shadow into view is kept.
+//! Placement of the near plane, so that every caster that can cast a shadow into view is kept.
 //!
-//! Such casters lie over the covered region, toward the light; [`Outline`] finds the part of each
-//! caster's box that does.
+//! Such casters lie over the covered region, toward the light. [`Outline`] finds the part of each caster's
+//! box over it.
 //!
 //! ```text
 //!    toward the light          ┌──────┐
@@ -19,16 +19,14 @@ use crate::fits::covered::Shadowed;
 use crate::fits::{Alignment, Depth, FitRule};
 use crate::light::{BoundSource, LightAxes, Outline, OutlineScratch, Volume};
 
-/// Coordinate of the near plane along the light's z, and what set it if it was not the covered
-/// region.
+/// Coordinate of the near plane along the light's z, and its source unless it is the covered region.
 pub(crate) struct NearPlane {
     pub(crate) z: f64,
     pub(crate) from: Option<BoundSource>,
 }
 
-/// Moves the near plane of a volume, which so far ends at the covered region, to the place that the
-/// rule gives, and the light with it. `rounding` is what receivers and casters may be shifted by,
-/// each, in metres.
+/// Moves the near plane of a volume from the covered region to the position that the rule gives, and the
+/// light with it. `rounding` is the greatest shift of receivers, and of casters, by rounding, in metres.
 #[inline(always)]
 pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rounding: f64, content: &Content) {
     if rule.depth == Depth::Doubled {
@@ -52,8 +50,8 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     }
     (volume.max.z, volume.bounds_from[5]) = (near.z, near.from.unwrap_or(volume.bounds_from[5]));
     if rule.form.alignment != Alignment::OnGrid {
-        // The rounding of the depth range, which casters may make far longer than the covered
-        // region. On the grid it is in the steps.
+        // Rounding of the depth range, which casters may make far longer than the covered region. On the grid
+        // the steps include it.
         let depth = (volume.max.z - volume.min.z) * ROUNDING;
         (volume.min.z, volume.max.z) = (volume.min.z - depth, volume.max.z + depth);
     }
@@ -62,8 +60,8 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
 
 /// Finds the near plane for a covered region that ends at `covered` along the light's z.
 ///
-/// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`;
-/// casters that stand no farther beside it than `reach` (in metres) count too.
+/// `outline` is the convex outline of the covered region, anticlockwise, in the plane of `axes`. Casters up
+/// to `reach` metres outside it count too.
 #[inline(always)]
 pub(crate) fn find(
     covered: f64,
@@ -92,7 +90,7 @@ pub(crate) fn find(
     NearPlane { z, from: (z > covered).then_some(from) }
 }
 
-/// Finds the near plane as [`find`] does, for all of a map, given by its corners across the light.
+/// Finds the near plane like [`find`], over a whole map, given by its corners across the light.
 pub(crate) fn find_over(
     covered: f64,
     axes: &LightAxes,
@@ -105,12 +103,12 @@ pub(crate) fn find_over(
     find(covered, axes, &corners(min, max), content, depth, reach)
 }
 
-/// Finds the far plane for a map, given by its corners across the light, whose covered region begins at `covered`
-/// along the light's z: far enough for the receivers in view over all of the map, since points of all
-/// view depths read it, but no farther than [`FARTHER`] allows.
+/// Finds the far plane of a map, given by its corners across the light, whose covered region begins at
+/// `covered` along the light's z. It is far enough for the receivers in view over the whole map, since points
+/// of all view depths read it, but no farther than [`FARTHER`] allows.
 pub(crate) fn find_far(covered: f64, axes: &LightAxes, min: DVec2, max: DVec2, content: &Content) -> f64 {
     let longer = (max - min).max_element();
-    // Seen from below: the lowest point is the highest there, and x and y change places.
+    // Seen from below: the lowest point is the highest there, and x and y are swapped.
     let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
     let corners = corners(min.yx(), max.yx());
     let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
@@ -118,16 +116,16 @@ pub(crate) fn find_far(covered: f64, axes: &LightAxes, min: DVec2, max: DVec2, c
     (-lowest.z).max(covered - longer * FARTHER)
 }
 
-/// How far the far plane may lie beyond the covered region, in extents of the map: under a low sun that is as
-/// far as level ground goes on below the map.
+/// Greatest distance of the far plane beyond the covered region, in extents of the map. Under a low sun,
+/// level ground continues this far below the map.
 const FARTHER: f64 = 2.0;
 
-/// Corners of a rectangle along the axes, anticlockwise.
+/// Returns the corners of a rectangle along the axes, anticlockwise.
 fn corners(min: DVec2, max: DVec2) -> [DVec2; 4] {
     [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y))
 }
 
-/// The greatest z of casters over an outline, or of what is covered where none reaches higher.
+/// The greatest z of casters over an outline, or of the covered region if no caster reaches higher.
 struct Highest<'a> {
     over: Outline<'a>,
     scratch: OutlineScratch,
@@ -139,7 +137,7 @@ impl<'a> Highest<'a> {
         Self { over: Outline::new(axes, outline, reach), scratch: OutlineScratch::new(), z: covered }
     }
 
-    /// The height that a box must exceed to count.
+    /// Returns the height that a box must exceed to count.
     fn floor(&self, min: DVec3, max: DVec3) -> f64 {
         self.z - min.abs().max(max.abs()).element_sum() * ROUNDING
     }
@@ -153,7 +151,7 @@ impl<'a> Highest<'a> {
 }
 
 impl Visit for Highest<'_> {
-    /// Returns whether a part of a box may lie higher than all so far.
+    /// Returns whether a part of a box may lie higher than all parts so far.
     #[inline(always)]
     fn wants(&self, bounds: &Bounds) -> bool {
         self.over.may_hold(bounds.min, bounds.max, self.floor(bounds.min, bounds.max))
@@ -165,14 +163,14 @@ impl Visit for Highest<'_> {
     }
 }
 
-/// How far outside the outline casters are read by the widest filter that the border allows, in
-/// metres: a filter of reach E needs E - 1/2 texels of border, and half a texel more is for the
-/// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
+/// Returns the distance outside the outline within which the widest filter that the border allows reads
+/// casters, in metres. A filter of radius E needs E - 1/2 texels of border, and the rasteriser needs half a
+/// texel more. `rounding` is the greatest shift of receivers, and of casters.
 pub(crate) fn filter_reach(texel: DVec2, rule: &FitRule, rounding: f64) -> f64 {
     let texels = (rule.border + 1.0) * texel.max_element();
     (texels + 2.0 * rounding) * ANY_AXES + rule.margin
 }
 
-/// How far an outline must be [widened](Outline) so that it surely holds the outline widened by the
-/// diagonal of a unit square: √2 each way.
+/// Factor for [widening an outline](Outline) so that it surely holds the outline widened by the diagonal of a
+/// unit square: √2 each way.
 const ANY_AXES: f64 = 2.0;

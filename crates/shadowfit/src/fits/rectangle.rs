@@ -1,19 +1,20 @@
-//! The least rectangle around a convex polygon: it decides how the map is turned about the light.
+//! The least rectangle around a convex polygon. It sets the map's turn about the light.
 //!
-//! One side of the least-area rectangle lies along an edge of the polygon (H. Freeman and R.
-//! Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve", 1975),
-//! so only the edges' directions are tried, with four calipers that turn with them (G. T.
-//! Toussaint, "Solving geometric problems with the rotating calipers", 1983). For the least square
-//! this is not enough: between two edges' directions the calipers touch the same corners, both
-//! sides are sinusoids of the angle (concave there), and the longer one is least where the two are
-//! equal or at an end of the interval.
+//! One side of the least-area rectangle lies along an edge of the polygon (H. Freeman and R. Shapira,
+//! "Determining the minimum-area encasing rectangle for an arbitrary closed curve", 1975). So only the edges'
+//! directions are tried, with four calipers that turn with them (G. T. Toussaint, "Solving geometric problems
+//! with the rotating calipers", 1983).
+//!
+//! This is not enough for the least square. Between two edges' directions the calipers touch the same
+//! corners, and both sides are sinusoids of the angle (concave there). The longer side is least where the two
+//! are equal or at an end of the interval.
 
 use glam::DVec2;
 
 /// A rectangle that may be turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rectangle {
-    /// Unit direction of its first side; the second one is a quarter turn to the left.
+    /// Unit direction of the first side. The second side is a quarter turn to the left.
     pub(crate) axis: DVec2,
     /// Least coordinates along the two sides.
     pub(crate) min: DVec2,
@@ -22,7 +23,7 @@ pub(crate) struct Rectangle {
 }
 
 impl Rectangle {
-    /// Around points, with sides along `axis` (of unit length) and across it.
+    /// Returns the rectangle around points, with sides along `axis` (of unit length) and across it.
     pub(crate) fn around(points: &[DVec2], axis: DVec2) -> Self {
         let across = axis.perp();
         let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
@@ -39,12 +40,12 @@ impl Rectangle {
     }
 }
 
-/// Relative gain below which two rectangles count as equally good, so that rounding does not decide
-/// between them.
+/// Relative gain below which two rectangles count as equally good, so that rounding does not choose between
+/// them.
 const TIE: f64 = 1e-9;
 
-/// The rectangle of least area around a convex polygon (anticlockwise corners), its first side
-/// within 45 degrees of +x. Of equal ones it is the least turned.
+/// Returns the rectangle of least area around a convex polygon (anticlockwise corners), with its first side
+/// within 45 degrees of +x. Among equal ones it is the least turned.
 pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
     let mut best = Best::new(hull, |r| r.size().x * r.size().y);
     let longest = Calipers::turn(hull, |calipers| {
@@ -54,19 +55,19 @@ pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
     upright(best.rectangle)
 }
 
-/// The rectangle of least area around a convex polygon once it is widened to extents in which no texel is
-/// longer than `ratio` times its width. `widened` gives those extents.
+/// Returns the rectangle around a convex polygon with the least area after widening. `widened` returns
+/// extents at which no texel is longer than `ratio` times its width.
 ///
-/// The area of a widened rectangle depends on its longer side alone, so that between two edges'
-/// directions the best one may also be where the limit is just met: there one side is a fixed
-/// multiple of the other, as the sides of the least square are equal.
+/// The area of a widened rectangle depends only on its longer side. Between two edges' directions, the best
+/// rectangle may therefore also be where the limit is just met. There one side is a fixed multiple of the
+/// other, like the equal sides of the least square.
 pub(crate) fn min_area_within(hull: &[DVec2], ratio: f64, widened: impl Fn(DVec2) -> DVec2) -> Rectangle {
     let mut best = Best::new(hull, |r| widened(upright(*r).size()).element_product());
     // At an eighth of a turn the sides swap their texel counts.
     let eighth = DVec2::splat(core::f64::consts::FRAC_1_SQRT_2);
     best.keep(&Rectangle::around(hull, eighth));
     best.keep(&Rectangle::around(hull, -eighth.perp()));
-    // Multiples of a side for which its texels are as long as those of the other, in either position.
+    // Multiples of a side at which its texels are as long as the other side's, in either position.
     let unit = widened(DVec2::X);
     let per_texel = unit.y * ratio;
     let longest = Calipers::turn(hull, |calipers| {
@@ -83,7 +84,7 @@ pub(crate) fn min_area_within(hull: &[DVec2], ratio: f64, widened: impl Fn(DVec2
     upright(best.rectangle)
 }
 
-/// The rectangle with the least longer side around a convex polygon, which makes the least square.
+/// Returns the rectangle with the least longer side around a convex polygon. It makes the least square.
 pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
     let mut best = Best::new(hull, |r| r.size().max_element());
     let longest = Calipers::turn(hull, |calipers| {
@@ -99,10 +100,9 @@ pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
 
 /// The best rectangle so far.
 ///
-/// For a sliver as thin as rounding the calipers may find the wrong corners, so each rectangle is
-/// measured again around the points before it is accepted; and since such a sliver is nearly a
-/// line, rectangles along its longest edge, or with it as the diagonal of a square, are tried as
-/// well.
+/// For a sliver as thin as rounding the calipers may find the wrong corners, so each rectangle is measured
+/// again around the points before it is accepted. Such a sliver is nearly a line. So rectangles along its
+/// longest edge, and rectangles with this edge as the diagonal of a square, are tried as well.
 struct Best<'a, C> {
     hull: &'a [DVec2],
     cost: C,
@@ -128,15 +128,15 @@ impl<'a, C: Fn(&Rectangle) -> f64> Best<'a, C> {
 /// Four lines that touch a convex polygon from all sides, one of them along an edge.
 struct Calipers<'a> {
     hull: &'a [DVec2],
-    /// Unit direction of the edge that the lower line lies along.
+    /// Unit direction of the edge on the lower line.
     axis: DVec2,
-    /// The corners that the lines touch when they turn on: lower (the edge's end), right, upper, left.
+    /// Corners that the lines touch when they turn further: lower (the edge's end), right, upper, left.
     touched: [usize; 4],
-    /// Distances below this may be rounding.
+    /// Distance below which a difference may be rounding.
     noise: f64,
 }
 
-/// Share of a polygon's extent that counts as rounding.
+/// Rounding, as a share of a polygon's extent.
 const NOISE: f64 = 1e-10;
 
 impl<'a> Calipers<'a> {
@@ -158,7 +158,7 @@ impl<'a> Calipers<'a> {
             calipers.touched[0] = end;
             let directions = [calipers.axis, calipers.axis.perp(), -calipers.axis];
             for (side, direction) in directions.into_iter().enumerate() {
-                // Each line touches at the corner of the one before it or further on.
+                // Each line touches at the corner of the line before it, or further on.
                 let first = calipers.touched[side];
                 let behind = if is_first { 0 } else { (calipers.touched[side + 1] + n - first) % n };
                 calipers.touched[side + 1] = calipers.advance(first, behind, direction);
@@ -172,16 +172,15 @@ impl<'a> Calipers<'a> {
         longest
     }
 
-    /// The farthest corner along `direction`, from corner `first` on; the search may skip `known`
-    /// corners that an earlier, less turned line passed already.
+    /// Returns the farthest corner along `direction`, from corner `first` on. The search may skip `known`
+    /// corners, which an earlier, less turned line has passed.
     fn advance(&self, first: usize, known: usize, direction: DVec2) -> usize {
         let n = self.hull.len();
         let at = |k: usize| self.hull[(first + k) % n].dot(direction);
         let (mut k, mut most) = if at(known) > at(0) { (known, at(known)) } else { (0, at(0)) };
         let mut next = k + 1;
-        // Of corners that are equally far up to rounding, the last one counts: it is the one
-        // touched when the line turns on. Outlines of views have parallel sides, so this case is
-        // common.
+        // Among corners that are equally far up to rounding, the last one counts: the line touches it when it
+        // turns further. Outlines of views have parallel sides, so this case is common.
         while next < n && at(next) >= most - self.noise {
             (k, most) = (next, most.max(at(next)));
             next += 1;
@@ -199,11 +198,11 @@ impl<'a> Calipers<'a> {
         }
     }
 
-    /// The direction at which the first side is `multiple` times the second while the lines go on
-    /// touching these corners.
+    /// Returns the direction at which the first side is `multiple` times the second, while the lines still
+    /// touch these corners.
     ///
-    /// The side along a unit axis a is (right - left)·a, the other one (upper - lower)·perp(a):
-    /// the difference of one and a multiple of the other is linear in a and zero across d below.
+    /// The side along a unit axis a is (right - left)·a, and the other side is (upper - lower)·perp(a). The
+    /// difference of one and a multiple of the other is linear in a, and zero across d below.
     fn balanced(&self, multiple: f64) -> Option<DVec2> {
         let [lower, right, upper, left] = self.touched.map(|i| self.hull[i]);
         let (along, across) = (right - left, (upper - lower) * multiple);
@@ -213,7 +212,7 @@ impl<'a> Calipers<'a> {
     }
 }
 
-/// The same rectangle named by the side that is nearest to +x.
+/// Returns the same rectangle with the side nearest to +x as its first side.
 fn upright(r: Rectangle) -> Rectangle {
     let DVec2 { x, y } = r.axis;
     let turns = if x.abs() >= y.abs() {
@@ -235,7 +234,7 @@ fn upright(r: Rectangle) -> Rectangle {
 mod tests {
     use super::*;
 
-    /// A convex polygon on an ellipse, from angles.
+    /// Returns a convex polygon on an ellipse, from angles.
     fn polygon(turns: &[f64]) -> impl Iterator<Item = DVec2> + '_ {
         turns.iter().map(|t| DVec2::new(3.0 * libm::cos(*t), libm::sin(*t)) + DVec2::new(10.0, -4.0))
     }
@@ -287,7 +286,7 @@ mod tests {
                     let r = min_area_within(hull, ratio, widened);
                     let area = widened(r.size()).element_product();
                     let turned = |size: DVec2| widened(size).element_product();
-                    // Of each direction both that name a side which is the nearer one to +x.
+                    // All directions within 45 degrees of +x, so each rectangle is tried once.
                     let least = (-10_000..=10_000)
                         .map(|i| f64::from(i) / 10_000.0 * core::f64::consts::FRAC_PI_4)
                         .map(|a| turned(Rectangle::around(hull, DVec2::new(libm::cos(a), libm::sin(a))).size()))
@@ -307,7 +306,7 @@ mod tests {
         assert!((min_square(&hull).size() - DVec2::ONE).abs().max_element() < 1e-12);
     }
 
-    /// A wall seen edge-on: as thin as rounding makes it, in any order of the corners at its ends.
+    /// A wall seen edge-on, as thin as rounding, with the corners at its ends in any order.
     #[test]
     fn slivers_have_the_least_square_of_their_line() {
         for noise in [[0.0, 1e-17, 3e-17, 1e-17], [1e-16, 0.0, 1e-17, 2e-16], [0.0, 0.0, 1e-13, 1e-13]] {

@@ -1,6 +1,6 @@
-//! A fit as data: what each kind covers, by which rectangle, along which axes and how deep.
+//! A fit as data: the covered region, the rectangle, the axes and the depth.
 //!
-//! Settings with everything resolved that depends on the kind, by its [`Form`].
+//! A rule is the settings with all values resolved that depend on the kind of fit, by its [`Form`].
 
 use glam::{DVec2, DVec3, UVec2};
 
@@ -11,22 +11,22 @@ use crate::light::Volume;
 use crate::light::grid::{Grid, anchor, quantised};
 use crate::technique::settings::{CasterPolicy, FilterKind, FitSettings, MapSettings, RectangleKind};
 
-/// What places the near plane.
+/// Rule that places the near plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Depth {
-    /// The XNA sample's own depth: the light at the far side of the box, and twice its depth.
+    /// The XNA sample's own depth: the light is at the far side of the box, and the range is twice its depth.
     Doubled,
     /// At the covered region.
     AtCovered,
-    /// This far before the covered region, in metres.
+    /// Before the covered region by this distance, in metres.
     Extended(f64),
-    /// At the box around all casters, as far as it can cast shadows into view.
+    /// At the box around all casters, clipped to the volume that can cast shadows into view.
     AtCasterBounds,
     /// At the first caster that can cast a shadow into view.
     AtCasters,
 }
 
-/// How one map is fitted: [`FitSettings`] with everything resolved that depends on the kind.
+/// Fit rule of one map: [`FitSettings`] with all values resolved that depend on the kind of fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FitRule {
     pub(crate) form: Form,
@@ -34,19 +34,19 @@ pub(crate) struct FitRule {
     pub(crate) depth: Depth,
     /// Free texels between the covered region and the map's border.
     pub(crate) border: f64,
-    /// What the box is enlarged by on all sides, in metres.
+    /// Enlargement of the box on all sides, in metres.
     pub(crate) margin: f64,
     /// Greatest ratio of a texel's sides, if there is a limit.
     pub(crate) max_texel_ratio: Option<f64>,
     /// Least width of a texel along either side, in metres; 0 for no limit.
     pub(crate) least_texel: f64,
-    /// Least extents of what is covered, in metres: those of the texels between the borders.
+    /// Least extents of the covered region, in metres: the extents of the texels between the borders.
     pub(crate) least_size: DVec2,
     /// Width and height of the map, in texels.
     pub(crate) resolution: UVec2,
     /// Depth convention of the fitted clip space.
     pub(crate) convention: DepthConvention,
-    /// Whether any point inside the map may read it. Otherwise only the points of its slice of the view do.
+    /// Whether any point inside the map may read it. Otherwise only points in its slice of the view do.
     pub(crate) serves_all: bool,
 }
 
@@ -60,8 +60,8 @@ pub(crate) struct MapUse {
 }
 
 impl MapUse {
-    /// The use of a single map without a technique. Its border comes from the settings, or from the reach of the default
-    /// filter.
+    /// Returns the use of a single map without a technique. The border comes from the settings, or from the
+    /// radius of the default filter.
     pub(crate) const fn alone(settings: &FitSettings) -> Self {
         let border = match settings.map.border {
             Some(texels) => texels,
@@ -107,14 +107,14 @@ impl FitRule {
         })
     }
 
-    /// Extents across the light, in metres, enlarged so that the texels keep within the limit of their ratio;
+    /// Enlarges extents across the light, in metres, so that the texels keep within the limit of their ratio.
     /// `texels` is their number along each axis.
     pub(crate) fn limited(&self, size: DVec2, texels: DVec2) -> DVec2 {
         let Some(ratio) = self.max_texel_ratio else { return size };
         size.max(texels * ((size / texels).max_element() / ratio))
     }
 
-    /// Texels that are left for the content of a map on the grid.
+    /// Returns the texels that the content of a map on the grid may use.
     pub(crate) fn usable(&self) -> DVec2 {
         // One texel is lost to the shift onto the grid.
         self.resolution.as_dvec2() - (2.0 * self.border + 1.0)
@@ -144,7 +144,8 @@ impl FitRule {
         if self.max_texel_ratio.is_some() {
             let limited = self.limited(size, usable);
             let stepped = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
-            // The step above the limit may be too long the other way. The limit itself follows from a step too.
+            // The step above the limit may exceed the limit along the other axis. The limit itself follows
+            // from a step too.
             size = if self.limited(stepped, usable) == stepped { stepped } else { limited };
         }
         let texel = size / usable;
@@ -157,13 +158,14 @@ impl FitRule {
         grid
     }
 
-    /// This rule without a border, its near plane at the covered region. What it covers is no smaller than with one.
+    /// Returns this rule without a border, and with its near plane at the covered region. It covers no less
+    /// than with a border.
     pub(crate) const fn without_room(self) -> Self {
         Self { border: 0.0, depth: Depth::AtCovered, ..self }
     }
 }
 
-/// The rule of the near plane for the settings' caster policy.
+/// Returns the near plane rule of the settings' caster policy.
 #[inline]
 fn near_plane(settings: &MapSettings, casters_are_known: bool) -> Depth {
     match settings.casters {

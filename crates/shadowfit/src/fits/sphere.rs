@@ -1,11 +1,12 @@
-//! The stable fit: the minimal enclosing sphere of the view, seen from the light.
+//! The stable fit: the minimal enclosing sphere of the view, as seen from the light.
 //!
-//! A sphere looks the same from every side, so turning the camera does not change the map's extent;
-//! the map's texels lie on a grid that is fixed to the world, so moving it shifts the map by whole
-//! texels. Shadow edges do not move at all, at the price of a map that is mostly outside the view.
+//! A sphere looks the same from every side, so turning the camera does not change the map's extent. The map's
+//! texels lie on a fixed world grid, so moving the camera shifts the map by whole texels. Shadow edges do not
+//! move at all, but most of the map lies outside the view.
 //!
-//! For a symmetric frustum the sphere's centre lies on the axis. With half diagonals r₀ at the
-//! near and r₁ at the far rectangle, L apart, and x from the near one:
+//! For a symmetric frustum the sphere's centre lies on the axis. Let r₀ be the half diagonal of the near
+//! rectangle and r₁ of the far rectangle, L their distance, and x the distance of the centre from the near
+//! one:
 //!
 //! ```text
 //!          ____
@@ -16,11 +17,11 @@
 //!       ╲  x  │╱
 //! ```
 //!
-//! Any other view, and several together, get the sphere by incremental construction from at most
-//! four points of support, as E. Welzl has it ("Smallest enclosing disks (balls and ellipsoids)",
-//! 1991). The stable map with a bounding sphere and whole texels is M. Valient's ("Stable
-//! rendering of cascaded shadow maps", `ShaderX6`, 2008); here the extent is rounded up to eighths
-//! of an octave instead of a world unit, and the grid is kept in f64.
+//! Any other view, or several views together, get the sphere by incremental construction from at most four
+//! points of support (E. Welzl, "Smallest enclosing disks (balls and ellipsoids)", 1991). The stable map with
+//! a bounding sphere and whole texels is from M. Valient ("Stable rendering of cascaded shadow maps",
+//! `ShaderX6`, 2008). Here the extent is rounded up to eighths of an octave instead of a world unit, and the
+//! grid is kept in f64.
 
 use glam::{DVec3, Vec3};
 
@@ -32,13 +33,13 @@ use crate::view::ViewFrustum;
 pub(super) const FORM: Form = Form { covers: Covers::Sphere, alignment: Alignment::OnGrid, ..Form::OF_VIEWS };
 
 impl ViewFrustum {
-    /// Centre and radius, in metres, of the minimal sphere around the corners: the centre in
-    /// world axes relative to [`Self::origin`]. Exact to 1e-9 of the radius for the given f32
+    /// Returns the centre and radius, in metres, of the minimal sphere around the corners. The centre is in
+    /// world axes relative to [`Self::origin`]. The result is exact to 1e-9 of the radius for the given f32
     /// corners.
     ///
     /// # Errors
     ///
-    /// The errors of [`Self::slice`] for frusta that no fit can use.
+    /// As [`Self::slice`] for frusta that no fit can use.
     pub fn enclosing_sphere(&self) -> Result<(DVec3, f64), FitError> {
         let corners = self.checked()?.corners.map(Vec3::as_dvec3);
         let symmetric = SymmetricFrustum::new(&corners);

@@ -1,11 +1,9 @@
 //! The fit of the XNA "Shadow Mapping" sample (Microsoft, XNA Creators Club, 2008):
-//! `CreateLightViewProjectionMatrix`, kept exactly so that its pictures and flaws can be
-//! reproduced. Tight across the light, twice the depth it needs, and blind to casters outside the
-//! frustum.
+//! `CreateLightViewProjectionMatrix`, kept exactly so that its pictures and flaws can be reproduced. It is
+//! tight across the light, has twice the necessary depth, and ignores casters outside the frustum.
 //!
-//! The light stands at the centre of the box's x and y at its *minimum* z, which is the face
-//! **away** from where the light comes from, since view space looks along -z; the projection then
-//! runs from -depth to +depth:
+//! The light is at the centre of the box's x and y and at its *minimum* z. This is the face **away** from the
+//! incoming light, since view space looks along -z. The projection then runs from -depth to +depth:
 //!
 //! ```text
 //!   toward the light
@@ -17,10 +15,13 @@
 //!         └───────┘  far plane, depth 1
 //! ```
 //!
-//! Deviations from the source, none of which changes a number of its own scene: corners are
-//! relative to the eye and the box is measured in f64 (the source rounds world coordinates to f32),
-//! a vertical light takes another up axis (the source divides by zero), reversed and -1..1 depth
-//! are offered, and `margin` is the remedy that the source's text suggests.
+//! The deviations from the source change no number of its own scene:
+//!
+//! - Corners are relative to the eye, and the box is measured in f64. The source rounds world coordinates to
+//!   f32.
+//! - A vertical light uses another up axis. The source divides by zero.
+//! - Reversed and -1..1 depth are available.
+//! - `margin` is the remedy that the source's text suggests.
 
 use super::{Alignment, Covers, Form};
 use crate::light::Roll;

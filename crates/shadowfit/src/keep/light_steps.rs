@@ -1,27 +1,26 @@
-//! Light steps: a sun that moves slowly is held still, then steps.
+//! Light steps: the direction of a slowly moving sun is held, then steps.
 //!
-//! Every change of the light's direction turns the map's texels in the world, so shadow edges
-//! crawl all day. Held directions keep them still between steps that are too small to notice, or
-//! that are cross-faded over two maps.
+//! Every change of the light's direction turns the map's texels in the world, so shadow edges crawl all day.
+//! Held directions keep them still between steps. The steps are too small to notice, or are cross-faded over
+//! two maps.
 //!
-//! # How far a turn moves the map
+//! # Movement of a map when the light turns
 //!
-//! Let the light turn by δ, and with it the map about its centre by a small rotation ω. A point at
+//! Let the light turn by δ, and let the map turn with it about its centre by a small rotation ω. A point at
 //! (a, b) across the light and at c along it, from that centre, moves across the light by
 //!
 //! ```text
 //!   ω × p  =  (ω_y c - ω_z b,  ω_z a - ω_x c)        tilt: |(ω_x, ω_y)| = δ, roll: ω_z
 //! ```
 //!
-//! - Roll moves the map's edge, half of R texels from its centre, by `ω_z · R / 2` texels. The
-//!   shortest-arc axes of every fit but XNA's roll by at most δ while the light comes from above
-//!   the horizon (δ · tan(β/2), β the angle from straight down), so that is **δ · R / 2** at most.
-//! - Tilt moves what is half the depth range D away along the light by `δ · D / (2 · texel)`.
+//! - Roll moves the map's edge, R / 2 texels from its centre, by `ω_z · R / 2` texels. While the light comes
+//!   from above the horizon, the shortest-arc axes of every fit except XNA's roll by δ · tan(β/2), where β is
+//!   the angle from straight down. This is at most δ, so roll moves the edge by at most **δ · R / 2**.
+//! - Tilt moves points at half the depth range D along the light by `δ · D / (2 · texel)`.
 //!
-//! [`LightSteps::extent`] is R, or with the tilt R + D / texel
-//! ([`LightSteps::extent_of`]): the direction is held until δ · extent / 2 exceeds the set
-//! number of texels. Look-at axes (XNA's) roll faster near the vertical, and fits that turn about
-//! the light (oriented ones) move by more than this says.
+//! [`LightSteps::extent`] is R, or R + D / texel to include the tilt ([`LightSteps::extent_of`]). The
+//! direction is held until δ · extent / 2 exceeds the set number of texels. Look-at axes (XNA's) roll faster
+//! near the vertical. Fits that turn about the light (oriented ones) move by more than this bound.
 
 use glam::Vec3;
 
@@ -29,19 +28,19 @@ use crate::base::{FitError, checks};
 use crate::light::is_same_direction;
 use crate::projection::LightProjection;
 
-/// When a held light steps, and how.
+/// Settings of a held light: when it steps, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightSteps {
-    /// Greatest movement at the map's edge for which the light is still held, in texels. 0 follows
-    /// every change that is more than rounding. Default: 1.
+    /// Greatest movement at the map's edge while the light is held, in texels. At 0 the light follows every
+    /// change that is more than rounding. Default: 1.
     pub texels: f32,
-    /// Extent of the map by which that movement is computed, in texels: its width, or
-    /// [`Self::extent_of`]. Default: 2048.
+    /// Extent of the map that the movement is computed from, in texels: its width, or [`Self::extent_of`].
+    /// Default: 2048.
     pub extent: f32,
-    /// Time of the cross-fade from the old direction to the new one, in seconds. 0 steps at once.
-    /// While a fade runs no other step begins, so that two maps are enough: a light that moves on
-    /// lags by this time. Default: 0.
+    /// Duration of the cross-fade from the old direction to the new one, in seconds. 0 steps at once. No
+    /// other step begins during a fade, so two maps are enough. A light that keeps moving lags by this time.
+    /// Default: 0.
     pub fade: f32,
 }
 
@@ -52,37 +51,37 @@ impl Default for LightSteps {
 }
 
 impl LightSteps {
-    /// These settings with another [`texels`](Self::texels).
+    /// Sets [`texels`](Self::texels).
     #[must_use]
     pub const fn with_texels(mut self, texels: f32) -> Self {
         self.texels = texels;
         self
     }
 
-    /// These settings with another [`extent`](Self::extent).
+    /// Sets [`extent`](Self::extent).
     #[must_use]
     pub const fn with_extent(mut self, extent: f32) -> Self {
         self.extent = extent;
         self
     }
 
-    /// These settings with another [`fade`](Self::fade).
+    /// Sets [`fade`](Self::fade).
     #[must_use]
     pub const fn with_fade(mut self, fade: f32) -> Self {
         self.fade = fade;
         self
     }
 
-    /// Extent of a fit for which no point of its box moves farther than predicted, along either
-    /// axis of the map, in texels: its longer side and its depth range together, by the shorter
-    /// side of a texel.
+    /// Returns the extent of a fit, in texels, at which no point of its box moves farther than predicted
+    /// along either axis of the map. It is the sum of the longer side and the depth range, divided by the
+    /// shorter side of a texel.
     pub fn extent_of(fit: &LightProjection) -> f32 {
         let (texel, resolution) = (fit.texel_size, fit.resolution.as_vec2());
         let side = (texel.x * resolution.x).max(texel.y * resolution.y);
         (side + fit.depth_range) / texel.x.min(texel.y)
     }
 
-    /// Angle that the light may turn by before it steps, in radians: 2 · texels / extent.
+    /// Returns the angle that the light may turn before it steps, in radians: 2 · texels / extent.
     ///
     /// # Errors
     ///
@@ -95,7 +94,7 @@ impl LightSteps {
     }
 }
 
-/// State of a held light, as plain data. By default it has seen no light yet.
+/// State of a held light, as plain data. The default state holds no direction.
 ///
 /// ```
 /// use shadowfit::glam::Vec3;
@@ -108,7 +107,7 @@ impl LightSteps {
 /// for frame in 0..600 {
 ///     let angle = frame as f32 * 1e-5; // radians
 ///     let step = sun.update(Vec3::new(angle.sin(), -1.0, 0.3), &settings, 1.0 / 60.0)?;
-///     // Fit and shade with step.direction; where there is a step.previous, with both, by step.blend.
+///     // Fit and shade with step.direction. If there is a step.previous, use both, mixed by step.blend.
 ///     directions += u32::from(last != Some(step.direction));
 ///     last = Some(step.direction);
 /// }
@@ -118,12 +117,12 @@ impl LightSteps {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightStepState {
-    /// The light's direction of travel that is held, a unit vector in world axes.
+    /// Held direction of travel of the light, a unit vector in world axes.
     pub held: Option<Vec3>,
-    /// The direction that is faded out.
+    /// Direction that is faded out.
     pub previous: Option<Vec3>,
-    /// Weight of the held direction while another is faded out, 0..=1; f64, so that short frames
-    /// add up in a long fade.
+    /// Weight of the held direction while another is faded out, 0..=1. It is f64, so that short frames add up
+    /// in a long fade.
     pub blend: f64,
 }
 
@@ -131,29 +130,29 @@ pub struct LightStepState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightStep {
-    /// The light's direction of travel to fit to, a unit vector in world axes: the same bits until
+    /// Direction of travel of the light to fit to, a unit vector in world axes. Its bits do not change until
     /// it steps.
     pub direction: Vec3,
-    /// The direction before the last step, while it is faded out: the same bits as it had then.
+    /// Direction before the last step, while it is faded out, with unchanged bits.
     pub previous: Option<Vec3>,
-    /// Weight of [`Self::direction`]'s shadow, 0..=1; the previous one has the rest. 1 without a
-    /// previous one.
+    /// Weight of the shadow for [`Self::direction`], 0..=1. The previous direction has the rest. It is 1
+    /// without a previous direction.
     pub blend: f32,
 }
 
 impl LightStepState {
-    /// The directions for the next frame, `seconds` after the last one, of a light that now
-    /// travels in `direction` (world axes, any length). The first direction is taken as it is.
+    /// Returns the directions for the next frame, `seconds` after the last one, of a light that now travels
+    /// in `direction` (world axes, any length). The first direction is used unchanged.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the direction (or one put into
-    /// the state by hand), [`FitError::OutOfRange`] for the settings and the time; the state is
-    /// left as it was.
+    /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the direction (or one put into the state by
+    /// hand), and [`FitError::OutOfRange`] for the settings and the time. An error leaves the state
+    /// unchanged.
     pub fn update(&mut self, direction: Vec3, settings: &LightSteps, seconds: f32) -> Result<LightStep, FitError> {
         let angle = settings.angle()?;
         let seconds = checks::within("the time of the light's step", f64::from(seconds), 0.0, checks::MAX_LENGTH)?;
-        // Rounded before it is compared, so that the same input is the same direction.
+        // Rounded before the comparison, so that equal inputs are equal directions.
         let new = checks::unit("the light's direction", direction)?.as_vec3();
         let mut next = self.faded(seconds, settings.fade)?;
         let held = next.held.unwrap_or(new);
@@ -171,13 +170,12 @@ impl LightStepState {
         Ok(LightStep { direction: next.held.unwrap_or(new), previous: next.previous, blend })
     }
 
-    /// Forgets the light, for a jump of the camera or of time: the next direction is taken as it
-    /// is.
+    /// Forgets the light, after a jump of the camera or of time. The next direction is used unchanged.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// This state with its fade, if one runs, moved on.
+    /// Returns this state with its fade, if one runs, advanced.
     fn faded(&self, seconds: f64, fade: f32) -> Result<Self, FitError> {
         let Some(previous) = self.previous else { return Ok(*self) };
         checks::unit("the direction that is faded out", previous)?;
@@ -188,7 +186,7 @@ impl LightStepState {
     }
 }
 
-/// Angle between two directions, in radians; exactly 0 between equal ones.
+/// Returns the angle between two directions, in radians. It is exactly 0 between equal ones.
 fn turn(held: Vec3, new: Vec3) -> f64 {
     let (held, new) = (held.as_dvec3(), new.as_dvec3());
     libm::atan2(checks::length(held.cross(new)), held.dot(new))

@@ -1,9 +1,8 @@
-//! The part of a map that can be kept from the last frame, so that static casters are drawn only
-//! where the map is new.
+//! Reuse of the texels of the last frame, so that static casters are drawn only into the new parts of a map.
 //!
-//! A map on the world's grid ([snapped or held](crate::settings::Stabilise), or the
-//! [stable sphere](crate::settings::FitKind::Sphere)) moves by whole texels. [`Scroll::between`] says by how
-//! many, which strips came into the map, and whether anything else changed:
+//! A map on the world's grid ([snapped or held](crate::settings::Stabilise), or the [stable
+//! sphere](crate::settings::FitKind::Sphere)) moves by whole texels. [`Scroll::between`] returns the
+//! movement, the strips that came into the map, and whether anything else changed:
 //!
 //! ```text
 //!   ┌───────────┬──┐  the map now
@@ -14,16 +13,15 @@
 //!   └───────────┴──┘
 //! ```
 //!
-//! The kept texels stay where they are stored: the map [wraps around](StoredRect) in its layer.
+//! Kept texels stay where they are stored: the map [wraps around](StoredRect) in its layer.
 //!
-//! A shifted raster is not bit-equal to a fresh one: the map's translation is rounded to f32 anew
-//! in each frame, which moves edges by up to 0.005 of a texel. Where that matters, [`Tiles`] are
-//! drawn instead: the projection of each never changes, is relative to an origin of its own, and
-//! covers a square of the same grid.
+//! A shifted raster is not bit-equal to a fresh one. The map's translation is rounded to f32 in each frame,
+//! which moves edges by up to 0.005 of a texel. If that matters, draw [`Tiles`] instead. A tile covers a
+//! square of the same grid. Its projection never changes, and is relative to the tile's own origin.
 //!
 //! Kept texels must have been drawn with all casters over the map
-//! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)): a swept volume leaves out those that
-//! cast no shadow into the view of **that** frame.
+//! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)). A swept volume leaves out casters that cast no
+//! shadow into the view of **that** frame.
 
 use core::ops::Range;
 
@@ -39,10 +37,9 @@ pub use crate::keep::texels::StoredRect;
 pub use crate::keep::texels::TexelRect;
 pub use crate::light::grid::GridPosition;
 
-/// How a map follows from the one before it.
+/// Movement of a map since an earlier frame.
 ///
-/// Texels stay where they are stored, and what comes in takes the place of what left
-/// ([`StoredRect`]):
+/// Texels stay where they are stored, and new texels replace the texels that left the map ([`StoredRect`]):
 ///
 /// ```
 /// # use shadowfit::glam::UVec2;
@@ -58,7 +55,7 @@ pub use crate::light::grid::GridPosition;
 ///         clear_and_draw_all();
 ///     } else {
 ///         for piece in scroll.exposed().flat_map(|strip| strip.stored(texel_offset, size)) {
-///             clear_and_draw(piece); // its `stored` is a scissor rectangle, its `viewport()` begins the viewport
+///             clear_and_draw(piece); // `stored` is its scissor rectangle, `viewport()` its viewport's corner
 ///         }
 ///     }
 ///     texel_offset
@@ -68,21 +65,21 @@ pub use crate::light::grid::GridPosition;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scroll {
-    /// Whether nothing of the old map can be kept: the light, the map's angle, texel size or
-    /// resolution changed, no texel is in both, the old one was [empty](LightProjection::is_empty), or one
-    /// of them is not on a grid.
+    /// Whether no texel of the old map can be kept: the light, the map's angle, texel size or resolution
+    /// changed, the maps share no texel, the old map was [empty](LightProjection::is_empty), or one of them
+    /// is not on a grid.
     pub is_new: bool,
-    /// Whether the near or the far plane moved, so that the old map's depths now mean other
-    /// distances. The planes stay as long as they hold the content, see
-    /// [`Stabilise`](crate::settings::Stabilise).
+    /// Whether the near or the far plane moved, so that the old map's depths now mean other distances. The
+    /// planes do not move while they hold the content; see [`Stabilise`](crate::settings::Stabilise).
     pub depth_changed: bool,
-    /// What is at texel t now was at texel t + `shift` before, right and down.
+    /// Movement of the map, in texels, right and down. The content of texel t was at texel t + `shift`
+    /// before.
     pub shift: IVec2,
     exposed: [TexelRect; 2],
 }
 
 impl Scroll {
-    /// How a map follows from the same map of an earlier frame.
+    /// Returns the movement of a map since the same map of an earlier frame.
     pub fn between(before: &FittedMap, now: &FittedMap) -> Self {
         shift(before, now).map_or_else(
             || Self::new_map(now.projection.resolution),
@@ -95,21 +92,21 @@ impl Scroll {
         )
     }
 
-    /// Whether all of the map must be drawn. Otherwise it is enough to draw static casters into
+    /// Returns whether the whole map must be drawn. Otherwise it is enough to draw static casters into
     /// [`Self::exposed`].
     pub const fn is_redraw(&self) -> bool {
         self.is_new || self.depth_changed
     }
 
-    /// What was not in the old map: none, one or two rectangles that do not overlap, or all of a
-    /// new map. A changed depth range does not count here.
+    /// Returns the texels that were not in the old map: no rectangle, one, two that do not overlap, or all of
+    /// a new map. A changed depth range does not count here.
     pub fn exposed(&self) -> impl Iterator<Item = TexelRect> {
         self.exposed.into_iter().filter(|rect| rect.size.min_element() > 0)
     }
 
-    /// The texel offset of the map now, from that of the map before: window texel t is stored at
-    /// `t + texel_offset` modulo `size`, the map's width and height, in texels. Zero for a map that must be drawn
-    /// as a whole.
+    /// Returns the texel offset of the map, given its texel offset before. `size` is the map's width and
+    /// height, in texels. Texel t is stored at `t + texel_offset` modulo `size`. The offset is zero if the
+    /// whole map must be drawn.
     pub fn texel_offset(&self, before: UVec2, size: UVec2) -> UVec2 {
         if self.is_redraw() || size.min_element() == 0 {
             return UVec2::ZERO;
@@ -126,8 +123,8 @@ impl Scroll {
     }
 }
 
-/// Shift in texels from a map to an earlier one and whether the depth range changed, if they share
-/// any texel.
+/// Returns the shift in texels from a map to an earlier one and whether the depth range changed, or `None` if
+/// they share no texel.
 fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
     let (old, new) = (before.grid_position?, now.grid_position?);
     let axes = |fit: &LightProjection| [0, 1, 2].map(|i| fit.light_from_world.col(i));
@@ -149,7 +146,7 @@ fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
     Some((by, old.depth != new.depth))
 }
 
-/// The columns, then the remaining rows, that a shift brings into a map.
+/// Returns the columns, then the remaining rows, that a shift brings into a map.
 fn exposed(by: IVec2, resolution: UVec2) -> [TexelRect; 2] {
     let count = UVec2::new(by.x.unsigned_abs(), by.y.unsigned_abs()).min(resolution);
     let kept = resolution - count;
@@ -160,38 +157,38 @@ fn exposed(by: IVec2, resolution: UVec2) -> [TexelRect; 2] {
     [columns, rows]
 }
 
-/// A square of the world's texel grid with a projection that no camera changes.
+/// A square of the world's texel grid, with a projection that does not depend on the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
     /// Index of the square: columns to the right and rows upward along the map's axes, counted from
     /// the world's origin.
     pub index: [i64; 2],
-    /// Its projection, of `size` × `size` texels. [`LightProjection::origin`] is the tile's own, in the
-    /// middle of its near plane: what is drawn into it must be relative to that. All matrices have
-    /// the same bits for all tiles, and the origin for the same index, as long as the light, the
-    /// map's angle, the texel size and the depth range stay as they are.
+    /// Projection of the tile, with `size` × `size` texels. Its [`LightProjection::origin`] is the middle of
+    /// the tile's near plane. Casters must be drawn relative to it. While the light, the map's angle, the
+    /// texel size and the depth range do not change, all tiles have matrices with the same bits, and tiles
+    /// with the same index have the same origin.
     pub projection: LightProjection,
-    /// Where its visible part lies in the map.
+    /// Position of the tile's visible part in the map.
     pub map: TexelRect,
-    /// The tile's own texel at the left top of that part.
+    /// Texel of the tile at the top left of that part.
     pub from: UVec2,
 }
 
-/// The tiles that cover a map, row by row from below; see [`tiles`].
+/// Iterator over the tiles that cover a map, row by row from below; see [`tiles`].
 #[derive(Clone, Debug)]
 pub struct Tiles {
     grid_position: GridPosition,
     resolution: UVec2,
     size: u32,
     axes: LightAxes,
-    /// The projection of all tiles.
+    /// Projection of all tiles, without their origin.
     fit: LightProjection,
     columns: Range<i64>,
     rows: Range<i64>,
     next: [i64; 2],
 }
 
-/// The world-anchored tiles of `size` × `size` texels that cover a map on the grid.
+/// Returns the world-anchored tiles of `size` × `size` texels that cover a map on the grid.
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -212,22 +209,21 @@ pub struct Tiles {
 /// let maps = FitState::new().fit(&input, &Technique::default(), &mut Scratch::new(&mut storage))?;
 /// let mut texels = 0;
 /// for tile in tiles(&maps[0], 256)? {
-///     // Draw tile.index by tile.fit if it is not kept yet; copy tile.map from it, beginning at tile.from.
+///     // Draw tile.index with tile.projection unless it is cached. Copy it to tile.map, beginning at tile.from.
 ///     texels += tile.map.size.x * tile.map.size.y;
 /// }
-/// assert_eq!(texels, 2048 * 2048); // together they are the map
+/// assert_eq!(texels, 2048 * 2048); // together they cover the map
 /// # Ok::<(), FitError>(())
 /// ```
 ///
-/// Tiles are drawn and kept by their index and copied into the map, or looked up themselves. A tile
-/// that is drawn again has the same bits, wherever the camera is, if its casters have not changed.
-/// Its depths are those of the map.
+/// Draw and cache tiles by their index. Copy them into the map, or look them up directly. A tile that is
+/// drawn again has the same bits for any camera, if its casters have not changed. Its depths are the map's
+/// depths.
 ///
 /// # Errors
 ///
-/// [`FitError::NotOnGrid`] for a map that is neither snapped nor held nor a sphere's;
-/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an invalid grid position or
-/// fit.
+/// [`FitError::NotOnGrid`] for a map that is not snapped, not held and not a sphere's.
+/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an invalid grid position or fit.
 pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
     let grid_position = map.grid_position.ok_or(FitError::NotOnGrid)?;
@@ -248,10 +244,10 @@ pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     Ok(Tiles { grid_position, resolution: map.projection.resolution, size, axes, fit, columns, rows, next })
 }
 
-/// Largest tile, in texels: no texture is larger.
+/// Greatest side of a tile, in texels. No texture is larger.
 const MAX_TILE: u32 = 65_536;
 
-/// The projection of a tile whose origin is in the middle of its near plane.
+/// Returns the projection of a tile whose origin is in the middle of its near plane.
 fn tile_fit(
     axes: &LightAxes,
     grid_position: &GridPosition,
@@ -271,7 +267,7 @@ impl Tiles {
         let side = i64::from(self.size);
         let middle = [0, 1].map(|i| (index[i] as f64 + 0.5) * f64::from(self.size) * self.grid_position.texel[i]);
         let origin = self.axes.unproject(DVec3::new(middle[0], middle[1], self.grid_position.depth[1]));
-        // Left top of the tile in the map; rows count downward there.
+        // Left top of the tile in the map, where rows count downward.
         let left = index[0] * side - self.grid_position.first[0];
         let top = self.grid_position.first[1] + i64::from(self.resolution.y) - (index[1] + 1) * side;
         let ([x, width, from_x], [y, height, from_y]) =
@@ -285,8 +281,8 @@ impl Tiles {
     }
 }
 
-/// Start and length of the part of a run of texels inside a map, and where that part begins in the
-/// run.
+/// Returns the start and length of the part of a run of texels inside a map, and the start of that part in
+/// the run.
 fn overlap(start: i64, length: i64, resolution: u32) -> [u32; 3] {
     let (first, end) = (start.max(0), (start + length).min(i64::from(resolution)));
     [first, (end - first).max(0), first - start].map(|texels| texels as u32)

@@ -1,10 +1,10 @@
-//! Rectangles of a map's texels, and where they are stored.
+//! Rectangles of a map's texels, and their position in its texture.
 //!
 //! Storage wraps around: a map moves, while its texels stay where they are stored.
 //!
-//! Graphics APIs cannot copy a part of a depth texture within itself, so texels that are kept must
-//! not move. The window texel t is stored at `t + texel_offset` modulo the map's size: when the map moves by
-//! a shift, so does the texel offset, and what it leaves on one side is overwritten by what comes in on the
+//! Graphics APIs cannot copy a part of a depth texture within itself, so kept texels must not move. Texel t
+//! of the map is stored at `t + texel_offset` modulo the map's size. When the map moves by a shift, the texel
+//! offset moves by the same shift. The texels that come in on one side overwrite the texels that leave on the
 //! other.
 //!
 //! ```text
@@ -16,8 +16,8 @@
 //!   └───────┴───┘                     └───┴───────┘
 //! ```
 //!
-//! Each of the up to four parts is drawn with the map's own projection and a viewport of the map's
-//! size that begins at [`StoredRect::viewport`], by whole texels, so the raster is the same.
+//! Each of the up to four parts is drawn with the map's own projection. Its viewport has the map's size and
+//! begins at [`StoredRect::viewport`], a whole number of texels away, so the raster is the same.
 
 use glam::{DVec3, IVec2, UVec2};
 
@@ -28,29 +28,29 @@ use crate::projection::LightProjection;
 /// [`uv_from_world`](LightProjection::uv_from_world).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TexelRect {
-    /// Its left top texel.
+    /// Top left texel.
     pub min: UVec2,
-    /// Its width and height, in texels.
+    /// Width and height, in texels.
     pub size: UVec2,
 }
 
 impl TexelRect {
-    /// All texels of a map of this width and height.
+    /// Returns all texels of a map of this width and height.
     pub const fn all(size: UVec2) -> Self {
         Self { min: UVec2::ZERO, size }
     }
 
-    /// Number of texels.
+    /// Returns the number of texels.
     pub const fn area(&self) -> u64 {
         self.size.x as u64 * self.size.y as u64
     }
 
-    /// Whether it has no texel.
+    /// Returns whether the rectangle has no texel.
     pub const fn is_empty(&self) -> bool {
         self.size.x == 0 || self.size.y == 0
     }
 
-    /// The texels that are in both.
+    /// Returns the texels that are in both rectangles.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         let min = self.min.max(other.min);
@@ -58,20 +58,21 @@ impl TexelRect {
         Self { min, size: end.saturating_sub(min) }
     }
 
-    /// The least rectangle that holds both, none of which is empty.
+    /// Returns the least rectangle that holds both. Both must have texels.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         let min = self.min.min(other.min);
         Self { min, size: self.end().max(other.end()) - min }
     }
 
-    /// One beyond its last column and row.
+    /// Returns the column and row after the last ones.
     fn end(self) -> UVec2 {
         self.min.saturating_add(self.size)
     }
 
-    /// The texels of a map that a box may be drawn into, relative to `origin` (world space, metres), with one texel
-    /// around them for the rasteriser's rounding. Without texels where the box lies beside the map, or is empty.
+    /// Returns the texels of a map that a box may be drawn into, with one texel around them for the
+    /// rasteriser's rounding. The box is relative to `origin` (world space, metres). The result is empty if
+    /// the box lies beside the map or is empty.
     pub fn of_box(fit: &LightProjection, aabb: &Aabb, origin: DVec3) -> Self {
         if aabb.is_empty() {
             return Self::default();
@@ -92,26 +93,26 @@ impl TexelRect {
     }
 }
 
-/// A part of a map where it is stored in one piece.
+/// A part of a map that is stored in one piece.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StoredRect {
-    /// The part as it is looked up.
+    /// Texels of the map that belong to the part, as they are looked up.
     pub window: TexelRect,
-    /// The texels in which it is stored: a scissor rectangle.
+    /// Texels of the texture that store the part. They are the scissor rectangle.
     pub stored: TexelRect,
 }
 
 impl StoredRect {
-    /// Left top corner of the viewport, of the map's size, with which the part is drawn, in texels. It may lie up to
-    /// a map's size outside the texture.
+    /// Returns the top left corner of the viewport that draws the part, in texels. The viewport has the map's
+    /// size, and may begin up to a map's size outside the texture.
     pub fn viewport(&self) -> IVec2 {
         self.stored.min.as_ivec2() - self.window.min.as_ivec2()
     }
 }
 
 impl TexelRect {
-    /// Where a part of a map of the given width and height is stored: up to four pieces, for a texel offset below that
-    /// size.
+    /// Returns the pieces in which a part of a map is stored: up to four. `size` is the map's width and
+    /// height, and `texel_offset` must be below it.
     pub fn stored(self, texel_offset: UVec2, size: UVec2) -> impl Iterator<Item = StoredRect> {
         let part = self.intersection(Self::all(size));
         let columns = runs(part.min.x, part.size.x, texel_offset.x, size.x);
@@ -128,8 +129,8 @@ impl TexelRect {
     }
 }
 
-/// A run of texels, cut where it meets the end of what is stored: for each piece its first texel, where that is stored,
-/// and its length.
+/// Cuts a run of texels at the end of the storage. Each piece has its first texel, the position where that is
+/// stored, and its length.
 fn runs(first: u32, length: u32, texel_offset: u32, size: u32) -> [[u32; 3]; 2] {
     if size == 0 {
         return [[0; 3]; 2];

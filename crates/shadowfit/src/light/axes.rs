@@ -1,7 +1,7 @@
-//! The light's own axes: where its roll comes from.
+//! The light's own axes, and the roll that they have.
 //!
-//! A direction does not fix the rotation about itself (the roll). Which roll a fit picks decides
-//! whether the map turns smoothly with the sun and where it flips.
+//! A direction does not fix the rotation about itself (the roll). The choice of the roll decides whether the
+//! map turns smoothly with the sun, and where it flips.
 
 use glam::{DVec2, DVec3, Mat4, Vec3};
 
@@ -10,8 +10,8 @@ use crate::base::{FitError, checks};
 /// Right-handed orthonormal axes of a light in world space. The light looks along -z, so `z` is
 /// the direction *toward* the light.
 ///
-/// The axes are rounded to f32 here, once, so that boxes are measured along exactly the axes that
-/// the matrices hold.
+/// The axes are rounded to f32 once, here, so that boxes are measured along exactly the axes that the
+/// matrices hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct LightAxes {
@@ -20,21 +20,22 @@ pub(crate) struct LightAxes {
     pub(crate) z: Vec3,
 }
 
-/// Length of the difference of two unit directions up to which they count as the same direction,
-/// rounded differently: a few steps of f32.
+/// Greatest difference of two unit directions that count as the same direction with different rounding: a few
+/// steps of f32.
 const SAME_DIRECTION: f64 = 8.0 * checks::UNIT;
 
-/// Whether two unit directions differ by rounding alone.
+/// Returns whether two unit directions differ only by rounding.
 pub(crate) fn is_same_direction(a: DVec3, b: DVec3) -> bool {
     (a - b).dot(a - b) <= SAME_DIRECTION * SAME_DIRECTION
 }
 
-/// Whether a light travels straight along `up`, so that its roll is taken from a fixed axis; both are unit vectors.
+/// Returns whether a light travels straight along `up`, so that its roll comes from a fixed axis. Both are
+/// unit vectors.
 pub(crate) fn is_vertical(direction: DVec3, up: DVec3) -> bool {
     checks::length(direction.cross(up)) < VERTICAL_SINE
 }
 
-/// Where a light's rotation about itself comes from.
+/// Source of a light's rotation about itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Roll {
     /// [`LightAxes::look_at`].
@@ -48,15 +49,15 @@ pub(crate) enum Roll {
 pub(crate) struct Light {
     /// Unit direction of travel.
     direction: DVec3,
-    /// Unit direction that is up.
+    /// Unit up direction.
     up: DVec3,
-    /// Roll that `axes` were made with.
+    /// Roll of `axes`.
     roll: Roll,
     axes: LightAxes,
 }
 
 impl Light {
-    /// A light, with its axes precomputed for the roll that most of its maps use.
+    /// Creates a light, with its axes precomputed for the roll that most of its maps use.
     #[inline(always)]
     pub(crate) fn new(direction: DVec3, up: DVec3, roll: Roll) -> Self {
         let axes = match roll {
@@ -66,8 +67,8 @@ impl Light {
         Self { direction, up, roll, axes }
     }
 
-    /// This light along the direction that was held from an earlier frame, if the two differ by no
-    /// more than rounding.
+    /// Returns this light along the direction held from an earlier frame, if the two differ by no more than
+    /// rounding.
     #[inline(always)]
     pub(crate) fn held(self, direction: Option<DVec3>) -> Self {
         match direction {
@@ -78,17 +79,17 @@ impl Light {
         }
     }
 
-    /// Unit direction that is up.
+    /// Returns the unit up direction.
     pub(crate) fn up(&self) -> DVec3 {
         self.up
     }
 
-    /// Unit direction of travel.
+    /// Returns the unit direction of travel.
     pub(crate) fn direction(&self) -> DVec3 {
         self.direction
     }
 
-    /// The light's axes for a roll.
+    /// Returns the light's axes for a roll.
     #[inline(always)]
     pub(crate) fn axes(&self, roll: Roll) -> LightAxes {
         if roll == self.roll { self.axes } else { self.other_axes(roll) }
@@ -100,19 +101,19 @@ impl Light {
     }
 }
 
-/// Sine of the angle to the vertical below which the look-at roll is taken from a fixed axis: an
-/// f32 unit vector's own rounding is 1e-7, so its azimuth is noise there.
+/// Sine of the angle to the vertical below which the look-at roll comes from a fixed axis. An f32 unit vector
+/// is rounded by 1e-7, so its azimuth is noise there.
 const VERTICAL_SINE: f64 = 1e-6;
 
-/// How far the determinant of a light's axes may be from 1: far more than f32 rounding.
+/// Tolerance of the determinant of a light's axes, which should be 1: far more than f32 rounding.
 const ORTHONORMAL: f64 = 1e-3;
 
 impl LightAxes {
-    /// Look-at axes as the XNA sample computes them: `x = direction × up`; `up` is a unit vector
-    /// (the sample's is +y).
+    /// Computes look-at axes like the XNA sample: `x = direction × up`. `up` is a unit vector; in the sample
+    /// it is +y.
     ///
-    /// Within 1e-6 radians of the vertical, where the sample divides by zero, the map's top is
-    /// where that of a map seen from straight above is (-z for +y up). The roll flips there: it follows the azimuth on
+    /// Within 1e-6 radians of the vertical, where the sample divides by zero, the top of the map points as it
+    /// does for light from straight above (-z for +y up). The roll flips there: it follows the azimuth on
     /// every side, so no choice at the pole is continuous.
     #[inline(always)]
     pub(crate) fn look_at(direction: DVec3, up: DVec3) -> Self {
@@ -126,11 +127,11 @@ impl LightAxes {
         Self::from_f64(right, right.cross(direction), -direction)
     }
 
-    /// The axes of a light straight down (for +y up: x = +x, y = -z, so that -z is at the map's
-    /// top), turned by the shortest arc from straight down to `direction`.
+    /// Computes the axes of straight-down light, turned by the shortest arc from straight down to
+    /// `direction`. For +y up, straight-down light has x = +x and y = -z, so that -z is at the map's top.
     ///
-    /// Continuous everywhere but for light straight up, where the arc's axis is the x of light
-    /// straight down.
+    /// The axes are continuous everywhere except for light straight up, where the arc's axis is the x of
+    /// straight-down light.
     #[inline(always)]
     pub(crate) fn shortest_arc(direction: DVec3, up: DVec3) -> Self {
         let (x, y) = top_down_axes(up);
@@ -140,7 +141,7 @@ impl LightAxes {
         }
     }
 
-    /// These axes turned about the light so that x points along a unit direction of its plane.
+    /// Returns these axes turned about the light so that x points along a unit direction in its plane.
     pub(crate) fn turned(&self, direction: DVec2) -> Self {
         if direction == DVec2::X {
             return *self;
@@ -157,14 +158,14 @@ impl LightAxes {
         Self { x: x.as_vec3(), y: y.as_vec3(), z: z.as_vec3() }
     }
 
-    /// World axes to light axes, both from the same origin.
+    /// Converts world axes to light axes, both from the same origin.
     #[inline]
     pub(crate) fn project(&self, v: DVec3) -> DVec3 {
         let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
-    /// Middle and half the size of a world-space box as it extends along light axes.
+    /// Returns the middle and half the size of a world-space box's extent along the light's axes.
     #[inline]
     pub(crate) fn project_box(&self, min: DVec3, max: DVec3) -> (DVec3, DVec3) {
         let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
@@ -172,7 +173,7 @@ impl LightAxes {
         (self.project(centre), DVec3::new(reach(self.x), reach(self.y), reach(self.z)))
     }
 
-    /// The axes of a `light_from_world` matrix; refuses a matrix that is not a rotation.
+    /// Returns the axes of a `light_from_world` matrix. Refuses a matrix that is not a rotation.
     pub(crate) fn of_matrix(light_from_world: &Mat4) -> Result<Self, FitError> {
         let rows = light_from_world.transpose();
         let axes = Self { x: rows.x_axis.truncate(), y: rows.y_axis.truncate(), z: rows.z_axis.truncate() };
@@ -181,26 +182,26 @@ impl LightAxes {
         Ok(axes)
     }
 
-    /// Determinant of the matrix with these rows: 1 up to rounding.
+    /// Returns the determinant of the matrix with these rows: 1 up to rounding.
     pub(crate) fn determinant(&self) -> f64 {
         self.x.as_dvec3().dot(self.y.as_dvec3().cross(self.z.as_dvec3()))
     }
 
-    /// World axes from light axes, the inverse of [`Self::project`] to f64 rounding: the rounded
-    /// axes are not quite orthonormal, so their transpose would be off by 1e-7 of the distance.
+    /// Converts light axes to world axes, the inverse of [`Self::project`] to f64 rounding. The rounded axes
+    /// are not quite orthonormal, so their transpose would be off by 1e-7 of the distance.
     pub(crate) fn unproject(&self, v: DVec3) -> DVec3 {
         let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
         (y.cross(z) * v.x + z.cross(x) * v.y + x.cross(y) * v.z) / self.determinant()
     }
 }
 
-/// Axes x and y of light straight down: +x and -z, turned by the shortest arc from +y to `up`.
+/// Returns the axes x and y of straight-down light: +x and -z, turned by the shortest arc from +y to `up`.
 #[inline(always)]
 fn top_down_axes(up: DVec3) -> (DVec3, DVec3) {
     if up == DVec3::Y { (DVec3::X, DVec3::NEG_Z) } else { tilted_top_down_axes(up) }
 }
 
-/// The axes of light straight down, for any up direction.
+/// Returns the axes of straight-down light for any up direction.
 fn tilted_top_down_axes(up: DVec3) -> (DVec3, DVec3) {
     match arc(DVec3::Y, up) {
         Some(turn) => (turn(DVec3::X), turn(DVec3::NEG_Z)),
@@ -208,8 +209,8 @@ fn tilted_top_down_axes(up: DVec3) -> (DVec3, DVec3) {
     }
 }
 
-/// The rotation that takes one unit vector to another along the shortest arc; `None` where they
-/// are opposite and no arc is the shortest.
+/// Returns the rotation of one unit vector to another along the shortest arc, or `None` if they are opposite
+/// and no arc is the shortest.
 ///
 /// ```text
 ///   from ──k = from × to──▶ to       R v = v + k × v + k × (k × v) / (1 + from·to)

@@ -1,17 +1,17 @@
-//! How deep a box lies over a rectangle of the light's plane.
+//! The depth range of a box over a rectangle of the light's plane.
 
 use glam::{DVec2, DVec3};
 
 use crate::light::LightAxes;
 
-/// All points that the light sees inside a rectangle: a column without ends.
+/// All points over a rectangle of the light's plane: a column without ends.
 pub(crate) struct Column {
     /// Least and greatest corner of the rectangle along the light's x and y, in metres.
     pub(crate) min: DVec2,
     pub(crate) max: DVec2,
     /// Least and greatest world coordinates of the column's points at z = 0.
     foot: (DVec3, DVec3),
-    /// Metres along z for a metre along each world axis.
+    /// Metres along z per metre along each world axis.
     per_metre: DVec3,
 }
 
@@ -23,15 +23,16 @@ impl Column {
         Self { min, max, foot, per_metre: axes.z.as_dvec3().recip() }
     }
 
-    /// Range of z, in metres along the light's axes, that holds the part of a box inside the column; the least is above
-    /// the greatest where there is no such part.
+    /// Returns the range of z, in metres along the light's axes, that holds the part of a box inside the
+    /// column. Without such a part, the least z is above the greatest.
     ///
-    /// A box is where three slabs of the world's axes meet. A point of the column at z lies in a slab only if
-    /// foot + z · axis reaches into it, which bounds z; for a level ground the bound is exact.
+    /// A box is the intersection of three slabs along the world's axes. A point of the column at z lies in a
+    /// slab only if foot + z · axis reaches into it, which bounds z. For level ground the bound is exact.
     #[inline]
     pub(crate) fn depths(&self, min: DVec3, max: DVec3) -> (f64, f64) {
         let (one, other) = ((min - self.foot.1) * self.per_metre, (max - self.foot.0) * self.per_metre);
-        // The light runs along a slab where its axis is 0: no bound, or NaN, which min and max skip.
+        // If the axis is 0, the light runs along the slab. The bound is then infinite, or NaN, which min and
+        // max skip.
         let (low, high) = (one.min(other), one.max(other));
         (low.x.max(low.y).max(low.z), high.x.min(high.y).min(high.z))
     }
@@ -43,7 +44,7 @@ mod tests {
     use crate::light::{Light, Roll};
     use crate::view::crossing;
 
-    /// A sequence of numbers in 0..1 that are spread evenly (M. Roberts, "The unreasonable effectiveness of
+    /// Returns a number of an evenly spread sequence in 0..1 (M. Roberts, "The unreasonable effectiveness of
     /// quasirandom sequences", 2018).
     fn spread(i: u32, dimension: usize) -> f64 {
         (f64::from(i + 1) * [0.819_172_5, 0.671_043_6, 0.549_700_5, 0.450_252_3, 0.368_8][dimension]).fract()
@@ -53,7 +54,8 @@ mod tests {
         Light::new(direction, DVec3::Y, Roll::ShortestArc).axes(Roll::ShortestArc)
     }
 
-    /// Least and greatest z at which rays of a column, its edges included, enter and leave a box.
+    /// Returns the least and greatest z at which rays of a column, including its edges, enter and leave a
+    /// box.
     fn sampled(axes: &LightAxes, column: &Column, (min, max): (DVec3, DVec3)) -> Option<(f64, f64)> {
         let ends = |x: i32, y: i32| {
             let at = column.min + (column.max - column.min) * DVec2::new(f64::from(x), f64::from(y)) / 40.0;
@@ -81,7 +83,7 @@ mod tests {
             let (low, high) = column.depths(min, max);
             let Some((least, greatest)) = sampled(&axes, &column, (min, max)) else { continue };
             met += 1;
-            // Axes are rounded to f32, and rays begin far away.
+            // Axes are rounded to f32, and rays start far away.
             let tolerance = 3e-7 * 1e5;
             assert!(
                 low <= least + tolerance && high >= greatest - tolerance,

@@ -1,27 +1,27 @@
-//! The part of a caster's box that lies over a convex outline in the light's plane.
+//! The part of a caster's box over a convex outline in the light's plane.
 //!
-//! A box reaches highest over the outline at a corner of (outline ∩ one of the box's faces as the
-//! light sees them), so each of the faces that look toward the light is clipped to the outline as
-//! a polygon, with the height of each corner carried along.
+//! Over the outline, a box reaches highest at a corner of (outline ∩ one of the box's faces as seen from the
+//! light). Each face that looks toward the light is therefore clipped to the outline as a polygon, and each
+//! corner keeps its height.
 
 use glam::{DVec2, DVec3};
 
 use crate::base::box_corners;
 use crate::light::LightAxes;
 
-/// A convex outline with its bounds, widened.
+/// A convex outline, widened, with its bounds.
 pub(crate) struct Outline<'a> {
     pub(crate) axes: LightAxes,
     /// Anticlockwise, in the plane of the axes' x and y.
     corners: &'a [DVec2],
     min: DVec2,
     max: DVec2,
-    /// What the outline is widened by on all sides, in metres.
+    /// Widening of the outline on all sides, in metres.
     pad: f64,
 }
 
-/// Most corners of a clipped face that are kept. Each edge of the outline adds one at most; edges
-/// for which there is no room are left out, which is on the safe side.
+/// Greatest number of corners of a clipped face. Each edge of the outline adds at most one. Edges beyond the
+/// limit are left out, which is on the safe side.
 const MAX_CORNERS: usize = 96;
 
 /// A clipped face: a convex polygon in the light's plane with the height of each corner.
@@ -34,7 +34,7 @@ struct Face {
 impl Face {
     const EMPTY: Self = Self { corners: [DVec3::ZERO; MAX_CORNERS], len: 0 };
 
-    /// Adds a corner, if there is room for it.
+    /// Adds a corner, and returns whether there was room for it.
     fn push(&mut self, corner: DVec3) -> bool {
         if self.len == MAX_CORNERS {
             return false;
@@ -55,7 +55,7 @@ impl OutlineScratch {
 }
 
 impl<'a> Outline<'a> {
-    /// An outline in the plane of `axes` (anticlockwise), widened by `pad` metres on all sides: it
+    /// Creates an outline in the plane of `axes` (anticlockwise), widened by `pad` metres on all sides. It
     /// then holds everything within that distance, and nothing beyond √2 times that distance.
     pub(crate) fn new(axes: &LightAxes, corners: &'a [DVec2], pad: f64) -> Self {
         let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
@@ -65,7 +65,7 @@ impl<'a> Outline<'a> {
         Self { axes: *axes, corners, min: min - pad, max: max + pad, pad }
     }
 
-    /// Whether any part of a box may lie over the outline and above `floor`.
+    /// Returns whether any part of a box may lie over the outline and above `floor`.
     #[inline]
     pub(crate) fn may_hold(&self, min: DVec3, max: DVec3, floor: f64) -> bool {
         let z = self.axes.z.as_dvec3();
@@ -80,9 +80,8 @@ impl<'a> Outline<'a> {
         !((centre - reach).cmpgt(self.max).any() || (centre + reach).cmplt(self.min).any())
     }
 
-    /// Gives all corners of those faces of a box that look toward the light, clipped to the
-    /// outline, along the light's axes; nothing if no part of the box is over the outline or if
-    /// none reaches above `floor`.
+    /// Emits the corners of the box's faces that look toward the light, clipped to the outline, along the
+    /// light's axes. Emits nothing if no part of the box is over the outline or reaches above `floor`.
     pub(crate) fn parts_over(
         &self,
         min: DVec3,
@@ -105,8 +104,8 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// A face cut by all edges of the outline moved outward by the pad, and across its sharp
-    /// corners, where those meet far outside:
+    /// Clips a face to the edges of the outline, moved outward by the pad. It also cuts across sharp corners,
+    /// where the moved edges meet far outside:
     ///
     /// ```text
     ///   ─────────────╮ cut across
@@ -146,16 +145,16 @@ impl<'a> Outline<'a> {
     }
 }
 
-/// Unit vector from one point to another, if they are apart.
+/// Returns the unit vector from one point to another, or `None` if they coincide.
 fn direction(from: DVec2, to: DVec2) -> Option<DVec2> {
     let d = to - from;
     let length = libm::sqrt(d.dot(d));
     if length > 0.0 { Some(d / length) } else { None }
 }
 
-/// Puts the part of a polygon where a linear function is not negative into `out` (I. Sutherland and
-/// G. Hodgman, "Reentrant polygon clipping", 1974), if it is not the whole polygon and there is
-/// room for it; returns whether it did.
+/// Clips a polygon to the side where a linear function is not negative (I. Sutherland and G. Hodgman,
+/// "Reentrant polygon clipping", 1974), and writes the result to `out`. Returns false if the polygon is
+/// unchanged or `out` has no room.
 fn cut(polygon: &Face, out: &mut Face, inside: impl Fn(DVec3) -> f64) -> bool {
     if polygon.corners[..polygon.len].iter().all(|corner| inside(*corner) >= 0.0) {
         return false;
@@ -176,5 +175,5 @@ fn cut(polygon: &Face, out: &mut Face, inside: impl Fn(DVec3) -> f64) -> bool {
     fits
 }
 
-/// Corners of a box's faces -x, +x, -y, +y, -z, +z, by the order of [`box_corners`].
+/// Corners of a box's faces -x, +x, -y, +y, -z, +z, in the order of [`box_corners`].
 const FACES: [[usize; 4]; 6] = [[0, 3, 7, 4], [1, 2, 6, 5], [0, 1, 5, 4], [3, 2, 6, 7], [0, 1, 2, 3], [4, 5, 6, 7]];

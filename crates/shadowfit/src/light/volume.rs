@@ -1,5 +1,5 @@
-//! A fit's decision before it becomes matrices: a box along the light's axes, and its position on the world's texel
-//! grid.
+//! The result of a fit before it becomes matrices: a box along the light's axes, and its position on the
+//! world's texel grid.
 
 use glam::{DVec2, DVec3};
 
@@ -7,7 +7,7 @@ use super::axes::LightAxes;
 use super::grid::{Grid, anchor, stabilised_depth};
 use crate::base::checks;
 
-/// What set a plane of a fitted box: what to change for a tighter fit.
+/// Input that sets a plane of a fitted box. Change this input for a tighter fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -17,19 +17,19 @@ pub enum BoundSource {
     View,
     /// The box of a receiver.
     Receivers,
-    /// The box of a caster that lies before the covered region.
+    /// The box of a caster in front of the covered region, on the light's side.
     Casters,
     /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension).
     CasterExtension,
     /// The enclosing sphere of the [stable fit](crate::settings::FitKind::Sphere).
     Sphere,
-    /// Where a [window](crate::Windows) stands, and how wide its texels are.
+    /// The position and texel width of a [window](crate::Windows).
     Window,
     /// A fit that is held from an earlier frame.
     Held,
 }
 
-/// A box along the light's axes and how it is stored.
+/// A box along the light's axes, with its depth range and grid position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Volume {
     pub(crate) axes: LightAxes,
@@ -44,15 +44,15 @@ pub(crate) struct Volume {
     pub(crate) depth_range: f64,
     /// [`LightProjection::vertex_distance`](crate::LightProjection::vertex_distance).
     pub(crate) vertex_distance: f64,
-    /// What set the planes -x, +x, -y, +y, far, near.
+    /// Sources of the planes -x, +x, -y, +y, far, near.
     pub(crate) bounds_from: [BoundSource; 6],
     pub(crate) is_empty: bool,
-    /// Where it lies on the world's grid, if it does.
+    /// Position on the world's grid, if the box lies on it.
     pub(crate) grid: Option<Grid>,
 }
 
 impl Volume {
-    /// A box whose near plane has yet to be found, and with it the light.
+    /// Creates a box whose near plane and light position are set later.
     #[inline(always)]
     pub(crate) fn covering(
         axes: LightAxes,
@@ -64,14 +64,14 @@ impl Volume {
         Self { axes, min, max, light_z: 0.0, depth_range: 0.0, vertex_distance: 0.0, bounds_from, is_empty, grid: None }
     }
 
-    /// A box around the origin, for a map that nothing reads.
+    /// Returns a box around the origin, for a map that no point reads.
     pub(crate) fn nowhere(axes: LightAxes) -> Self {
         let mut volume = Self::covering(axes, DVec3::NEG_ONE, DVec3::ONE, [BoundSource::View; 6], true);
         volume.light_at_near_plane();
         volume
     }
 
-    /// The box of a map on the world's grid, relative to an origin.
+    /// Creates the box of a map on the world's grid, relative to an origin.
     pub(crate) fn on_grid(
         axes: LightAxes,
         grid: Grid,
@@ -88,9 +88,9 @@ impl Volume {
         volume
     }
 
-    /// Puts the near and far plane of a box on the grid to a range that holds them: the range held
-    /// from an earlier frame as long as it still holds them and is at most `max_oversize` times as long as a
-    /// new one.
+    /// Moves the near and far plane of a box on the grid to a range that holds them. The range held from an
+    /// earlier frame is used if it still holds them and is at most `max_oversize` times longer than a new
+    /// one.
     #[inline(always)]
     pub(crate) fn stabilise_depth(&mut self, origin: DVec3, held: Option<(f64, f64)>, max_oversize: f64) {
         let anchor = anchor(&self.axes, origin).z;
@@ -101,12 +101,12 @@ impl Volume {
         }
     }
 
-    /// Distance of the farthest corner of the box from the fit's origin, in metres.
+    /// Returns the distance of the farthest corner of the box from the fit's origin, in metres.
     pub(crate) fn farthest_corner(&self) -> f64 {
         checks::length(self.min.abs().max(self.max.abs()))
     }
 
-    /// Puts the light in the near plane, with the depth range from there to the far plane.
+    /// Places the light in the near plane, and sets the depth range from there to the far plane.
     pub(crate) fn light_at_near_plane(&mut self) {
         self.light_z = self.max.z;
         self.depth_range = self.max.z - self.min.z;

@@ -1,10 +1,9 @@
-//! The planes of a map as its matrices define them, with a bound of the rounding in shader
-//! arithmetic.
+//! The planes of a map, computed from its matrices, with a bound of the rounding in shader arithmetic.
 //!
-//! A plane is a linear function of the position that is not negative inside; a bound of the
-//! rounding is subtracted from it. The bound is a sum of absolute values, hence convex, so what is
-//! left is concave: its least value over a convex polytope is at one of the corners, and testing
-//! those proves it for all points between.
+//! A plane is a linear function of the position that is not negative inside. A bound of the rounding is
+//! subtracted from it. The bound is a sum of absolute values, hence convex, so the difference is concave. Its
+//! least value over a convex polytope is at a corner, so testing the corners proves it for all points between
+//! them.
 
 use glam::{DVec3, Mat4, Vec4};
 
@@ -13,37 +12,36 @@ use crate::base::checks::UNIT;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::projection::LightProjection;
 
-/// Roundings of each term of an affine matrix times an f32 position, as multiples of 2⁻²⁴: one of
-/// the position relative to the origin, and four operations each of which shaders may round
-/// either way, by twice 2⁻²⁴, in any order and with or without fused multiply-add. That makes 9,
-/// and their products less than one more.
+/// Number of roundings of 2⁻²⁴ in each term of an affine matrix times an f32 position: one of the position
+/// relative to the origin, and four operations. Shaders may round each operation either way, by twice 2⁻²⁴,
+/// in any order and with or without fused multiply-add. This gives 9, and the products of these errors are
+/// less than one more.
 const TERM_ROUNDINGS: f64 = 10.0;
 
-/// Greatest error of the corner of a frustum, or of a box clipped to one, as a share of its
-/// distance: the rounding of the frustum's own corners, once for the corner and once for the plane
-/// that it lies in.
+/// Greatest error of the corner of a frustum, or of a box clipped to one, as a share of its distance. It is
+/// the rounding of the frustum's corners, once for the corner and once for the plane that it lies in.
 const CORNER_ROUNDING: f64 = 2.0 * UNIT;
 
-/// Greatest error of flushing to zero a result that is too small for f32, in every operation.
+/// Greatest error by flushing too small f32 results to zero, in all operations.
 const FLUSHED: f64 = 16.0 * f32::MIN_POSITIVE as f64;
 
 /// One plane of one of the fit's matrices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfSpace {
     pub(super) plane: MapPlane,
-    /// Inside, `row·p + constant` is not negative; p is relative to the fit's origin.
+    /// Row of the function. `row·p + constant` is not negative inside, with p relative to the fit's origin.
     row: DVec3,
     constant: f64,
-    /// The matrix's own translation, which takes part in the rounding.
+    /// The matrix's translation, which takes part in the rounding.
     shift: f64,
-    /// Texels or metres for each unit of the function.
+    /// Texels or metres per unit of the function.
     unit: f64,
-    /// What must be left free, in texels or metres.
+    /// Required free space, in texels or metres.
     demand: f64,
 }
 
 impl HalfSpace {
-    /// Lower bound of a point's distance inside the required plane, in texels across the light or
+    /// Returns a lower bound of a point's distance inside the required plane, in texels across the light or
     /// metres along it.
     pub(super) fn margin(&self, p: DVec3) -> f64 {
         let terms = self.row * p;
@@ -54,12 +52,12 @@ impl HalfSpace {
     }
 }
 
-/// All planes of a fit: those of the texture coordinates, of clip space and of the light's box.
+/// All planes of a fit: the limits of the texture coordinates, of clip space and of the light's box.
 pub(super) struct HalfSpaces {
     pub(super) all: [HalfSpace; 18],
 }
 
-/// One of the fit's matrices with the ranges of what it gives, -x, +x, -y, +y, far, near.
+/// One of the fit's matrices with the ranges of its results: -x, +x, -y, +y, far, near.
 struct Matrix {
     name: &'static str,
     elements: Mat4,
@@ -102,7 +100,7 @@ impl HalfSpaces {
         Ok(Self { all })
     }
 
-    /// Those of the near plane that casters are drawn with: clip space and the light's box.
+    /// Returns the two near planes that casters are drawn with, of clip space and of the light's box.
     pub(super) fn near(&self) -> [&HalfSpace; 2] {
         [&self.all[11], &self.all[17]]
     }
@@ -129,13 +127,13 @@ impl Matrix {
             let (axis, at) = (i / 2, self.planes[i]);
             let other = self.planes[i ^ 1];
             let row = rows[axis].truncate();
-            // Metres for each unit of the function.
+            // Metres per unit of the function.
             let metres = 1.0 / checks::within(self.name, checks::length(row), f64::MIN_POSITIVE, f64::MAX)?;
             let (unit, demand) = if axis < 2 {
                 let extent = (other - at).abs();
                 let texels = resolution[axis] / checks::within("the light's box", extent, f64::MIN_POSITIVE, f64::MAX)?;
                 let disc = f64::from(query.filter_radius.disc[axis]);
-                // The centre of the first texel beyond the border lies half a texel out.
+                // The centre of the first texel beyond the border lies half a texel outside.
                 let read = (f64::from(query.filter_radius.taps) + disc - 0.5).max(0.0);
                 (texels, read + f64::from(query.normal_offset) / metres * texels)
             } else {

@@ -1,9 +1,9 @@
-//! A proof that a map has no holes: every receiver lies in it, and no caster is lost.
+//! Proofs that a map has no holes: it holds every receiver and loses no caster.
 //!
-//! [`prove`] looks at a fit's matrices alone and not at how they came about, so it holds for fits
-//! that were held, moved to another origin, stored or changed. What it states holds for **all**
-//! points of the receivers, and is proven by the corners of each box clipped to the view; the
-//! rounding of f32 positions, matrices and shader arithmetic is bounded and required as free space.
+//! [`prove`] reads only a fit's matrices, not their history, so it works for fits that were held, moved to
+//! another origin, stored or changed. Its result holds for **all** points of the receivers. It tests the
+//! corners of each box clipped to the view. The rounding of f32 positions, matrices and shader arithmetic is
+//! bounded and must be left as free space.
 //!
 //! ```text
 //!     toward the light
@@ -36,80 +36,79 @@ use crate::technique::settings::{CasterPolicy, FitSettings};
 use crate::view::Range;
 use half_space::HalfSpaces;
 
-/// What [`prove`] found.
+/// Result of [`prove`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use = "a proof says whether the map has holes"]
 pub enum CoverageProof {
-    /// There are no holes: all receivers are inside with all that the filter reads, and none of
-    /// the given casters is lost.
+    /// There are no holes: the map holds all receivers with everything that the filter reads, and all given
+    /// casters.
     Proven(Margins),
-    /// A receiver is outside, or cannot be proven to be inside.
+    /// A receiver is outside the map, or cannot be proven to be inside.
     Uncovered {
-        /// The plane of the map that it lies beyond.
+        /// The plane of the map that the receiver lies beyond.
         plane: MapPlane,
         /// The farthest point beyond it, in world space.
         point: DVec3,
-        /// How much is missing: texels for the planes across the light, metres for near and far.
-        /// It includes the filter's reach and the bound of the rounding.
+        /// Missing space: texels for the planes across the light, metres for near and far. It includes the
+        /// filter radius and the bound of the rounding.
         by: f32,
     },
-    /// A receiver is seen although the fit [says](LightProjection::is_empty) that none is, so that its
-    /// shadow pass may be left out.
+    /// A receiver is in view although the fit is marked as [empty](LightProjection::is_empty), which allows
+    /// skipping its shadow pass.
     MarkedEmpty {
-        /// A point of it, in world space.
+        /// A point of the receiver, in world space.
         point: DVec3,
     },
-    /// A part of a caster that can cast a shadow into view lies before the near plane, or cannot
-    /// be proven to lie behind it.
+    /// A part of a caster that can cast a shadow into view lies in front of the near plane, or cannot be
+    /// proven to lie behind it.
     CasterLost {
         /// The part farthest toward the light, in world space.
         point: DVec3,
-        /// Its distance before the near plane, in metres, with the bound of the rounding.
+        /// Its distance in front of the near plane, in metres, with the bound of the rounding.
         by: f32,
     },
-    /// There are no holes, but the map's depths are rounded by more than its constant bias, so that surfaces that face
-    /// the light shadow themselves.
+    /// There are no holes, but the rounding of the map's depths exceeds its constant bias, so surfaces that
+    /// face the light shadow themselves.
     DepthTooCoarse(DepthRounding),
 }
 
 impl CoverageProof {
-    /// Whether the map has no holes, and its bias covers the rounding of its depths.
+    /// Returns whether the map has no holes and its bias covers the rounding of its depths.
     pub const fn is_proven(&self) -> bool {
         matches!(self, Self::Proven(_))
     }
 }
 
-/// The free space beyond all that is required. Infinite where nothing was required.
+/// The free space beyond the required space. Infinite if no space was required.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margins {
-    /// At each of [`MapPlane::ALL`]: texels for the planes across the light, metres for far and
+    /// Free space at each of [`MapPlane::ALL`]: texels for the planes across the light, metres for far and
     /// near.
     pub planes: [f32; 6],
-    /// Between the near plane and the first of the casters over the receivers, in metres; with
-    /// depth clamp none is required.
+    /// Distance between the near plane and the first caster over the receivers, in metres. Infinite with
+    /// depth clamp, which has no requirement.
     pub casters: f32,
 }
 
-/// Proves that a map has no holes, or finds one, and that its bias covers the rounding of its depths.
+/// Proves that a map has no holes, or finds one. Also checks that its bias covers the rounding of its depths.
 ///
-/// - **Receivers** are `input.receivers` clipped to the views' slices between `query.near` and
-///   `query.far`; the slices themselves where the boxes are not known. Boxes whose
-///   [cone](FitInput::receiver_cones) turns away from the light are ignored, as in the fits. A
-///   frustum ends at its corners; a camera matrix with other rounding may show a sliver beyond
-///   them.
-/// - **Casters** are `input.casters`, for any caster policy of the fit: those parts that lie over
-///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
-///   offset; for maps that are [read by coverage](CoverageQuery::is_shared) those over any part of the map.
-///   Nothing is proven of casters that are not given.
-/// - **Depth**: where the query names the map's bias, it must cover the rounding of depths.
-/// - **Rounding**: positions are taken as f32 relative to [`LightProjection::origin`], multiplied by
-///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
-///   to another origin need [`LightProjection::relative_to`] first, and a proof of that.
+/// - **Receivers** are `input.receivers`, clipped to the views' slices between `query.near` and `query.far`.
+///   If the boxes are unknown, the slices themselves are the receivers. Boxes whose
+///   [cone](FitInput::receiver_cones) faces away from the light are ignored, as in the fits. A frustum ends
+///   at its corners. A camera matrix with other rounding may show a sliver beyond them.
+/// - **Casters** are `input.casters`, for any caster policy of the fit: their parts over the receivers'
+///   outline, widened by the filter radius, the rasteriser's snap and the normal offset. For maps that are
+///   [read by coverage](CoverageQuery::is_shared) they are the parts over the whole map. The proof does not
+///   include casters that are not in the input.
+/// - **Depth**: if the query has the map's bias, the bias must cover the rounding of depths.
+/// - **Rounding**: positions are f32 relative to [`LightProjection::origin`], multiplied by `uv_from_world`
+///   and `clip_from_world` in f32 in any order of operations. For positions relative to another origin, call
+///   [`LightProjection::relative_to`] first and prove the result.
 ///
-/// World positions are f64, in metres. The fit of the XNA sample has no caster policy, so the
-/// proof reports any caster that lies before the frustum.
+/// World positions are f64, in metres. The fit of the XNA sample has no caster policy, so the proof reports
+/// any caster in front of the frustum.
 ///
 /// ```
 /// use shadowfit::bias::FilterRadius;
@@ -182,11 +181,10 @@ pub struct Margins {
 ///
 /// # Errors
 ///
-/// Those of the views, the light's direction and the boxes as of
-/// [`fit_scene`](crate::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
-/// query and for a fit whose matrices are not those of a light; [`FitError::ZeroResolution`];
-/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing);
-/// [`FitError::ScratchTooSmall`].
+/// Returns the errors of [`fit_scene`](crate::fit_scene) for the views, the light's direction and the boxes.
+/// Returns [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the query and for a fit whose matrices
+/// are not a light's. Returns [`FitError::ZeroResolution`], [`FitError::ScratchTooSmall`], and
+/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing).
 pub fn prove(
     input: &FitInput,
     fit: &LightProjection,
@@ -228,7 +226,7 @@ pub fn prove(
     Ok(CoverageProof::Proven(margins))
 }
 
-/// Refuses an input or a fit that no proof can use.
+/// Returns an error for an input or a fit that a proof cannot use.
 fn check(input: &FitInput, fit: &LightProjection) -> Result<(), FitError> {
     if input.views.is_empty() {
         return Err(FitError::NoView);
@@ -241,15 +239,15 @@ fn check(input: &FitInput, fit: &LightProjection) -> Result<(), FitError> {
     Ok(())
 }
 
-/// All of a map.
+/// The extent of a map.
 struct WholeMap {
     /// Its outline along its axes, relative to the content's origin.
     corners: [DVec2; 4],
-    /// Greatest distance of it from the fit's origin, in metres.
+    /// Greatest distance of the map from the fit's origin, in metres.
     farthest: f64,
 }
 
-/// Returns all of a map. `offset` leads from the fit's origin to the content's.
+/// Returns the extent of a map. `offset` is the vector from the fit's origin to the content's origin.
 fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> WholeMap {
     let (min, max) = fit.clip_box();
     let moved = fit.light_from_world.w_axis.truncate().as_dvec3();
@@ -259,30 +257,30 @@ fn whole_map(fit: &LightProjection, axes: &LightAxes, offset: DVec3) -> WholeMap
     WholeMap { corners: corners.map(|(x, y)| DVec2::new(x, y)), farthest: fit.farthest_corner() }
 }
 
-/// How far around the outline casters are read, in metres: the reach of the filter with the
-/// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
+/// Returns the distance around the outline in which casters are read, in metres: the filter radius with the
+/// rasteriser's snap, the normal offset, and the rounding of receivers and casters.
 fn caster_reach(fit: &LightProjection, query: &CoverageQuery, distance: f64) -> f64 {
     let reach = query.filter_radius.disc.as_dvec2() + f64::from(query.filter_radius.taps);
     texels(fit, reach) + f64::from(query.normal_offset) + raster_reach(fit, distance)
 }
 
-/// How far around a map casters are drawn into it, in metres: the rasteriser's snap, and what rounding may shift both
-/// receivers and casters.
+/// Returns the distance around a map in which casters are drawn into it, in metres: the rasteriser's snap,
+/// and the rounding of receivers and casters.
 fn raster_reach(fit: &LightProjection, distance: f64) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
     let rounding = SHIFT_ROUNDINGS * UNIT * (distance + size.max_element());
     texels(fit, DVec2::splat(f64::from(HARDWARE_SNAP))) + rounding
 }
 
-/// A number of texels along both axes, as a distance in metres.
+/// Returns a number of texels along both axes as a distance in metres.
 fn texels(fit: &LightProjection, count: DVec2) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
     let texels = count * size / fit.resolution.as_dvec2();
     libm::sqrt(texels.dot(texels))
 }
 
-/// Roundings that shift a receiver and a caster against each other across the light, as multiples
-/// of 2⁻²⁴ of the distance and the map's extent: ten in each term of either.
+/// Number of roundings that shift a receiver and a caster against each other across the light, as multiples
+/// of 2⁻²⁴ of the distance and the map's extent: ten in each term of both.
 const SHIFT_ROUNDINGS: f64 = 32.0;
 
 /// The caster over an outline that is nearest to the near plane.
@@ -290,16 +288,16 @@ struct NearestCaster<'a> {
     over: Outline<'a>,
     scratch: OutlineScratch,
     half_spaces: &'a HalfSpaces,
-    /// From the fit's origin to the content's.
+    /// Vector from the fit's origin to the content's origin.
     offset: DVec3,
-    /// Least distance of a part of a caster behind the near plane, in metres. It is negative before the plane.
+    /// Least distance of a part of a caster behind the near plane, in metres. Negative in front of the plane.
     margin: f64,
-    /// The part that has it, relative to the fit's origin.
+    /// The part with this distance, relative to the fit's origin.
     point: DVec3,
 }
 
 impl<'a> NearestCaster<'a> {
-    /// Finds it among the casters of a frame.
+    /// Finds the nearest of a frame's casters.
     fn find(content: &Content, over: Outline<'a>, half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
         let (scratch, margin, point) = (OutlineScratch::new(), f64::INFINITY, DVec3::ZERO);
         let mut nearest = Self { over, scratch, half_spaces, offset, margin, point };
@@ -325,18 +323,18 @@ impl Visit for NearestCaster<'_> {
     }
 }
 
-/// The points that are least inside.
+/// The points with the least margins.
 struct Worst<'a> {
     half_spaces: &'a HalfSpaces,
-    /// From the content's origin to the fit's.
+    /// Vector from the fit's origin to the content's origin.
     offset: DVec3,
-    /// Least margin at each plane, and the point that has it, relative to the fit's origin.
+    /// Least margin at each plane and its point, relative to the fit's origin.
     least: [(f64, DVec3); 6],
     any: Option<DVec3>,
 }
 
 impl<'a> Worst<'a> {
-    /// Finds them among everything that the views see between two depths.
+    /// Finds the points in the views between two depths.
     fn of(content: &Content, range: Range, half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
         let mut worst = Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None };
         if content.knows_receivers() {
@@ -347,13 +345,13 @@ impl<'a> Worst<'a> {
         worst
     }
 
-    /// Whether a point has less margin at some plane than all before it.
+    /// Returns whether a point has less margin at some plane than all points before it.
     fn is_worse(&self, p: DVec3) -> bool {
         let p = p + self.offset;
         self.half_spaces.all.iter().any(|half_space| half_space.margin(p) < self.least[half_space.plane as usize].0)
     }
 
-    /// What is wrong, if anything: the plane that most of the map's extent is missing at.
+    /// Returns the failure, if there is one, at the plane that lacks the largest part of the map's extent.
     fn failure(&self, fit: &LightProjection) -> Option<CoverageProof> {
         let point = self.any?;
         if fit.is_empty {
@@ -373,8 +371,8 @@ impl<'a> Worst<'a> {
 }
 
 impl VisitCorners for Worst<'_> {
-    /// Returns whether a point of a box may have less margin at some plane than all before it. No point is less inside
-    /// than all corners.
+    /// Returns whether a point of a box may have less margin at some plane than all points before it. The
+    /// least margin of a box is at one of its corners.
     fn wants(&self, bounds: &Bounds) -> bool {
         self.any.is_none() || box_corners(bounds.min, bounds.max).into_iter().any(|corner| self.is_worse(corner))
     }
@@ -391,37 +389,37 @@ impl VisitCorners for Worst<'_> {
     }
 }
 
-/// What a map is required to hold: which receivers read it, how far around them, and whether
-/// casters before the near plane are clipped.
+/// Requirements on a map: the receivers that read it, the filter radius around them, and the clipping of
+/// casters in front of the near plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CoverageQuery {
-    /// View depth from which receivers read the map, in metres.
+    /// Least view depth of the receivers that read the map, in metres.
     pub near: f32,
-    /// View depth up to which receivers read the map, in metres.
+    /// Greatest view depth of the receivers that read the map, in metres.
     pub far: f32,
-    /// Radius of the filter: of all texels that it reads, the centres must lie in the map. A sampler's rounding of
-    /// texture coordinates only shifts weights by as much, so it counts only where [`FilterRadius::on_hardware`] has
-    /// included it.
+    /// Radius of the filter. The centres of all texels that it reads must lie in the map. A sampler's
+    /// rounding of texture coordinates only shifts the weights by an equal amount, so it counts only if
+    /// [`FilterRadius::on_hardware`] has included it.
     pub filter_radius: FilterRadius,
-    /// How far across the light the looked-up point may lie off the receiver, in metres:
-    /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
-    /// is looked up before the near plane is lit, as it should be where no caster is lost.
+    /// Greatest distance across the light between the looked-up point and the receiver, in metres:
+    /// [`Bias::normal_offset`](crate::Bias::normal_offset). It needs no room along the light: points in front
+    /// of the near plane are lit, which is correct if no caster is lost.
     pub normal_offset: f32,
-    /// Whether all that lies inside the map may read it, at any depth and in later frames, so that no caster over any
-    /// part of it may lie before the near plane: maps that are read by
-    /// [coverage](crate::settings::MapSelection::Coverage). Else only the receivers between the view depths do.
+    /// Whether every point in the map may read it, at any depth and in later frames, as for maps that are
+    /// read by [coverage](crate::settings::MapSelection::Coverage). Casters over any part of the map must
+    /// then not lie in front of the near plane. Otherwise only the receivers between the view depths read it.
     pub is_shared: bool,
-    /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none. The
-    /// other policies make no difference here.
+    /// Treatment of casters in front of the near plane. [`CasterPolicy::DepthClamp`] loses none. The other
+    /// policies make no difference here.
     pub casters: CasterPolicy,
-    /// [`Bias::constant_depth`] of the map, and how it stores depths: the bias must cover their
-    /// [rounding](depth_rounding). `None` requires nothing.
+    /// [`Bias::constant_depth`] of the map and its depth storage: the bias must cover the
+    /// [rounding](depth_rounding) of depths. `None` requires nothing.
     pub bias: Option<(f32, DepthStorage)>,
 }
 
 impl CoverageQuery {
-    /// What a single map of [`fit_scene`](crate::fit_scene) is made for: all receivers up to the
+    /// Returns the requirements on a single map of [`fit_scene`](crate::fit_scene): all receivers up to the
     /// shadow distance.
     pub const fn of_fit(settings: &FitSettings, reach: FilterRadius) -> Self {
         let (near, far) = (f32::MIN, settings.map.max_distance);
@@ -429,10 +427,10 @@ impl CoverageQuery {
         Self { near, far, filter_radius: reach, normal_offset: 0.0, is_shared: false, casters, bias: None }
     }
 
-    /// What one of several maps is made for: the receivers from [`DepthRange::covered_from`] to
-    /// [`DepthRange::far`] or the shadow distance. Where maps are read by coverage, proofs for each map of
-    /// a frame are a proof for all: every receiver is held by the map of its own depth, and whichever finer
-    /// map it reads has all of its casters.
+    /// Returns the requirements on one of several maps: the receivers from [`DepthRange::covered_from`] to
+    /// [`DepthRange::far`] or the shadow distance. If maps are read by coverage, proofs for each map of a
+    /// frame prove the whole frame: every receiver lies in the map of its view depth, and any finer map that
+    /// it reads has all of its casters.
     pub const fn of_map(map: &FittedMap, settings: &Technique, reach: FilterRadius) -> Self {
         let shadow_distance = settings.fit.max_distance;
         let (near, far) = match map.depths {
@@ -447,7 +445,7 @@ impl CoverageQuery {
         Self { near, far, filter_radius: reach, normal_offset: 0.0, is_shared, casters: settings.fit.casters, bias }
     }
 
-    /// This query with another [`normal_offset`](Self::normal_offset).
+    /// Returns this query with another [`normal_offset`](Self::normal_offset).
     #[must_use]
     pub const fn with_normal_offset(mut self, normal_offset: f32) -> Self {
         self.normal_offset = normal_offset;

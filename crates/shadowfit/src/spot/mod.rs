@@ -1,8 +1,8 @@
-//! A perspective (spot) light: its map's matrices, frustum, biases and figures.
+//! Spot lights (perspective): a map's matrices, frustum, biases and figures.
 //!
-//! Unlike the sun, a spot light has a position and a lens of its own, so nothing has to be fitted to the camera: the
-//! map shows what the light sees. Nothing is stabilised, kept or proven either: where light and lens stand still, so
-//! does the map.
+//! Unlike the sun, a spot light has a position and a lens, so its map is not fitted to a camera: it shows
+//! everything in the light's frustum. It needs no stabilising, caching or proofs, since the map is constant
+//! while light and lens do not change.
 //!
 //! ```
 //! use shadowfit::glam::{DVec3, UVec2, Vec3};
@@ -25,9 +25,9 @@
 //!
 //! # In a shader
 //!
-//! The matrices are perspectives: **divide by w**. w is the distance d along the light's axis, in metres. A point with
-//! w <= 0 is beside or behind the light; after the division it would land in the map again, mirrored, so it must be
-//! told apart *before* dividing. Lit or not is then up to the shader: nothing outside the map has been stored.
+//! The matrices are perspectives: **divide by w**. w is the distance d along the light's axis, in metres. A
+//! point with w <= 0 is beside or behind the light. The division would mirror it into the map, so check w
+//! *before* dividing. The shader decides whether points outside the map are lit.
 //!
 //! ```wgsl
 //! let lifted = position + normal * offset;           // see `SpotBias` for the offset and for the depth bias
@@ -50,21 +50,22 @@ use crate::light::{LightAxes, is_vertical};
 use crate::projection::{COVER_TOLERANCE, WorldMatrices};
 use crate::view::{PerspectiveCamera, ViewFrustum};
 
-/// A light at a point that shines through a rectangular window: a lamp, a headlight, a projector.
+/// A light at a point that shines into a rectangular frustum: a lamp, a headlight, a projector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpotLight {
     /// Position of the light in world space, in metres.
     pub position: DVec3,
-    /// Direction of travel along the light's axis in world space; any length that is not extreme; it is normalised.
+    /// Direction of the light's axis in world space, away from the light, of any length that is not extreme.
+    /// It is normalised.
     pub direction: Vec3,
-    /// Direction in world space that is upward in the map; need not be perpendicular to `direction`. Of a light that
-    /// shines within 1e-6 radians of straight along it, the map's top is where that of a map seen from straight above
-    /// is (-z for +y up), as for the XNA sample's sun.
+    /// Up direction of the map in world space. It need not be perpendicular to `direction`. For a light
+    /// within 1e-6 radians of this direction or its opposite, the top of the map is -z for +y up, as for a
+    /// map seen from straight above and for the XNA sample's sun.
     pub up: Vec3,
-    /// Vertical angle of the window, in radians, between 0 and π.
+    /// Vertical angle of the frustum, in radians, between 0 and π.
     pub fov_y: f32,
-    /// Width of the window divided by its height.
+    /// Width of the frustum divided by its height.
     pub aspect: f32,
     /// Distance of the near plane along the axis, in metres. Casters nearer to the light are not stored.
     pub near: f32,
@@ -73,20 +74,22 @@ pub struct SpotLight {
 }
 
 impl SpotLight {
-    /// A light at a position (world space, metres) that shines toward a target, with +y up.
+    /// Returns a light at a position (world space, metres) that points at a target, with +y up.
     ///
-    /// `fov_y` is the vertical angle in radians, `aspect` width by height, `near` and `far` are distances along the
-    /// axis in metres. [`Self::fit`] refuses a target at the position itself.
+    /// `fov_y` is the vertical angle in radians and `aspect` is width by height. `near` and `far` are
+    /// distances along the axis in metres. [`Self::fit`] rejects a target at the position itself.
     pub fn toward(position: DVec3, target: DVec3, fov_y: f32, aspect: f32, near: f32, far: f32) -> Self {
         Self { position, direction: (target - position).as_vec3(), up: Vec3::Y, fov_y, aspect, near, far }
     }
 
-    /// The light's map: its matrices relative to the light's position, which [`SpotFit::relative_to`] moves.
+    /// Returns the light's map. Its matrices are relative to the light's position. [`SpotFit::relative_to`]
+    /// changes this.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`], [`FitError::OutOfRange`] and [`FitError::BadDirection`] for what cannot be such a light
-    /// or is too small or large for f32 arithmetic, [`FitError::NearNotBelowFar`], [`FitError::ZeroResolution`].
+    /// Returns [`FitError::NotFinite`], [`FitError::OutOfRange`] and [`FitError::BadDirection`] for invalid
+    /// parameters and for values too small or large for f32 arithmetic. Returns [`FitError::NearNotBelowFar`]
+    /// and [`FitError::ZeroResolution`].
     pub fn fit(&self, resolution: UVec2, depth: DepthConvention) -> Result<SpotFit, FitError> {
         let lens = self.lens()?;
         if resolution.x == 0 || resolution.y == 0 {
@@ -95,8 +98,8 @@ impl SpotLight {
         Ok(SpotFit::of_lens(self.position, &lens, resolution, depth))
     }
 
-    /// A camera that sees what the light shines on, with the same matrices. One of a light that [`Self::fit`] refuses
-    /// is refused by [`PerspectiveCamera::frustum`].
+    /// Returns a camera with the light's matrices, whose picture is the lit part of the world. If
+    /// [`Self::fit`] rejects the light, [`PerspectiveCamera::frustum`] rejects the camera.
     pub fn camera(&self) -> PerspectiveCamera {
         let Self { position, direction, up, fov_y, aspect, near, far } = *self;
         let axes = self.axes().ok().filter(|(_, is_vertical)| *is_vertical);
@@ -104,17 +107,17 @@ impl SpotLight {
         PerspectiveCamera { eye: position, forward: direction, up, fov_y, aspect, near, far }
     }
 
-    /// The light's frustum as a view, for whatever takes one: to draw it, or to list what it sees.
+    /// Returns the light's frustum as a view, for example to draw it or to cull with it.
     ///
     /// # Errors
     ///
-    /// As [`Self::fit`].
+    /// Returns the errors of [`Self::fit`].
     pub fn frustum(&self) -> Result<ViewFrustum, FitError> {
         self.lens()?;
         self.camera().frustum()
     }
 
-    /// The light's axes, and whether it shines straight along `up`.
+    /// Returns the light's axes, and whether its axis is parallel to `up`.
     fn axes(&self) -> Result<(LightAxes, bool), FitError> {
         let direction = checks::unit("the spot light's direction", self.direction)?;
         let up = checks::unit("the spot light's up direction", self.up)?;
@@ -135,13 +138,13 @@ impl SpotLight {
         let tangent_y = libm::tan(fov_y * 0.5);
         let tangent_x = tangent_y * aspect;
         for tangent in [tangent_x, tangent_y] {
-            checks::within("half an extent of the spot light's window at 1 m", tangent, MIN_LENGTH, MAX_LENGTH)?;
+            checks::within("half an extent of the spot light's frustum at 1 m", tangent, MIN_LENGTH, MAX_LENGTH)?;
         }
         Ok(Lens { axes, tangents: [tangent_x, tangent_y], near: self.near, far: self.far })
     }
 }
 
-/// What a light sees through, checked.
+/// Checked lens of a light.
 struct Lens {
     axes: LightAxes,
     /// Tangents of half the horizontal and half the vertical angle.
@@ -152,32 +155,34 @@ struct Lens {
 
 /// A perspective view-projection of a spot light.
 ///
-/// *Light space* is right-handed with x right and y up in the map, in metres; the light is at its origin and shines
-/// along -z. Clip space has x right, y up and the depth range [`Self::depth`]; its w is the distance along the light's
-/// axis, in metres. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan and Metal have it;
-/// OpenGL users flip v), both 0..1 over the map. Both have to be divided by w, and points behind the light have
-/// w <= 0: the [module](super) shows how a shader does it.
+/// *Light space* is right-handed with x right and y up in the map, in metres. The light is at its origin and
+/// points along -z. Clip space has x right, y up and the depth range [`Self::depth`]. Its w is the distance
+/// along the light's axis, in metres. Texture space has u right, v **down** (row 0 on top, as in wgpu,
+/// Direct3D, Vulkan and Metal; OpenGL users flip v), both 0..1 over the map. Clip and texture coordinates
+/// must be divided by w, and points behind the light have w <= 0. See the [module](super) for the shader
+/// code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpotFit {
-    /// World position that all inputs of the matrices are relative to, in metres: the light's own, until
-    /// [`Self::relative_to`] moves it.
+    /// World position that all inputs of the matrices are relative to, in metres. It is the light's position
+    /// until [`Self::relative_to`] changes it.
     pub origin: DVec3,
     /// Position of the light in world space, in metres.
     pub position: DVec3,
-    /// Unit direction of travel along the light's axis, in world axes.
+    /// Unit direction of the light's axis, away from the light, in world axes.
     pub direction: Vec3,
-    /// Light space from world positions relative to [`Self::origin`], in metres.
+    /// Transform to light space from world positions relative to [`Self::origin`], in metres.
     pub light_from_world: Mat4,
-    /// Clip space from light space.
+    /// Transform to clip space from light space.
     pub clip_from_light: Mat4,
-    /// Clip space from world positions relative to [`Self::origin`], in metres.
+    /// Transform to clip space from world positions relative to [`Self::origin`], in metres.
     pub clip_from_world: Mat4,
-    /// Texture space (u, v) and stored depth, all times w, from world positions relative to [`Self::origin`]. The
-    /// stored depth is the clip depth, and for -1..1 half of it plus one half, as a depth attachment holds it.
+    /// Transform to texture space (u, v) and stored depth, all times w, from world positions relative to
+    /// [`Self::origin`]. The stored depth is the clip depth. For -1..1 it is half the clip depth plus one
+    /// half, as in a depth attachment.
     pub uv_from_world: Mat4,
-    /// Size of one texel along u and v at 1 m from the light along its axis, in metres; it grows in proportion to that
-    /// distance, so this is metres per metre.
+    /// Size of one texel along u and v at 1 m from the light along its axis, in metres. It grows in
+    /// proportion to this distance, so the unit is metres per metre.
     pub texel_size: Vec2,
     /// Width and height of the map, in texels.
     pub resolution: UVec2,
@@ -225,9 +230,9 @@ impl SpotFit {
         fit
     }
 
-    /// The same map with its inputs relative to another world position, in metres: usually the camera's eye. The
-    /// translation is computed in f64 and rounded once. An origin that is not finite gives matrices that are not
-    /// finite.
+    /// Returns the same map with its inputs relative to another world position, in metres, usually the
+    /// camera's eye. The translation is computed in f64 and rounded once. An origin that is not finite gives
+    /// matrices that are not finite.
     #[must_use]
     pub fn relative_to(&self, new_origin: DVec3) -> Self {
         let mut fit = Self { origin: new_origin, ..*self };
@@ -236,19 +241,20 @@ impl SpotFit {
         fit
     }
 
-    /// The matrices for plain f32 world positions.
+    /// Returns the matrices for plain f32 world positions.
     pub fn world_matrices(&self) -> WorldMatrices {
         let Self { light_from_world, clip_from_light, clip_from_world, .. } = self.relative_to(DVec3::ZERO);
         WorldMatrices { light_from_world, clip_from_light, clip_from_world }
     }
 
-    /// Whether a world position, in metres, lies inside the light's frustum, to 1e-6 of its extent there.
+    /// Returns whether a world position, in metres, lies inside the light's frustum, to 1e-6 of its extent
+    /// there.
     pub fn covers(&self, point: DVec3) -> bool {
         let p = self.project(point);
         let distance = -p.z;
         let window = self.tangents().map(|tangent| tangent * distance * (1.0 + 2.0 * COVER_TOLERANCE));
         let slack = (f64::from(self.far) - f64::from(self.near)) * COVER_TOLERANCE;
-        // Beside the light itself the window has no extent, and nothing is inside.
+        // At the light itself the frustum has no extent and holds no points.
         distance > 0.0
             && (p.x.abs() <= window[0])
             && (p.y.abs() <= window[1])
@@ -256,8 +262,8 @@ impl SpotFit {
             && (distance <= f64::from(self.far) + slack)
     }
 
-    /// Stored depth at a distance along the light's axis, in metres: 0..1 between the planes, beyond it outside.
-    /// Not finite at the light itself.
+    /// Returns the stored depth at a distance along the light's axis, in metres. It is in 0..1 between the
+    /// planes and outside this range elsewhere. Not finite at the light itself.
     pub fn depth_at(&self, distance: f64) -> f64 {
         let (near, far) = (f64::from(self.near), f64::from(self.far));
         let plain = far * (distance - near) / (distance * (far - near));
@@ -268,49 +274,50 @@ impl SpotFit {
         }
     }
 
-    /// b = near · far / (far - near), in metres: the stored depth changes by b / d² per metre at the distance d along
-    /// the axis, in every depth convention.
+    /// Returns b = near · far / (far - near), in metres. At the distance d along the axis the stored depth
+    /// changes by b / d² per metre, in every depth convention.
     pub fn depth_scale(&self) -> f64 {
         let (near, far) = (f64::from(self.near), f64::from(self.far));
         near * (far / (far - near))
     }
 
-    /// Tangents of half the horizontal and half the vertical angle.
+    /// Returns the tangents of half the horizontal and half the vertical angle.
     pub(crate) fn tangents(&self) -> [f64; 2] {
         let half = self.resolution.as_dvec2() * self.texel_size.as_dvec2() * 0.5;
         [half.x, half.y]
     }
 
-    /// Greatest distance from the light per metre along its axis: that of the window's corners.
+    /// Returns the greatest distance from the light per metre along its axis, which is at the frustum's
+    /// corners.
     pub(crate) fn stretch(&self) -> f64 {
         let [x, y] = self.tangents();
         libm::sqrt(1.0 + x * x + y * y)
     }
 
-    /// Light space from an absolute world position, in f64.
+    /// Returns the light-space position of an absolute world position, in f64.
     pub(crate) fn project(&self, point: DVec3) -> DVec3 {
         self.turn(point - self.position)
     }
 
-    /// Light axes from world axes, in f64.
+    /// Returns a vector in light axes from world axes, in f64.
     pub(crate) fn turn(&self, v: DVec3) -> DVec3 {
         let m = &self.light_from_world;
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().as_dvec3());
         x * v.x + y * v.y + z * v.z
     }
 
-    /// The light's axes x, y and z in world axes.
+    /// Returns the light's axes x, y and z in world axes.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
         let rows = self.light_from_world.transpose();
         [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().as_dvec3())
     }
 
-    /// Distance of the light from the origin, in metres.
+    /// Returns the distance of the light from the origin, in metres.
     pub(crate) fn away(&self) -> f64 {
         checks::length(self.position - self.origin)
     }
 
-    /// Makes `clip_from_world` and `uv_from_world` of the other two, in f64.
+    /// Computes `clip_from_world` and `uv_from_world` from the other two matrices, in f64.
     fn multiply(&mut self) {
         let clip = self.clip_from_light.as_dmat4().mul_mat4(&self.light_from_world.as_dmat4());
         self.clip_from_world = clip.as_mat4();
@@ -322,7 +329,7 @@ impl SpotFit {
     }
 }
 
-/// Scale of z and offset of a projection's depth, before the division by w = -z.
+/// Returns the scale of z and the offset of a projection's depth, before the division by w = -z.
 fn depth_row(near: f64, far: f64, depth: DepthConvention) -> (f64, f64) {
     match depth {
         DepthConvention::ZeroToOne => (far / (near - far), near * far / (near - far)),
@@ -332,14 +339,15 @@ fn depth_row(near: f64, far: f64, depth: DepthConvention) -> (f64, f64) {
 }
 
 impl SpotFit {
-    /// Every caster that the map can store: the light's frustum, relative to [`Self::origin`], as planes -x, +x, -y,
-    /// +y, far and near in the light's axes. Casters nearer to the light than the near plane are left out, as they are
-    /// clipped. Also what the light can shine on at all: a receiver outside it needs no look-up.
+    /// Returns the volume of all casters that the map can store: the light's frustum, relative to
+    /// [`Self::origin`]. Its planes are -x, +x, -y, +y, far and near in the light's axes. Casters in front of
+    /// the near plane are clipped, so they are outside. The light does not reach receivers outside this
+    /// volume, so they need no look-up.
     pub fn caster_volume(&self) -> CasterVolume {
         let [x, y, z] = self.axes();
         let [tangent_x, tangent_y] = self.tangents();
         let light = self.position - self.origin;
-        // A side holds the light itself, and its normal leans toward the light by the tangent.
+        // A side plane contains the light, and its normal leans toward the light by the tangent.
         let side = |axis: DVec3, tangent: f64| {
             let inward = axis - z * tangent;
             through(inward / checks::length(inward), light)
@@ -351,7 +359,7 @@ impl SpotFit {
     }
 }
 
-/// The plane through a point with a unit normal that points inward.
+/// Returns the plane through a point with a unit normal that points inward.
 fn through(normal: DVec3, point: DVec3) -> Vec4 {
     normal.as_vec3().extend(-normal.dot(point) as f32)
 }

@@ -1,12 +1,14 @@
-//! The filters that read a map: how far each reaches, and how wide those are whose width is no number of texels.
+//! The filters that read a map: the radius of each, and the width of soft filters, which is set in metres or
+//! by the sun's angle instead of in texels.
 //!
-//! A penumbra is as wide across the light in all maps, so its width in texels differs from map to map and
-//! from axis to axis. A floor and a ceiling in texels keep it within what a map can show and a shader can pay for.
+//! A penumbra has the same width across the light in all maps, so its width in texels differs by map and
+//! axis. A least radius keeps it within the precision of a map, and a greatest radius keeps it within the
+//! cost that a shader can afford.
 
 use crate::base::{FitError, checks};
 use crate::technique::setters::setters;
 
-/// How the stored depths are turned into a shadow factor.
+/// Filter that turns the stored depths into a shadow factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FilterKind {
@@ -14,28 +16,29 @@ pub enum FilterKind {
     Point,
     /// Four comparisons, weighted bilinearly (the hardware's 2×2 percentage-closer filter).
     Hardware2x2,
-    /// Tent of 3×3 hardware look-ups (16 texels), by four of them.
+    /// Tent of 3×3 hardware look-ups (16 texels), made of four look-ups.
     Pcf3x3,
-    /// Tent of 5×5 hardware look-ups (36 texels), by nine of them. The default.
+    /// Tent of 5×5 hardware look-ups (36 texels), made of nine look-ups. The default.
     #[default]
     Pcf5x5,
-    /// Tent of 7×7 hardware look-ups (64 texels), by sixteen of them.
+    /// Tent of 7×7 hardware look-ups (64 texels), made of sixteen look-ups.
     Pcf7x7,
-    /// 8 hardware look-ups spread evenly over a disc of the technique's [softness](Softness), turned from
-    /// pixel to pixel (H. Vogel, "A better way to construct the sunflower head", 1979).
+    /// 8 hardware look-ups, spread evenly over a disc and rotated from pixel to pixel (H. Vogel, "A better
+    /// way to construct the sunflower head", 1979). The technique's [softness](Softness) sets the disc's
+    /// radius.
     Vogel8,
-    /// The same with 16 look-ups.
+    /// Like [`Self::Vogel8`], with 16 look-ups.
     Vogel16,
-    /// The same with 32 look-ups.
+    /// Like [`Self::Vogel8`], with 32 look-ups.
     Vogel32,
-    /// A disc as wide as the penumbra of the casters above the point, by the angle of the sun
-    /// (percentage-closer soft shadows: R. Fernando, 2005). It needs the distance to the caster, so
+    /// Disc as wide as the penumbra, computed from the sun's angle and the mean distance to the casters above
+    /// the point (percentage-closer soft shadows: R. Fernando, 2005). It needs the distances of casters, so
     /// maps cannot be depth-clamped.
     Pcss,
 }
 
 impl FilterKind {
-    /// All filters, the narrowest first.
+    /// All filters, narrowest first.
     pub const ALL: [Self; 9] = [
         Self::Point,
         Self::Hardware2x2,
@@ -48,15 +51,16 @@ impl FilterKind {
         Self::Pcss,
     ];
 
-    /// Whether its width is the technique's [softness](Softness), and not a number of texels.
+    /// Returns whether the filter's width is the technique's [softness](Softness) instead of a number of
+    /// texels.
     pub const fn is_soft(self) -> bool {
         matches!(self, Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss)
     }
 
-    /// Filter radius E of the filter: the greatest distance along one axis from the sampled point to a texel
-    /// centre of non-zero weight, in texels. Of a [soft](Self::is_soft) filter it is that of one of its look-ups: the
-    /// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
-    /// [`Technique::filter_radius`](crate::Technique::filter_radius) has both.
+    /// Returns the filter radius E: the greatest distance along one axis from the looked-up point to a texel
+    /// centre of non-zero weight, in texels. For a [soft](Self::is_soft) filter it is the radius of a single
+    /// look-up. The look-ups are spread over the disc of [`Softness`](crate::settings::Softness), and
+    /// [`Technique::filter_radius`](crate::Technique::filter_radius) includes both.
     pub const fn filter_radius(self) -> f32 {
         match self {
             Self::Point => 0.5,
@@ -68,30 +72,32 @@ impl FilterKind {
     }
 }
 
-/// How wide the filters are whose width is no number of texels ([`FilterKind::is_soft`]).
+/// Width of soft filters, which is set in metres or by the sun's angle instead of in texels
+/// ([`FilterKind::is_soft`]).
 ///
-/// It is the same across the light for all maps, so that penumbrae agree where one map meets the
-/// next, and stay when a fit changes.
+/// The width across the light is the same for all maps. Penumbrae therefore match where two maps meet, and do
+/// not change when a fit changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Softness {
-    /// What the width follows from. Default: the angle of the sun as seen from the earth.
+    /// Quantity that sets the width. Default: the angle of the sun as seen from the earth.
     pub radius: SoftRadius,
-    /// Least radius of a filter, in texels, 0..=64: a finer penumbra than a map can show is made this wide.
-    /// Default: 1.
+    /// Least radius of a filter, in texels, 0..=64. A penumbra that is finer than a map can show gets this
+    /// radius. Default: 1.
     pub floor: f32,
-    /// Greatest radius of a filter, in texels, 1..=64. Maps have no finer texels than this allows
-    /// ([`Technique::least_texel`](crate::Technique::least_texel)), so that no map needs a huge filter.
+    /// Greatest radius of a filter, in texels, 1..=64. Texels are made wide enough
+    /// ([`Technique::least_texel`](crate::Technique::least_texel)) that no map needs a larger filter.
     /// Default: 16.
     pub ceiling: f32,
 }
 
-/// What the width of a [soft filter](Softness) follows from.
+/// Quantity that sets the width of a [soft filter](Softness).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SoftRadius {
-    /// Radius of the penumbra across the light, in metres, of a shadow
-    /// [5 m](crate::settings::Softness::USUAL_DISTANCE) from its caster; [`FilterKind::Pcss`] scales it with the distance.
+    /// Radius of the penumbra across the light, in metres, of a shadow [5
+    /// m](crate::settings::Softness::USUAL_DISTANCE) from its caster. [`FilterKind::Pcss`] scales it with the
+    /// distance.
     Metres(f32),
     /// Angular radius of the sun, in radians.
     SunAngle(f32),
@@ -118,25 +124,26 @@ setters!(Softness {
     with_ceiling ceiling: f32,
 });
 
-/// Distance from a caster to its shadow up to which [`FilterKind::Pcss`] widens penumbrae, in metres: from there
-/// on they stay as they are.
+/// Distance from a caster to its shadow, in metres, beyond which [`FilterKind::Pcss`] widens penumbrae no
+/// further.
 const GREATEST_DISTANCE: f32 = 20.0;
 
 impl Softness {
-    /// Distance from a caster to the shadow that a filter of fixed width is right for, in metres, where the
-    /// width is given as the sun's angle: people and cars are about as high.
+    /// Assumed distance from a caster to its shadow, in metres: soft filters of fixed width get the penumbra
+    /// at this distance. It suits the shadows of people and cars.
     pub const USUAL_DISTANCE: f32 = 5.0;
 
-    /// Greatest radius of a filter, in texels, that [`Self::floor`] and [`Self::ceiling`] may have.
+    /// Greatest value of [`Self::floor`] and [`Self::ceiling`], in texels.
     pub const MAX_RADIUS: f32 = 64.0;
 
-    /// Square of the radius of the disc that blurs as much as one look-up of four bilinear comparisons, in square
-    /// texels. A step that is rasterised into texels and compared bilinearly becomes a tent two texels wide, whose
-    /// variance along an axis is 1/6; that of a disc of radius r is r² / 4.
+    /// Square of the radius of the disc that blurs like one look-up of four bilinear comparisons, in square
+    /// texels. A step that is rasterised into texels and compared bilinearly becomes a tent two texels wide,
+    /// with variance 1/6 along an axis. A disc of radius r has variance r² / 4.
     pub const LOOK_UP_SQUARE: f32 = 4.0 / 6.0;
 
-    /// Greatest radius of a penumbra across the light, in metres; 0 for filters that are not soft. It is that of a
-    /// shadow [`Self::USUAL_DISTANCE`] from its caster, and for [`FilterKind::Pcss`] 20 m from it.
+    /// Returns the greatest radius of a penumbra across the light, in metres; 0 for filters that are not
+    /// soft. It is the penumbra of a shadow [`Self::USUAL_DISTANCE`] from its caster, or 20 m from it for
+    /// [`FilterKind::Pcss`].
     pub fn metres(&self, filter: FilterKind) -> f32 {
         if !filter.is_soft() {
             return 0.0;
@@ -145,8 +152,8 @@ impl Softness {
         self.tangent() * distance
     }
 
-    /// Radius of a penumbra across the light, in metres, per metre between caster and shadow: the tangent of the
-    /// sun's angular radius.
+    /// Returns the radius of a penumbra across the light, in metres, per metre between caster and shadow: the
+    /// tangent of the sun's angular radius.
     pub fn tangent(&self) -> f32 {
         match self.radius {
             SoftRadius::Metres(metres) => metres / Self::USUAL_DISTANCE,
@@ -154,13 +161,14 @@ impl Softness {
         }
     }
 
-    /// Greatest reach of a filter per axis, in texels, in any map: the [look-up's](FilterKind::filter_radius), and for
-    /// soft filters the [ceiling](Self::ceiling) of their disc.
+    /// Returns the greatest filter radius in any map, in texels: the [radius of one
+    /// look-up](FilterKind::filter_radius), and for soft filters also the [ceiling](Self::ceiling) of their
+    /// disc.
     pub const fn filter_radius(&self, filter: FilterKind) -> f32 {
         filter.filter_radius() + if filter.is_soft() { self.ceiling } else { 0.0 }
     }
 
-    /// Least width of a texel, in metres, with which a filter needs no larger radius than the
+    /// Returns the least texel width, in metres, at which a filter needs no larger radius than the
     /// [ceiling](Self::ceiling); 0 for filters that are not soft.
     pub fn least_texel(&self, filter: FilterKind) -> f32 {
         self.metres(filter) / self.ceiling

@@ -1,4 +1,4 @@
-//! The kinds of maps that a technique may have, each with the settings that only it has.
+//! The kinds of maps that a technique may have, with the settings of each kind.
 
 use crate::base::{FitError, checks};
 use crate::technique::setters::setters;
@@ -6,11 +6,11 @@ use crate::technique::settings::{
     DEFAULT_WASTE, FitKind, Hysteresis, MAX_MAPS, MapSelection, RectangleKind, Shape, SplitScheme, Stabilise,
 };
 
-/// How the view is shared out among the maps.
+/// Kind of the maps: how they share the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Maps {
-    /// Rectangles that are fixed to the world, each where it helps most of what is visible. The default.
+    /// Rectangles on a fixed world grid, each placed where it improves the most visible pixels. The default.
     Windows(Windows),
     /// Cascades, one behind the other.
     Cascades(Cascades),
@@ -24,27 +24,30 @@ impl Default for Maps {
     }
 }
 
-/// World-locked clipmaps that are placed by demand: squares of the plane across the light (or rectangles, where the
-/// light is low) on a grid that is fixed to the world, each where it helps most of what is visible. They are
-/// [read by coverage](MapSelection::Coverage).
+/// World-locked clipmaps that are placed by visible demand. A window is a square in the plane across the
+/// light, or a rectangle if the light is low. It lies on a fixed world grid and is placed where it improves
+/// the most visible pixels. Points [read windows by coverage](MapSelection::Coverage).
 ///
-/// They are still: a window never turns, its texels have widths from a fixed ladder and lie on lines that are counted
-/// from the world's origin, so that it moves by whole texels. They are sharp: each is put where it helps most of what an
-/// [earlier frame showed](crate::FitInput::demand), or else of what rays through the boxes find. They are whole: the
-/// last one holds all receivers in view, so that a late or wrong count costs sharpness and never coverage.
+/// - Windows are still. A window never turns and moves by whole texels. Its texels are 2^(k/8) metres wide,
+///   and their borders lie on lines that are counted from the world's origin.
+/// - Windows are sharp. They are placed by the [visible demand](crate::FitInput::demand) of an earlier frame.
+///   Without it, rays through the boxes estimate the demand.
+/// - Windows leave no gaps. The last one contains all receivers in view, so a late or wrong demand costs
+///   sharpness, never coverage.
 ///
-/// A lens below 3 degrees of vertical view sees a thin strip of that plane, which cascades may fit better, as they do
-/// above 120 degrees. Windows need up to 2.5 times the resolution of the presets `focused-4` and `calm-4` at 1 degree,
-/// and 3.7 times at 0.2 degrees. They need up to 1.7 times from 5 to 120 degrees, and 3.1 times at 170 degrees.
+/// Cascades may fit better if the vertical field of view is below 3 degrees, where the camera sees a thin
+/// strip of that plane, or above 120 degrees. To be as sharp as the presets `focused-4` and `calm-4`, windows
+/// need at most 1.7 times the resolution of those presets at 5 to 120 degrees, 2.5 times at 1 degree, 3.7
+/// times at 0.2 degrees, and 3.1 times at 170 degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Windows {
     /// Number of maps, 1..=8. Default: 4.
     pub count: u32,
-    /// Texels over which a window is blended into the next coarser one, inward from the filter's reach to its border,
-    /// 0..=[`MapSelection::MAX_BLEND`]; 0 for none. Default: 8.
+    /// Width of the blend into the next coarser window, in texels, 0..=[`MapSelection::MAX_BLEND`]; 0 for
+    /// none. The blend begins one filter radius inside the window's border and goes inward. Default: 8.
     pub blend: f32,
-    /// A window's depth range is kept until it is longer than necessary by this factor, 1..=100. Default: 1.8.
+    /// Greatest factor by which a held depth range may exceed the necessary length, 1..=100. Default: 1.8.
     pub max_depth_oversize: f32,
 }
 
@@ -55,24 +58,24 @@ impl Default for Windows {
 }
 
 impl Windows {
-    /// The shape of a map around all that is visible, which the last window has.
+    /// Shape of the last window, a map around everything visible.
     pub(crate) const WHOLE: Shape = Shape { rectangle: RectangleKind::AxisAligned, ..Shape::new(FitKind::Focused) };
 }
 
-/// Cascades: each map holds a range of view depths of its own, as in other engines' cascades.
+/// Cascades: each map has a separate range of view depths, as in other engines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Cascades {
-    /// Number of maps, 2..=8. Default: 4, as Bevy and Babylon.js have it.
+    /// Number of maps, 2..=8. Default: 4, as in Bevy and Babylon.js.
     pub count: u32,
     /// Shape of each map across the light. Default: [`FitKind::Focused`].
     pub shape: Shape,
-    /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
-    /// boxes where no histogram is given.
+    /// Scheme that splits the view depths among the maps. Default: [`SplitScheme::FromHistogram`], which uses
+    /// boxes if there is no histogram.
     pub splits: SplitScheme,
-    /// Which of the maps a point reads. Default: [`MapSelection::Coverage`].
+    /// Rule that selects the map that a point reads. Default: [`MapSelection::Coverage`].
     pub selection: MapSelection,
-    /// What keeps the maps stable. Default: [`Stabilise::Hysteresis`].
+    /// Method that keeps the maps stable. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
 }
 
@@ -92,14 +95,14 @@ impl Default for Cascades {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct SingleMap {
-    /// Its shape across the light. Default: [`FitKind::Focused`].
+    /// Shape of the map across the light. Default: [`FitKind::Focused`].
     pub shape: Shape,
-    /// What keeps it stable. Default: [`Stabilise::Hysteresis`].
+    /// Method that keeps the map stable. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
 }
 
 impl SingleMap {
-    /// The map as the only slice of the view.
+    /// Returns the map as the only slice of the view.
     pub(crate) fn slice(&self) -> Cascades {
         let Self { shape, stabilise } = *self;
         let selection = MapSelection::Coverage { blend: 0.0 };
@@ -145,7 +148,7 @@ impl From<SingleMap> for Maps {
 }
 
 impl Maps {
-    /// Their number.
+    /// Returns the number of maps.
     pub const fn count(&self) -> u32 {
         match self {
             Self::Windows(windows) => windows.count,
@@ -154,8 +157,8 @@ impl Maps {
         }
     }
 
-    /// As many maps of the same kind; cascades that become one are [one map](Self::Single) of their shape, and the
-    /// other way round.
+    /// Returns maps of the same kind with another count. Cascades become [one map](Self::Single) of their
+    /// shape if the count is 1, and one map becomes cascades if it is greater.
     #[must_use]
     pub fn with_count(self, count: u32) -> Self {
         match self {
@@ -166,7 +169,8 @@ impl Maps {
         }
     }
 
-    /// As many maps of the view, of a shape across the light: [cascades](Self::Cascades), or [one map](Self::Single).
+    /// Returns the same number of maps with another shape. Windows become [cascades](Self::Cascades), or [one
+    /// map](Self::Single) if there is only one, since their own shape follows from the light.
     #[must_use]
     pub fn with_shape(self, shape: Shape) -> Self {
         if self.count() == 1 {
@@ -176,13 +180,15 @@ impl Maps {
         }
     }
 
-    /// As many maps of the view, fitted by another rule.
+    /// Returns the same number of maps fitted by another rule. Windows become [cascades](Self::Cascades), or
+    /// [one map](Self::Single) if there is only one.
     #[must_use]
     pub fn with_kind(self, kind: FitKind) -> Self {
         self.with_shape(self.shape().unwrap_or_default().with_kind(kind))
     }
 
-    /// As many maps of the view, kept as told: [cascades](Self::Cascades), or [one map](Self::Single).
+    /// Returns the same number of maps with another method of stabilisation. Windows become
+    /// [cascades](Self::Cascades), or [one map](Self::Single) if there is only one.
     #[must_use]
     pub fn with_stabilise(self, stabilise: Stabilise) -> Self {
         if self.count() == 1 {
@@ -192,7 +198,8 @@ impl Maps {
         }
     }
 
-    /// These cascades, or the nearest to maps of another kind: as many (of one map: 2), with what both kinds have.
+    /// Returns the maps as cascades. Maps of another kind keep their number (one map becomes 2) and the
+    /// settings that cascades also have.
     pub fn as_cascades(&self) -> Cascades {
         match *self {
             Self::Windows(Windows { count, blend, max_depth_oversize: max_oversize }) => Cascades {
@@ -208,7 +215,8 @@ impl Maps {
         }
     }
 
-    /// These windows, or the nearest to maps of another kind: as many, with what both kinds have.
+    /// Returns the maps as windows. Maps of another kind keep their number and the settings that windows also
+    /// have.
     pub fn as_windows(&self) -> Windows {
         let windows = |count, blend, max_depth_oversize| Windows { count, blend, max_depth_oversize };
         match *self {
@@ -223,7 +231,8 @@ impl Maps {
         }
     }
 
-    /// This map, or the nearest to maps of another kind: one around them all, with what both kinds have.
+    /// Returns a single map in place of these maps. Maps of another kind keep the settings that a single map
+    /// also has.
     pub fn as_single(&self) -> SingleMap {
         if let Self::Single(one) = *self {
             return one;
@@ -232,7 +241,7 @@ impl Maps {
         SingleMap { shape, stabilise }
     }
 
-    /// The shape of each map; `None` of windows, whose shape follows from the light.
+    /// Returns the shape of each map, or `None` for windows, whose shape follows from the light.
     pub const fn shape(&self) -> Option<Shape> {
         match self {
             Self::Windows(_) => None,
@@ -241,7 +250,7 @@ impl Maps {
         }
     }
 
-    /// Which of the maps a point reads.
+    /// Returns the rule that selects the map that a point reads.
     pub const fn selection(&self) -> MapSelection {
         match self {
             Self::Windows(windows) => MapSelection::Coverage { blend: windows.blend },
@@ -250,7 +259,7 @@ impl Maps {
         }
     }
 
-    /// Whether fits go by what an earlier frame showed, where that is known.
+    /// Returns whether fits use the visible demand of an earlier frame, if it is known.
     pub const fn uses_visible_demand(&self) -> bool {
         match self {
             Self::Windows(_) => true,
@@ -259,7 +268,7 @@ impl Maps {
         }
     }
 
-    /// Whether anything of a map is kept for later frames.
+    /// Returns whether any part of a map is kept for later frames.
     pub(crate) const fn are_kept(&self) -> bool {
         match self {
             Self::Windows(_) => true,
@@ -269,7 +278,7 @@ impl Maps {
         }
     }
 
-    /// Whether the fit of each is the XNA sample's, which has no caster policy.
+    /// Returns whether each map is fitted by the XNA sample's rule, which has no caster policy.
     pub const fn are_exact(&self) -> bool {
         matches!(self.shape(), Some(Shape { kind: FitKind::XnaSample, .. }))
     }
@@ -298,7 +307,7 @@ impl Maps {
     }
 }
 
-/// Refuses numbers of what keeps maps stable that are out of range.
+/// Refuses stabilisation settings that are out of range.
 fn check_kept(stabilise: Stabilise) -> Result<(), FitError> {
     if let Stabilise::Hysteresis(hysteresis) = stabilise {
         checks::within("the hysteresis's margin", f64::from(hysteresis.margin), 0.0, 10.0)?;

@@ -1,11 +1,11 @@
 //! The `with_*` methods of settings.
 
-/// Writes one `with_*` method per field of a settings struct, or of a part of it.
+/// Implements one `with_*` method per field of a settings struct, or of a part of it.
 macro_rules! setters {
     ($settings:ident.$part:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
         impl $settings {
             $(
-                #[doc = concat!("These settings with another `", stringify!($part), ".", stringify!($field), "`.")]
+                #[doc = concat!("Sets `", stringify!($part), ".", stringify!($field), "`.")]
                 #[must_use]
                 pub const fn $method(mut self, $field: $value) -> Self {
                     self.$part.$field = $field;
@@ -17,7 +17,7 @@ macro_rules! setters {
     ($settings:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
         impl $settings {
             $(
-                #[doc = concat!("These settings with another [`", stringify!($field), "`](Self::", stringify!($field), ").")]
+                #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
                 #[must_use]
                 pub const fn $method(mut self, $field: $value) -> Self {
                     self.$field = $field;

@@ -1,12 +1,12 @@
-//! The parts that a [`Technique`](crate::Technique) is made of.
+//! The parts of a [`Technique`](crate::Technique).
 //!
-//! Every field is public, has a default, and a row in the table of the crate `shadowfit-params`, from which
-//! panels, command lines and saved files are made. Lengths are metres, sizes of maps and biases are texels, view
-//! depths are counted from the eye along the camera's forward direction.
+//! Every field is public, has a default, and has a row in the table of the crate `shadowfit-params`. Panels,
+//! command lines and saved files are made from that table. Lengths are in metres, map sizes and biases in
+//! texels. View depths are counted from the eye along the camera's forward direction.
 //!
-//! Defaults are those of the [recommended technique](crate::Preset::RECOMMENDED). Where other
-//! engines have a default for the same number it is theirs; the rest comes from the measurements in
-//! the repository's `docs/BENCHMARKS.md`.
+//! The defaults make the [recommended technique](crate::Preset::RECOMMENDED). If other engines have a default
+//! for the same number, we use theirs. All other defaults come from the measurements in the repository's
+//! `docs/BENCHMARKS.md`.
 
 use glam::{UVec2, Vec3};
 
@@ -15,74 +15,76 @@ use crate::technique::setters::setters;
 
 pub use super::filter::{FilterKind, SoftRadius, Softness};
 
-/// Which rule fits a shadow map to the camera frustum, or to its slice of it.
+/// Rule that fits a shadow map to the camera frustum or to a slice of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FitKind {
-    /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008),
-    /// reproduced exactly: tight across the light, twice the depth that is needed, no caster
-    /// policy.
+    /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008), reproduced
+    /// exactly. It is tight across the light, has twice the necessary depth, and has no caster policy.
     XnaSample,
-    /// Axis-aligned box of the camera frustum in the light's axes, with tight depth and the near
-    /// plane placed by [`MapSettings::casters`].
+    /// Axis-aligned box of the camera frustum in the light's axes, tight along the light too.
+    /// [`MapSettings::casters`] places the near plane.
     FrustumAabb,
-    /// Least rectangle of the camera frustum as seen from the light, turned about it as
-    /// [`Shape::rectangle`] says. The tightest fit without knowledge of the scene.
+    /// Least rectangle around the camera frustum as seen from the light, turned as set by
+    /// [`Shape::rectangle`]. It is the tightest fit without knowledge of the scene.
     Oriented,
-    /// Minimal enclosing sphere of the camera frustum, on a grid of whole texels that is fixed to
-    /// the world: shadow edges do not crawl when the camera moves or turns.
+    /// Minimal enclosing sphere of the camera frustum, on a fixed world grid of whole texels. Shadow edges do
+    /// not crawl when the camera moves or turns.
     Sphere,
-    /// Least rectangle of what the camera can see of the receivers' boxes, turned as
-    /// [`Shape::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default.
+    /// Least rectangle around the visible parts of the receivers' boxes, turned as set by
+    /// [`Shape::rectangle`]. Without boxes it equals [`Self::Oriented`]. The default.
     #[default]
     Focused,
 }
 
-/// Which rectangle [`FitKind::Oriented`] and [`FitKind::Focused`] put around what they cover.
+/// Rectangle that [`FitKind::Oriented`] and [`FitKind::Focused`] put around the covered points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RectangleKind {
-    /// Along the light's own axes, never turned.
+    /// Rectangle along the light's own axes, never turned.
     AxisAligned,
-    /// Of least area. The default.
+    /// Rectangle of least area. The default.
     #[default]
     MinimumArea,
-    /// The one with the least longer side, made square: square texels on a square map.
+    /// Rectangle with the shortest longer side, made square. It gives square texels on a square map.
     MinimumSquare,
 }
 
-/// Where the near plane stands, so that casters between the light and the receivers are kept.
+/// Policy that places the near plane of a map. Casters in front of the near plane, on the light's side, are
+/// lost unless depth is clamped.
+///
+/// The *covered region* is the region that the map must cover: a slice of the view, or the receivers in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CasterPolicy {
-    /// At the covered region: casters before it are lost, as in the sample.
+    /// At the covered region. Casters in front of it are lost, as in the XNA sample.
     None,
-    /// Moved toward the light by [`MapSettings::caster_extension`].
+    /// Moved from the covered region toward the light by [`MapSettings::caster_extension`].
     Extend,
-    /// At the one box around all casters, clipped to the volume that can cast shadows into view;
-    /// as [`Self::Extend`] where the casters are not known.
+    /// At the bounding box of all casters, clipped to the volume that can cast shadows into view. Equals
+    /// [`Self::Extend`] if the casters are unknown.
     SceneBounds,
-    /// At the first caster that can cast a shadow into view: each box is clipped to that volume.
-    /// As [`Self::Extend`] where the casters are not known. The default.
+    /// At the first caster that can cast a shadow into view: each caster's own box is clipped to the volume
+    /// that can cast shadows into view. Equals [`Self::Extend`] if the casters are unknown. The default.
     #[default]
     PerObject,
-    /// At the covered region, with the pipeline's depth clamp keeping casters before it
-    /// ("pancaking"). Culling still uses the unclamped volume, and filters cannot use the distance
-    /// to a clamped caster.
+    /// At the covered region. The pipeline's depth clamp ("pancaking") keeps the casters in front of it and
+    /// flattens them onto the near plane, so culling keeps them too. Filters cannot use the distance to a
+    /// clamped caster.
     DepthClamp,
 }
 
-/// The shape of a map across the light: the rule that fits it to what it covers.
+/// Shape of a map across the light: the rule that fits it to the covered region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Shape {
-    /// The rule of the fit. Default: [`FitKind::Focused`].
+    /// Fit rule. Default: [`FitKind::Focused`].
     pub kind: FitKind,
-    /// Rectangle of the fits that may turn. Default: [`RectangleKind::MinimumArea`].
+    /// Rectangle of fits that may turn. Default: [`RectangleKind::MinimumArea`].
     pub rectangle: RectangleKind,
-    /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
-    /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
-    /// [`FitKind::XnaSample`] ignores it. Default: `f32::MAX`, no limit.
+    /// Greatest ratio of a texel's longer side to its shorter one, 1 or more. Long texels blur shadows more
+    /// along one direction. The rectangle is chosen and widened to respect this limit. [`FitKind::XnaSample`]
+    /// ignores it. Default: `f32::MAX`, no limit.
     pub max_texel_ratio: f32,
 }
 
@@ -93,44 +95,46 @@ impl Default for Shape {
 }
 
 impl Shape {
-    /// The shape of a rule, with the defaults of the rest.
+    /// Creates the shape of a fit rule, with defaults for the rest.
     pub const fn new(kind: FitKind) -> Self {
         Self { kind, rectangle: RectangleKind::MinimumArea, max_texel_ratio: f32::MAX }
     }
 }
 
-/// What all maps of a technique share, whatever their kind: how far they reach, which casters they keep, how large
-/// they are. The defaults are those of the [recommended technique](crate::Technique).
+/// Settings that maps of all kinds share: shadow distance, border, casters and resolution. The defaults make
+/// the [recommended technique](crate::Technique).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapSettings {
-    /// Shadows end at this view depth, in metres; at the camera's far plane when that is nearer.
-    /// Default: `f32::MAX`, which is always the far plane.
+    /// View depth at which shadows end, in metres. They never extend beyond the camera's far plane. Default:
+    /// `f32::MAX`, which always means the far plane.
     pub max_distance: f32,
-    /// Enlarges the light's box on all six sides, in metres: the sample's own imperfect remedy for
-    /// clipped casters. Default: 0.
+    /// Enlargement of the light's box on all six sides, in metres. It is the XNA sample's imperfect remedy
+    /// for clipped casters. Default: 0.
     pub margin: f32,
-    /// Free texels between the covered region and the map's border, for the filter to read.
-    /// Default: `None`, which takes what the technique's filter and bias need
-    /// ([`Technique::border`]); a fit without a technique takes what the default filter needs.
-    /// [`FitKind::XnaSample`] ignores it.
+    /// Free texels between the covered region and the map's border, for the filter's footprint. Default:
+    /// `None`, which means the technique's filter radius plus its normal offset ([`Technique::border`]). A
+    /// fit without a technique then uses the radius of the default filter. [`FitKind::XnaSample`] ignores
+    /// this setting.
     ///
     /// [`Technique::border`]: crate::Technique::border
     pub border: Option<f32>,
-    /// What places the near plane. [`FitKind::XnaSample`] ignores it: the sample has none. Default:
-    /// [`CasterPolicy::PerObject`].
+    /// Policy that places the near plane. [`FitKind::XnaSample`] ignores it, since the sample has none.
+    /// Default: [`CasterPolicy::PerObject`].
     pub casters: CasterPolicy,
-    /// How far [`CasterPolicy::Extend`] moves the near plane toward the light, in metres. Default:
-    /// 50, which holds most buildings. It also stands in where the casters are not known.
+    /// Distance that [`CasterPolicy::Extend`] moves the near plane toward the light, in metres.
+    /// [`CasterPolicy::SceneBounds`] and [`CasterPolicy::PerObject`] also use it if the casters are unknown.
+    /// Default: 50, which is more than the height of most buildings.
     pub caster_extension: f32,
-    /// Up direction in world axes, which sets the map's roll; its length is ignored. Default: +y.
+    /// Up direction in world axes, of any length. It sets the map's roll, its rotation about the light's
+    /// direction. Default: +y.
     pub up: Vec3,
-    /// Least width of a texel, in metres; 0 for no limit. A map that would have finer ones is made larger, around its
-    /// middle. [`FitKind::XnaSample`] ignores it; a soft filter may ask for more
-    /// ([`Technique::least_texel`](crate::Technique::least_texel)). Default: 0.
+    /// Least texel width, in metres; 0 for no limit. A map with finer texels is enlarged around its middle. A
+    /// soft filter may need a greater width ([`Technique::least_texel`](crate::Technique::least_texel)).
+    /// [`FitKind::XnaSample`] ignores it. Default: 0.
     pub least_texel: f32,
-    /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
-    /// three.js have it.
+    /// Width and height of the map, in texels. Default: 2048 × 2048, as in Bevy and in the cascades of
+    /// three.js.
     pub resolution: UVec2,
     /// Depth convention of the fitted clip space. Default: [`DepthConvention::ZeroToOne`].
     pub depth: DepthConvention,
@@ -153,7 +157,7 @@ impl Default for MapSettings {
 }
 
 impl MapSettings {
-    /// These settings with this number of [free texels](Self::border) at the map's border, for any
+    /// Returns these settings with this number of [free texels](Self::border) at the map's border, for any
     /// filter and bias.
     #[must_use]
     pub const fn with_border(mut self, texels: f32) -> Self {
@@ -162,18 +166,18 @@ impl MapSettings {
     }
 }
 
-/// How a [single map](crate::fit) is fitted without a technique.
+/// Settings of a [single map](crate::fit) that is fitted without a technique.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct FitSettings {
-    /// Its shape across the light.
+    /// Shape of the map across the light.
     pub shape: Shape,
-    /// All that does not depend on the shape.
+    /// Settings that do not depend on the shape.
     pub map: MapSettings,
 }
 
 impl FitSettings {
-    /// These settings with this number of [free texels](MapSettings::border) at the map's border.
+    /// Returns these settings with this number of [free texels](MapSettings::border) at the map's border.
     #[must_use]
     pub const fn with_border(mut self, texels: f32) -> Self {
         self.map.border = Some(texels);
@@ -181,53 +185,52 @@ impl FitSettings {
     }
 }
 
-/// Most maps that share a view.
+/// Greatest number of maps that share a view.
 pub const MAX_MAPS: usize = 8;
 
-/// Where one map ends and the next begins, in view depth.
+/// Scheme that splits the view depths among the maps.
 ///
-/// Where the receivers' boxes are known, all schemes but the manual one distribute the maps over
-/// the depths at which receivers are in view, instead of over the whole frustum.
+/// If the receivers' boxes are known, all schemes except the manual one split only the depths at which
+/// receivers are in view, instead of the whole frustum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SplitScheme {
-    /// Ranges of equal length, over everything in view or between the [bounds of what is
-    /// visible](crate::FitInput::depth_bounds) if those are known. The next two schemes use the same
-    /// interval.
+    /// Ranges of equal length, over everything in view, or between the [visible depth
+    /// bounds](crate::FitInput::depth_bounds) if they are known. The next two schemes use the same interval.
     Uniform,
     /// Ranges of equal ratio of far to near depth, which suits perspective. Most maps are then
     /// close to the eye.
     Logarithmic,
-    /// Between both: λ, 0..=1, is the share of the logarithmic splits, the rest is that of the
-    /// uniform ones (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
+    /// Blend of the two schemes above: λ, 0..=1, is the share of the logarithmic splits, and 1 - λ the share
+    /// of the uniform ones (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
     /// virtual environments", 2006). 0.5 is the default of three.js and Babylon.js.
     Practical(f32),
-    /// View depths in metres at which the maps end, ascending; the last map ends with the shadows.
+    /// View depths at which the maps end, in metres, ascending. The last map ends where shadows end.
     Manual([f32; MAX_MAPS - 1]),
-    /// The splits with the least 95% quantile of pixels per texel, with visibility estimated from
-    /// the receivers' boxes.
+    /// Splits with the least 95% quantile of pixels per texel over the visible points, which are estimated
+    /// from the receivers' boxes.
     FromBoxes,
-    /// The same, with visibility from the engine's [histogram](crate::FitInput::histogram) of
-    /// visible depths; without a histogram as [`Self::FromBoxes`]. The default.
+    /// Splits as in [`Self::FromBoxes`], but with the visible points of the engine's
+    /// [histogram](crate::FitInput::histogram), if there is one. The default.
     #[default]
     FromHistogram,
 }
 
-/// Which of several maps a point reads; [`crate::selection`] has the rule.
+/// Rule that selects the map that a point reads; [`crate::selection`] explains it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapSelection {
-    /// The finest one that holds the point with all that the filter reads around it, whatever the
-    /// point's view depth. The default, with [`Self::DEFAULT_BLEND`].
+    /// The finest map that covers the point and the filter's footprint around it, at any view depth. The
+    /// default, with [`Self::DEFAULT_BLEND`].
     Coverage {
-        /// Texels over which a map is blended into the next coarser one, inward from the filter's reach to its border,
-        /// 0..=[`Self::MAX_BLEND`]; 0 for none.
+        /// Width of the blend into the next coarser map, in texels, 0..=[`Self::MAX_BLEND`]; 0 for none. The
+        /// blend begins one filter radius inside the map's border and goes inward.
         blend: f32,
     },
-    /// The one in whose range of view depths the point lies, blended into the next one where ranges
-    /// overlap, as other engines do.
+    /// The map whose range of view depths holds the point, blended into the next one where ranges overlap, as
+    /// in other engines.
     ViewDepth {
-        /// Share of a map's range of view depths that the next map covers too, 0..=1.
+        /// Share of a map's range of view depths that the next map also covers, 0..=1.
         overlap: f32,
     },
 }
@@ -239,14 +242,14 @@ impl Default for MapSelection {
 }
 
 impl MapSelection {
-    /// Texels over which maps are blended by default.
+    /// Default width of the blend, in texels.
     pub const DEFAULT_BLEND: f32 = 8.0;
 
-    /// Most texels over which maps that are read by coverage may be blended: a quarter of the side of the
-    /// smallest map that tools allow, 256.
+    /// Greatest width of the blend of maps that are read by coverage, in texels: a quarter of the side of the
+    /// smallest map that tools allow, which has 256 texels.
     pub const MAX_BLEND: f32 = 64.0;
 
-    /// Texels over which a map is blended into the next coarser one by coverage; 0 by view depth.
+    /// Returns the width of the blend into the next coarser map, in texels; 0 for selection by view depth.
     pub const fn blend(self) -> f32 {
         match self {
             Self::Coverage { blend } => blend,
@@ -254,28 +257,29 @@ impl MapSelection {
         }
     }
 
-    /// Whether points read by [`Self::Coverage`].
+    /// Returns whether points select maps by [`Self::Coverage`].
     pub const fn is_by_coverage(self) -> bool {
         matches!(self, Self::Coverage { .. })
     }
 }
 
-/// Whether and how maps are kept from changing while the camera moves.
+/// Method that keeps maps from changing while the camera moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stabilise {
-    /// Every frame is fitted anew: the finest texels, and shadow edges that crawl.
+    /// No stabilisation: every frame is fitted from scratch. Texels are finest, but shadow edges crawl.
     Off,
-    /// Extents are rounded up to eighths of an octave and the map moves by whole texels of a grid
-    /// that is fixed to the world. With [`FitKind::Sphere`] edges do not move at all; other fits
+    /// Extents across the light are rounded up to 2^(k/8) m, eighths of an octave, and the map moves by whole
+    /// texels of a fixed world grid. With [`FitKind::Sphere`] edges do not move at all. Maps of other fits
     /// still change when the camera turns.
     Snap {
-        /// Splits and depth ranges are kept until they are larger than necessary by this factor, 1..=100.
+        /// Greatest factor by which a held depth range may exceed the necessary length, and held splits the
+        /// pixels per texel of the best splits, 1..=100.
         max_oversize: f32,
     },
-    /// A map is kept, its angle included, and moved by whole texels as long as it covers what it
-    /// must and wastes no more than [`Hysteresis::max_oversize`]. A new map is made large enough for the
-    /// predicted motion. The default.
+    /// A map is held, including its angle, and moved by whole texels. It is replaced once it no longer covers
+    /// the necessary region or exceeds [`Hysteresis::max_oversize`]. A new map is made large enough for the
+    /// predicted motion of the camera. The default.
     Hysteresis(Hysteresis),
 }
 
@@ -286,10 +290,10 @@ impl Default for Stabilise {
 }
 
 impl Stabilise {
-    /// How many times larger than necessary something that is kept may become.
+    /// Returns the greatest factor by which held sizes may exceed the necessary size.
     pub const fn max_oversize(self) -> f32 {
         match self {
-            // Nothing but the depth range of a sphere, which lies on the world's grid.
+            // It applies only to the depth range of a sphere, which lies on the world's grid.
             Self::Off => DEFAULT_WASTE,
             Self::Snap { max_oversize } => max_oversize,
             Self::Hysteresis(hysteresis) => hysteresis.max_oversize,
@@ -297,17 +301,17 @@ impl Stabilise {
     }
 }
 
-/// When [`Stabilise::Hysteresis`] keeps a map and how much room a new one gets.
+/// Settings of [`Stabilise::Hysteresis`]: how long a map is held, and how much room a new one gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Hysteresis {
-    /// Room left around what a new map must cover, as a share of its extent, 0..=10. Default: 0.02.
+    /// Room around the region that a new map must cover, as a share of its extent, 0..=10. Default: 0.02.
     pub margin: f32,
-    /// A new map also covers what the camera will see if it goes on moving as it did, for as many
-    /// frames as make the map wider by at most this factor, 1..=100. Default: 1.4.
+    /// Greatest factor by which predicted camera motion may widen a new map, 1..=100. It limits the number of
+    /// frames that the map looks ahead. Default: 1.4.
     pub max_growth: f32,
-    /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
-    /// splits are chosen anew by the same rule. Default: 1.8.
+    /// Greatest factor by which a held map's texels may exceed the texels of a new map, 1..=100. Held splits
+    /// and depth ranges follow the same rule. Default: 1.8.
     pub max_oversize: f32,
     /// Greatest number of frames to look ahead. Default: 32.
     pub look_ahead: u32,
@@ -319,44 +323,46 @@ impl Default for Hysteresis {
     }
 }
 
-/// How many times larger than necessary something that is kept may become, by default.
+/// Default factor by which held sizes may exceed the necessary size.
 pub(crate) const DEFAULT_WASTE: f32 = 1.8;
 
-/// Biases that keep a surface from shadowing itself, in texels of the map.
+/// Biases that keep a surface from shadowing itself, in texels of the map. A depth bias of one texel moves
+/// the point toward the light by the width of a texel. Texels that are not square count with their longer
+/// side.
 ///
-/// They are converted to depth and metres in one place, [`crate::bias`].
+/// [`crate::bias`] converts them to depth and metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct BiasSettings {
-    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/32, for inexact
-    /// surface normals.
+    /// Depth bias that does not depend on the slope, in texels. Default: 1/32, for inexact surface normals.
     pub constant: f32,
-    /// Depth bias times the tangent of the angle between the surface normal and the light, in
-    /// texel sizes. Default: 0.
+    /// Depth bias that is multiplied by the tangent of the angle between the surface normal and the light, in
+    /// texels. Default: 0.
     pub slope: f32,
-    /// Offset of the sampled point along the geometric normal times the sine of that angle, in
-    /// texel sizes. Default: 0.
+    /// Offset of the looked-up point along the geometric normal, multiplied by the sine of that angle, in
+    /// texels. Default: 0.
     pub normal_offset: f32,
-    /// Receiver-plane bias: each comparison of the filter is made with the depth of the receiver's
-    /// own plane where it reads, moved toward the light by the plane's height change over this many
-    /// texels (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). The reach of one
-    /// comparison clears a plane: 0.5 for a single texel, 1 for the hardware's 2×2 and all filters
-    /// built from it. 0 turns it off. Default: 1 + 1/256; the fraction covers the hardware's
-    /// rounding of positions in the map.
+    /// Receiver-plane bias, in texels. Each comparison of the filter uses the depth of the receiver's own
+    /// plane at the texel that it reads, moved toward the light by the plane's height change over this many
+    /// texels (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). To prevent self-shadowing
+    /// on a plane, it must be at least the filter radius of one comparison: 0.5 for a single texel, 1 for the
+    /// hardware's 2×2 and all filters built from it. 0 turns the bias off. Default: 1 + 1/256; the fraction
+    /// covers the hardware's rounding of positions in the map.
     pub receiver_plane: f32,
-    /// Bias in roundings, 0..=16. One covers a [step](crate::diagnostics::depth_step) of the map's format, and the
-    /// rounding of f32 positions: [`Self::constant`] is raised to it, and the other biases, unless they are 0, grow by
-    /// it. Default: 1.
+    /// Number of roundings that the biases cover, 0..=16. The rounding of f32 positions raises
+    /// [`Self::constant`] if that is smaller and not negative, and is added to the other biases that are
+    /// above 0. One [step](crate::diagnostics::depth_step) of the map's format is added to the constant.
+    /// Default: 1.
     pub depth_steps: f32,
 }
 
 impl BiasSettings {
-    /// Greatest [`Self::depth_steps`].
+    /// Greatest value of [`Self::depth_steps`].
     pub const MAX_DEPTH_STEPS: f32 = 16.0;
 }
 
 impl Default for BiasSettings {
-    /// [`Self::automatic`] for the default filter.
+    /// Returns [`Self::automatic`] for the default filter.
     fn default() -> Self {
         Self::automatic(FilterKind::default())
     }
@@ -369,18 +375,18 @@ pub enum MapFormat {
     /// 32-bit float depth attachment, compared by the sampler. The default.
     #[default]
     Depth32Float,
-    /// 16-bit depth attachment, compared by the sampler: half the memory, and steps of 1/65,535 of the
-    /// map's depth range.
+    /// 16-bit depth attachment, compared by the sampler. It needs half the memory and has steps of 1/65,535
+    /// of the map's depth range.
     Depth16Unorm,
-    /// One 32-bit float colour channel with a depth buffer of its own, compared by hand (the XNA
-    /// sample's form).
+    /// One 32-bit float colour channel with a separate depth buffer, compared in the shader (the XNA sample's
+    /// first choice).
     R32Float,
-    /// The same with a 16-bit float, of 11 significant bits: the sample's second choice.
+    /// Like [`Self::R32Float`] with a 16-bit float, of 11 significant bits: the sample's second choice.
     R16Float,
-    /// The bits of a 32-bit float in the four channels of an 8-bit colour: the sample's third choice. It
-    /// comes back bit for bit.
+    /// A 32-bit float in the four channels of an 8-bit colour, stored without loss: the sample's third
+    /// choice.
     Rgba8Packed,
-    /// Depth as one 8-bit grey: 256 steps over the map's depth range, to show why that is too coarse.
+    /// An 8-bit grey: 256 steps over the map's depth range, to show why that is too coarse.
     R8Grey,
 }
 
@@ -389,40 +395,43 @@ impl MapFormat {
     pub const ALL: [Self; 6] =
         [Self::Depth32Float, Self::Depth16Unorm, Self::R32Float, Self::R16Float, Self::Rgba8Packed, Self::R8Grey];
 
-    /// Whether it is a depth attachment, which samplers compare; others are colours, compared by hand.
+    /// Returns whether the format is a depth attachment, which samplers compare. Other formats are colours,
+    /// compared in the shader.
     pub const fn is_depth(self) -> bool {
         matches!(self, Self::Depth32Float | Self::Depth16Unorm)
     }
 }
 
-/// How the edges of shadows come out: by the maps alone, or exact, by rays where the maps are not sure.
+/// Method that decides the pixels at shadow edges: the maps alone, or rays for exact edges.
 ///
-/// Rays need the triangles of what casts, and a depth buffer before the picture is shaded: of `shadowfit-wgpu` the
-/// feature `rays`. Whoever reads the maps without that gets filtered edges.
+/// Rays need the triangles of the casters, and a depth buffer before the picture is shaded. The feature
+/// `rays` of `shadowfit-wgpu` traces them. Code that reads the maps without it gets filtered edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Edges {
-    /// The filter's factor everywhere. The default.
+    /// The filter's shadow factor everywhere. The default.
     #[default]
     Filtered,
-    /// Where all texels that the filter reads agree, they decide; elsewhere rays do. Soft filters trace the disc of the
-    /// sun by [their softness](Softness), others its centre.
+    /// Exact edges. If all texels in the filter's footprint agree, they decide. Otherwise rays decide. With
+    /// soft filters, rays go to points of the sun's disc, whose size follows from [the softness](Softness).
+    /// With other filters, they go to its centre.
     Traced {
-        /// Rays toward the light for each pixel that is not sure, 1..=[`Self::MAX_SAMPLES`]: from as many points of the
-        /// pixel, and toward as many of a sun that is not a point. With one ray edges are exact and jagged, with four
-        /// they are smooth.
+        /// Number of rays toward the light for each pixel without agreement, 1..=[`Self::MAX_SAMPLES`]. Each
+        /// ray starts at a different point of the pixel and, with a soft filter, goes to a different point of
+        /// the sun. With one ray edges are exact and jagged; with four they are smooth.
         samples: u32,
     },
 }
 
 impl Edges {
-    /// Rays for a pixel of the preset `exact-4`, and where a tool turns tracing on: the fewest with smooth edges.
+    /// Number of rays per pixel in the preset `exact-4`, and the value that tools set when they turn tracing
+    /// on: the fewest rays with smooth edges.
     pub const USUAL_SAMPLES: u32 = 4;
 
-    /// Most rays for a pixel.
+    /// Greatest number of rays per pixel.
     pub const MAX_SAMPLES: u32 = 64;
 
-    /// Rays for each pixel that is not sure; 0 where edges are filtered.
+    /// Returns the number of rays for each pixel without agreement; 0 for filtered edges.
     pub const fn samples(self) -> u32 {
         match self {
             Self::Filtered => 0,
@@ -430,14 +439,14 @@ impl Edges {
         }
     }
 
-    /// Whether rays are traced.
+    /// Returns whether rays are traced.
     pub const fn are_traced(self) -> bool {
         matches!(self, Self::Traced { .. })
     }
 
-    /// Whether the edges of a filter follow from how far casters are, which maps lose that are clamped
-    /// ([`CasterPolicy::DepthClamp`]): those of [`FilterKind::Pcss`], and those of any [soft](FilterKind::is_soft) filter
-    /// where they are traced.
+    /// Returns whether the edges depend on the distances of casters, which depth-clamped maps lose
+    /// ([`CasterPolicy::DepthClamp`]). They do for [`FilterKind::Pcss`], and for any
+    /// [soft](FilterKind::is_soft) filter with traced edges.
     pub const fn need_distances(self, filter: FilterKind) -> bool {
         matches!(filter, FilterKind::Pcss) || (filter.is_soft() && self.are_traced())
     }

@@ -1,7 +1,7 @@
 //! A perspective camera from plain parameters.
 //!
-//! It is the most exact way into a fit: the frustum's corners come straight from the lens and are
-//! kept relative to the eye, without going through an inverted f32 matrix.
+//! It is the most exact input for a fit: the frustum's corners are computed from the lens, relative to the
+//! eye, without inverting an f32 matrix.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
@@ -9,15 +9,15 @@ use super::frustum::{CORNERS_XY, ViewFrustum, check_corners, check_extent};
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
 
-/// A symmetric perspective camera in a right-handed world; its view space looks along -z.
+/// A symmetric perspective camera in a right-handed world. Its view space looks along -z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PerspectiveCamera {
     /// Position of the eye in world space, in metres.
     pub eye: DVec3,
-    /// Direction of view in world space; any length that is not extreme; it is normalised.
+    /// Viewing direction in world space, of any length that is not extreme. It is normalised.
     pub forward: Vec3,
-    /// Direction in world space that appears upward; need not be perpendicular to `forward`.
+    /// Up direction of the picture in world space. It need not be perpendicular to `forward`.
     pub up: Vec3,
     /// Vertical field of view, in radians, between 0 and π.
     pub fov_y: f32,
@@ -37,10 +37,10 @@ struct CameraAxes {
 }
 
 impl PerspectiveCamera {
-    /// Rotation from world axes to view space (right-handed, x right, y up, looking along -z).
+    /// Returns the rotation from world axes to view space (right-handed, x right, y up, looking along -z).
     ///
-    /// The input is a position **relative to the eye**, in metres: subtract [`Self::eye`] in f64
-    /// first. A camera that [`Self::frustum`] refuses gives a matrix of NaN.
+    /// The input is a position **relative to the eye**, in metres: subtract [`Self::eye`] in f64 first.
+    /// Returns a matrix of NaN if [`Self::frustum`] rejects the camera.
     pub fn view_from_world(&self) -> Mat4 {
         let nan = DVec3::NAN;
         let axes = self.axes().unwrap_or(CameraAxes { right: nan, up: nan, forward: nan });
@@ -53,10 +53,10 @@ impl PerspectiveCamera {
         )
     }
 
-    /// Projection from view space (right-handed, looking along -z, metres) to clip space with x
+    /// Returns the projection from view space (right-handed, looking along -z, metres) to clip space with x
     /// right, y up and the given depth range.
     ///
-    /// A camera that [`Self::frustum`] refuses gives a meaningless matrix; it does not panic.
+    /// Returns a meaningless matrix if [`Self::frustum`] rejects the camera. Does not panic.
     pub fn clip_from_view(&self, depth: DepthConvention) -> Mat4 {
         let (near, far) = (f64::from(self.near), f64::from(self.far));
         let tangent = self.tangent_y();
@@ -73,24 +73,24 @@ impl PerspectiveCamera {
         )
     }
 
-    /// Projection of world positions **relative to the eye**, in metres, to clip space with the
+    /// Returns the projection of world positions **relative to the eye**, in metres, to clip space with the
     /// given depth range: [`Self::clip_from_view`] × [`Self::view_from_world`].
     pub fn clip_from_world(&self, depth: DepthConvention) -> Mat4 {
         let clip = self.clip_from_view(depth).as_dmat4();
         clip.mul_mat4(&self.view_from_world().as_dmat4()).as_mat4()
     }
 
-    /// The camera's view frustum, for a fit.
+    /// Returns the camera's view frustum, for a fit.
     ///
     /// # Errors
     ///
-    /// As [`ViewFrustum::from_camera`].
+    /// Returns the errors of [`ViewFrustum::from_camera`].
     #[inline(always)]
     pub fn frustum(&self) -> Result<ViewFrustum, FitError> {
         ViewFrustum::from_camera(self)
     }
 
-    /// Tangent of half the vertical field of view.
+    /// Returns the tangent of half the vertical field of view.
     fn tangent_y(&self) -> f64 {
         libm::tan(f64::from(self.fov_y) * 0.5)
     }
@@ -110,17 +110,17 @@ impl PerspectiveCamera {
 }
 
 impl ViewFrustum {
-    /// The frustum of a perspective camera. Exact to f32 rounding of each corner (6e-8 of its
-    /// distance from the eye), wherever the eye is.
+    /// Returns the frustum of a perspective camera. It is exact to f32 rounding of each corner (6e-8 of its
+    /// distance from the eye) at any position of the eye.
     ///
     /// # Errors
     ///
-    /// Every parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic;
-    /// [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for a
-    /// roll that is undefined, [`FitError::NearNotBelowFar`].
+    /// Fails for each parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic.
+    /// Returns [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for an
+    /// undefined roll, and [`FitError::NearNotBelowFar`].
     #[inline(always)]
     pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
-        // First, since a function call spills everything that has been computed by then to memory.
+        // Computed first, because a function call spills all earlier results to memory.
         let tangent = camera.tangent_y();
         checks::point("the camera's eye", camera.eye)?;
         let axes = camera.axes()?;
@@ -145,6 +145,6 @@ impl ViewFrustum {
     }
 }
 
-/// Two directions count as parallel below this sine of their angle: f32 rounds a unit vector by
-/// up to 1e-7, so below it the roll would be noise.
+/// Sine of the angle below which two directions count as parallel. f32 rounds a unit vector by up to 1e-7, so
+/// with smaller angles the roll would be noise.
 const PARALLEL_SINE: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! A camera whose lens is a perspective or an orthographic one, for code that takes either.
+//! A camera with a perspective or an orthographic lens, for code that accepts both.
 
 use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
 
@@ -7,7 +7,7 @@ use super::frustum::{CORNERS_XY, ViewFrustum, check_corners, check_extent};
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
 
-/// A symmetric camera in a right-handed world; its view space looks along -z.
+/// A symmetric camera in a right-handed world. Its view space looks along -z.
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
@@ -24,15 +24,16 @@ use crate::base::{DepthConvention, FitError, checks};
 pub struct Camera {
     /// Position of the eye in world space, in metres.
     pub eye: DVec3,
-    /// Direction of view in world space; any length that is not extreme.
+    /// Viewing direction in world space, of any length that is not extreme.
     pub forward: Vec3,
-    /// Direction in world space that appears upward; need not be perpendicular to `forward`.
+    /// Up direction of the picture in world space. It need not be perpendicular to `forward`.
     pub up: Vec3,
     /// Lens.
     pub lens: Lens,
     /// Width of the picture divided by its height.
     pub aspect: f32,
-    /// View depth of the near plane, in metres. An orthographic view may begin at the eye or behind it.
+    /// View depth of the near plane, in metres. The near plane of an orthographic view may lie at the eye or
+    /// behind it.
     pub near: f32,
     /// View depth of the far plane, in metres.
     pub far: f32,
@@ -42,12 +43,12 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Lens {
-    /// All lines of sight meet in the eye.
+    /// All view rays meet at the eye.
     Perspective {
         /// Vertical field of view, in radians, between 0 and π.
         fov_y: f32,
     },
-    /// All lines of sight are parallel.
+    /// All view rays are parallel.
     Orthographic {
         /// Half of the height of the picture, in metres.
         half_height: f32,
@@ -55,15 +56,15 @@ pub enum Lens {
 }
 
 impl Lens {
-    /// Whether all lines of sight are parallel.
+    /// Returns whether all view rays are parallel.
     pub const fn is_orthographic(&self) -> bool {
         matches!(self, Self::Orthographic { .. })
     }
 }
 
 impl Camera {
-    /// Half of the picture's width and height: at a view depth of 1 m for a perspective, at any view depth for an
-    /// orthographic lens. In metres.
+    /// Returns half of the picture's width and height, in metres: at a view depth of 1 m for a perspective
+    /// lens, at any view depth for an orthographic one.
     pub fn half_size(&self) -> DVec2 {
         let half_height = match self.lens {
             Lens::Perspective { fov_y } => libm::tan(f64::from(fov_y) * 0.5),
@@ -72,15 +73,15 @@ impl Camera {
         DVec2::new(half_height * f64::from(self.aspect), half_height)
     }
 
-    /// Rotation from world axes to view space, as [`PerspectiveCamera::view_from_world`].
+    /// Returns the rotation from world axes to view space, as [`PerspectiveCamera::view_from_world`].
     pub fn view_from_world(&self) -> Mat4 {
         self.with_angle(1.0).view_from_world()
     }
 
-    /// Projection from view space (right-handed, looking along -z, metres) to clip space with x right, y up and the given
-    /// depth range.
+    /// Returns the projection from view space (right-handed, looking along -z, metres) to clip space with x
+    /// right, y up and the given depth range.
     ///
-    /// A camera that [`Self::frustum`] refuses gives a meaningless matrix; it does not panic.
+    /// Returns a meaningless matrix if [`Self::frustum`] rejects the camera. Does not panic.
     pub fn clip_from_view(&self, depth: DepthConvention) -> Mat4 {
         if let Lens::Perspective { fov_y } = self.lens {
             return self.with_angle(fov_y).clip_from_view(depth);
@@ -99,7 +100,8 @@ impl Camera {
         )
     }
 
-    /// Projection of world positions **relative to the eye**, in metres, to clip space with the given depth range:
+    /// Returns the projection of world positions **relative to the eye**, in metres, to clip space with the
+    /// given depth range:
     /// [`Self::clip_from_view`] × [`Self::view_from_world`].
     pub fn clip_from_world(&self, depth: DepthConvention) -> Mat4 {
         let clip = self.clip_from_view(depth).as_dmat4();
@@ -110,7 +112,7 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// As [`ViewFrustum::from_camera`], with the half height in place of the field of view.
+    /// Returns the errors of [`ViewFrustum::from_camera`], for the half height instead of the field of view.
     pub fn frustum(&self) -> Result<ViewFrustum, FitError> {
         let half_height = match self.lens {
             Lens::Perspective { fov_y } => return self.with_angle(fov_y).frustum(),
@@ -138,7 +140,7 @@ impl Camera {
         Ok(ViewFrustum { origin: self.eye, corners, near: self.near, far: self.far, forward: (-back).as_vec3() })
     }
 
-    /// The camera with a perspective lens.
+    /// Returns the camera with a perspective lens.
     const fn with_angle(&self, fov_y: f32) -> PerspectiveCamera {
         let Self { eye, forward, up, lens: _, aspect, near, far } = *self;
         PerspectiveCamera { eye, forward, up, fov_y, aspect, near, far }

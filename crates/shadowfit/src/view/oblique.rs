@@ -1,8 +1,9 @@
 //! Views whose near and far planes are not parallel to each other, or not perpendicular to the picture's axis.
 //!
-//! A mirror, a water surface or a portal moves the near plane into itself (E. Lengyel, "Oblique view frustum depth
-//! projection and clipping", 2005). The far plane tilts with it, and may lie behind the eye for a part of the picture. So
-//! corners of such a view have no meaning. What has a meaning is the clip cube, cut where shadows end:
+//! The near plane of a mirror, a water surface or a portal is moved onto the surface (E. Lengyel, "Oblique
+//! view frustum depth projection and clipping", 2005). The far plane tilts with it and may lie behind the eye
+//! for a part of the picture, so the corners of such a view are meaningless. The clip cube, cut at the end of
+//! the shadows, remains usable:
 //!
 //! ```text
 //!      far ╲  ╎ shadows end            The homogeneous position of a clip position c is linear in c. So are its w
@@ -12,8 +13,9 @@
 //!   eye ●     ╎╱
 //! ```
 //!
-//! The frustum around that part has rectangles perpendicular to the picture's axis, so that everything else takes it
-//! like any other. Its planes move in steps: a mirror moves with the camera, and kept maps should not notice.
+//! The frustum around this part has rectangles perpendicular to the picture's axis, so other code treats it
+//! like any frustum. Its planes move in steps, so that kept maps rarely change while a mirror moves with the
+//! camera.
 
 use glam::{DVec3, DVec4, Vec3};
 
@@ -21,29 +23,31 @@ use super::frustum::{CORNERS_XY, Unprojection, ViewFrustum};
 use super::slice::{Depths, EDGES};
 use crate::base::{DepthConvention, FitError, checks};
 
-/// Share of w, at the plane where it is least, by which w may differ over a picture whose planes count as parallel.
+/// Greatest variation of w over a picture whose planes count as parallel, as a share of w at the plane with
+/// the smaller w.
 const PARALLEL: f64 = 1e-3;
 
-/// The same as a share of the w at the nearer plane: what is left of a zero where a matrix was inverted in f32.
+/// Greatest variation of w as a share of w at the nearer plane: the rounding of a zero after inverting a
+/// matrix in f32.
 const INVERTED: f64 = 1.0 / 65_536.0;
 
-/// Sine of the angle between the axis of an orthographic picture and the normal of its planes up to which they count as
-/// perpendicular to it.
+/// Greatest sine of the angle between the axis of an orthographic picture and the normal of its planes for
+/// which the planes count as perpendicular.
 const PERPENDICULAR: f64 = 1e-3;
 
-/// Least change of w with depth, as a share of its other terms: with less, view rays count as parallel.
+/// Least change of w with depth, as a share of its other terms. With less, view rays count as parallel.
 const PERSPECTIVE: f64 = 1e-4;
 
-/// Steps across and down the picture to which the visible part is rounded outward.
+/// Number of steps across and down the picture. The visible part is rounded outward to them.
 const PICTURE_STEPS: f64 = 8.0;
 
-/// Steps in an octave to which view depths are rounded outward.
+/// Number of steps per octave of view depth. View depths are rounded outward to them.
 const OCTAVE_STEPS: f64 = 8.0;
 
-/// Steps in the depth of an orthographic view to which its planes are rounded outward.
+/// Number of steps in the depth of an orthographic view. Its planes are rounded outward to them.
 const DEPTH_STEPS: f64 = 16.0;
 
-/// Share of a view depth that is left for rounding.
+/// Margin for rounding, as a share of a view depth.
 const PLANE_ROUNDING: f64 = 1e-6;
 
 /// A range of clip x or clip y.
@@ -56,11 +60,12 @@ struct Side {
 /// The whole picture: clip x, then clip y.
 const WHOLE: [Side; 2] = [Side { least: -1.0, greatest: 1.0 }; 2];
 
-/// Corners of the clip cube on its near face. Those of the far face follow. Both have the order of [`CORNERS_XY`].
+/// Corners of the clip cube on its near face. The corners of the far face follow. Both are in the order of
+/// [`CORNERS_XY`].
 const NEAR_FACE: core::ops::Range<usize> = 0..4;
 
 impl Unprojection {
-    /// Whether the near and far planes are tilted against each other, or against the picture's axis.
+    /// Returns whether the near and far planes are tilted against each other or against the picture's axis.
     pub(super) fn is_oblique(&self) -> bool {
         let row = self.matrix.row(3);
         let at = |z: f32| (row.z * f64::from(z) + row.w).abs();
@@ -72,18 +77,18 @@ impl Unprojection {
         if row.z.abs() > PERSPECTIVE * near.max(far) {
             return false;
         }
-        // The planes of an orthographic view are parallel. Its picture has an axis of its own.
+        // The planes of an orthographic view are parallel, but its axis may be tilted against them.
         let [x, y, z] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis].map(DVec4::truncate);
         let normal = x.cross(y);
         checks::length(normal.cross(z)) > PERPENDICULAR * checks::length(normal) * checks::length(z)
     }
 
-    /// The frustum around the part of such a view that lies before a view depth, in metres.
+    /// Returns a frustum around the part of a tilted view in front of a view depth, in metres.
     pub(super) fn enclosing(&self, max_distance: f32) -> Result<ViewFrustum, FitError> {
         let cube = self.cube()?;
         let limit = f64::from(max_distance);
         let Some(seen) = cube.within(limit) else {
-            // Where the plane hides the whole picture, the view is empty at any depth.
+            // If the plane hides the whole picture, the view is empty at any depth.
             let near = cube.within(f64::MAX).map_or(limit.min(1.0), |all| all.depths.near);
             checks::may_begin_beyond(near as f32, max_distance)?;
             return cube.frustum(self.eye, WHOLE, Depths { near, far: near });
@@ -96,16 +101,16 @@ impl Unprojection {
         cube.frustum(self.eye, seen.picture, Depths { near, far: far.min(limit) })
     }
 
-    /// The clip cube in the world, with the direction of view.
+    /// Returns the clip cube in the world, with the viewing direction.
     fn cube(&self) -> Result<Cube, FitError> {
         let cube = Cube::new(self, 1.0)?;
-        // A negated matrix is the same projection. All of the cube lies behind the eye, too, where the plane hides the
-        // whole picture.
+        // A negated matrix is the same projection. If the plane hides the whole picture, all of the cube also
+        // lies behind the eye.
         if cube.greatest_w() > 0.0 || cube.is_ahead { Ok(cube) } else { Cube::new(self, -1.0) }
     }
 }
 
-/// A clip position in the world relative to the eye, homogeneous, and its view depth times its w.
+/// A clip position in the world relative to the eye, homogeneous. `h` is its view depth times its w.
 #[derive(Clone, Copy)]
 struct Vertex {
     position: DVec3,
@@ -116,22 +121,22 @@ struct Vertex {
 /// The clip cube in the world.
 struct Cube {
     corners: [Vertex; 8],
-    /// Unit direction of view: the axis of the picture.
+    /// Unit viewing direction: the axis of the picture.
     forward: DVec3,
-    /// Whether view rays meet in the eye.
+    /// Whether view rays meet at the eye.
     is_perspective: bool,
-    /// Whether they do, and w falls along them as it does from the eye on.
+    /// Whether view rays meet at the eye and w falls along them away from the eye.
     is_ahead: bool,
 }
 
-/// The part of a clip cube that lies before a view depth.
+/// The part of a clip cube in front of a view depth.
 struct Seen {
     /// Least and greatest view depth, in metres.
     depths: Depths,
-    /// The picture's part that shows it: least and greatest clip x, then clip y.
+    /// The part of the picture that shows it: least and greatest clip x, then clip y.
     picture: [Side; 2],
     least_w: f64,
-    /// Whether a part of the cube lies beyond.
+    /// Whether a part of the cube lies beyond that view depth.
     is_cut: bool,
 }
 
@@ -151,7 +156,7 @@ impl Cube {
         let greatest = corners.iter().map(|corner| corner.w.abs()).fold(0.0, f64::max);
         let is_perspective = along.w.abs() > PERSPECTIVE * greatest;
         let axis = if is_perspective {
-            // Directions in which w is constant, to the right and up: they span the plane of the picture.
+            // Directions of constant w, to the right and up. They span the plane of the picture.
             let across = |side: Vertex| side.position * along.w - along.position * side.w;
             across(right).cross(across(up))
         } else {
@@ -167,7 +172,7 @@ impl Cube {
             return Err(coinciding(right, up, along));
         }
         let forward = axis / if change < 0.0 { -length } else { length };
-        // A ray begins at the eye, where w is infinite, and w falls from there on.
+        // A ray begins at the eye with infinite w, and w falls from there on.
         if is_perspective && along.w > 0.0 && corners.iter().any(|corner| corner.w > 0.0) {
             return Err(facing(unprojection.depth));
         }
@@ -181,7 +186,7 @@ impl Cube {
         self.corners.iter().map(|corner| corner.w).fold(f64::MIN, f64::max)
     }
 
-    /// The part before a view depth; `None` where there is none.
+    /// Returns the part in front of a view depth, or `None` if it is empty.
     fn within(&self, limit: f64) -> Option<Seen> {
         let room = |vertex: &Vertex| if limit == f64::MAX { vertex.w } else { limit * vertex.w - vertex.h };
         let mut seen = Seen {
@@ -212,7 +217,8 @@ impl Cube {
         (seen.depths.near < seen.depths.far).then_some(seen)
     }
 
-    /// View depths rounded outward to steps, so that they mostly stay the same while the planes move a little.
+    /// Returns view depths, rounded outward to steps, so that they mostly stay constant during small
+    /// movements of the planes.
     fn stepped(&self, Depths { near, far }: Depths) -> Depths {
         if self.is_perspective && near > 0.0 {
             let step =
@@ -227,7 +233,7 @@ impl Cube {
         Depths { near: libm::floor((near - rounding) / step) * step, far: libm::ceil((far + rounding) / step) * step }
     }
 
-    /// The frustum between two view depths, of a part of the picture.
+    /// Returns the frustum of a part of the picture between two view depths.
     fn frustum(&self, origin: DVec3, picture: [Side; 2], depths: Depths) -> Result<ViewFrustum, FitError> {
         let Depths { near, far } = depths;
         let mut corners = [Vec3::ZERO; 8];
@@ -244,17 +250,18 @@ impl Cube {
         ViewFrustum { origin, corners, near, far, forward: self.forward.as_vec3() }.checked()
     }
 
-    /// The point at a clip x and y that has a view depth.
+    /// Returns the point with a clip x, a clip y and a view depth.
     fn point(&self, x: f64, y: f64, depth: f64) -> DVec3 {
         let [a, b] = [0, 4].map(|face| self.on_face(face, x, y));
-        // It is a + (b - a) t, homogeneous, with h = w · depth.
+        // The point is a + (b - a) t, homogeneous, with h = w · depth.
         let (of_a, of_b) = (a.h - a.w * depth, b.h - b.w * depth);
         (a.position * of_b - b.position * of_a) / (a.w * of_b - b.w * of_a)
     }
 
-    /// The position of a clip x and y on the near face, which begins with corner 0, or on the far one.
+    /// Returns the position of a clip x and y on the near face (first corner 0) or on the far face (first
+    /// corner 4).
     fn on_face(&self, face: usize, x: f64, y: f64) -> Vertex {
-        // Linear in x and y: three corners tell.
+        // Positions are linear in x and y, so three corners are enough.
         let [left_top, right_top, _, left_bottom] = [0, 1, 2, 3].map(|i| self.corners[face + i]);
         let (across, down) = ((x + 1.0) * 0.5, (1.0 - y) * 0.5);
         let at = |of: fn(&Vertex) -> DVec3| {
@@ -281,7 +288,7 @@ impl Seen {
     }
 }
 
-/// A range of clip x or y, rounded outward to steps.
+/// Returns a range of clip x or y, rounded outward to steps.
 fn stepped_side(side: Side) -> Side {
     let steps = PICTURE_STEPS * 0.5;
     let low = libm::floor((side.least - PLANE_ROUNDING) * steps) / steps;
@@ -289,7 +296,8 @@ fn stepped_side(side: Side) -> Side {
     Side { least: low.max(-1.0), greatest: high.min(1.0) }
 }
 
-/// Refuses a picture with parallel view rays whose w is zero or changes its sign within the picture.
+/// Returns an error for a picture with parallel view rays if w is zero or changes its sign within the
+/// picture.
 fn check_rays(corners: &[Vertex; 8], right: f64, up: f64) -> Result<(), FitError> {
     let (least, greatest) =
         corners.iter().fold((f64::MAX, f64::MIN), |(min, max), corner| (min.min(corner.w), max.max(corner.w)));
@@ -308,7 +316,7 @@ fn check_rays(corners: &[Vertex; 8], right: f64, up: f64) -> Result<(), FitError
     })
 }
 
-/// The error for a clip cube without a volume, by the lengths of its sides.
+/// Returns the error for a clip cube without a volume, by the lengths of its sides.
 fn coinciding(right: f64, up: f64, along: f64) -> FitError {
     let plane = if right.min(up) > along {
         "near and far planes"
@@ -320,7 +328,7 @@ fn coinciding(right: f64, up: f64, along: f64) -> FitError {
     FitError::UnusablePlane { plane, why: "they coincide; pass the inverse of clip_from_world" }
 }
 
-/// The error for a near plane beyond which the eye lies.
+/// Returns the error for a near plane with the eye on its far side.
 fn facing(depth: DepthConvention) -> FitError {
     let why = if depth == DepthConvention::Reversed {
         "the eye lies on its visible side; turn the plane around, or name a depth convention that is not reversed if the \

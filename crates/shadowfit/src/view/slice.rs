@@ -1,9 +1,8 @@
-//! A view frustum in the form that fits use: f64, cut by view depth, clipped against boxes.
+//! A view frustum in the form that fits use: in f64, cut at view depths, clipped against boxes.
 //!
-//! The vertices of box ∩ frustum slice lie on three planes each. Those with two or three planes of
-//! the box are ends of the box's edges clipped to the slice, those with two or three planes of the
-//! slice are ends of the slice's edges clipped to the box, so that clipping 12 + 12 segments finds
-//! them all, without building a polytope:
+//! Each vertex of box ∩ frustum slice lies on three planes. If two or three of them belong to the box, it is
+//! an end of a box edge clipped to the slice. Otherwise it is an end of a slice edge clipped to the box. So
+//! clipping 12 + 12 segments finds all vertices, without building a polytope:
 //!
 //! ```text
 //!        ┌───────────┐ box
@@ -33,8 +32,8 @@ pub(crate) struct Depths {
     pub(crate) far: f64,
 }
 
-/// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
-/// they leave nothing of it.
+/// Returns the corners of the part of a frustum between two view depths, relative to an origin. `None` if the
+/// part is empty.
 #[inline(always)]
 pub(crate) fn slice_corners(frustum: &ViewFrustum, origin: DVec3, near: f32, far: f32) -> Option<[DVec3; 8]> {
     let (near, far) = (near.max(frustum.near), far.min(frustum.far));
@@ -60,14 +59,14 @@ pub(crate) fn slice_corners(frustum: &ViewFrustum, origin: DVec3, near: f32, far
     Some(corners)
 }
 
-/// A plane (n, d) with unit normal; a point is inside where n·p + d >= 0.
+/// A plane (n, d) with unit normal. A point is inside if n·p + d >= 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {
     pub(crate) normal: DVec3,
     pub(crate) d: f64,
 }
 
-/// A plane that nothing is inside of.
+/// A plane with every point outside.
 const NOWHERE: Plane = Plane { normal: DVec3::ZERO, d: -1.0 };
 
 impl Plane {
@@ -75,7 +74,7 @@ impl Plane {
         self.normal.dot(p) + self.d
     }
 
-    /// Distance of a box's farthest corner along the normal.
+    /// Returns the distance of a box's farthest corner along the normal.
     pub(crate) fn farthest(&self, min: DVec3, max: DVec3) -> f64 {
         let n = self.normal;
         let x = n.x * if n.x < 0.0 { min.x } else { max.x };
@@ -84,13 +83,13 @@ impl Plane {
         x + y + z + self.d
     }
 
-    /// Distance of a box's nearest corner along the normal.
+    /// Returns the distance of a box's nearest corner along the normal.
     pub(crate) fn nearest(&self, min: DVec3, max: DVec3) -> f64 {
         self.farthest(max, min)
     }
 }
 
-/// A view frustum relative to the origin that a fit uses for everything.
+/// A view frustum relative to the fit's origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     /// Corners, near then far, in the order of [`ViewFrustum::corners`].
@@ -99,19 +98,19 @@ pub(crate) struct View {
     pub(crate) far: f64,
     /// View depth of a point, as the signed distance from a plane.
     pub(crate) depth: Plane,
-    /// Top, right, bottom, left.
+    /// Planes of the sides: top, right, bottom, left.
     pub(crate) sides: [Plane; 4],
 }
 
 impl View {
-    /// `frustum` has been checked. Nothing is in an empty one.
+    /// Returns the view of a checked frustum. The view of an empty frustum holds no points.
     pub(crate) fn new(frustum: &ViewFrustum, origin: DVec3) -> Self {
         let offset = frustum.origin - origin;
         let corners = frustum.corners.map(|c| c.as_dvec3() + offset);
         let forward = frustum.forward.as_dvec3();
         let forward = forward / checks::length(forward);
         let (near, far) = (f64::from(frustum.near), f64::from(frustum.far));
-        // Depths are measured from the near rectangle, whose rounding is the smallest.
+        // Depths are measured from the near rectangle, which has the smallest rounding.
         let middle = (corners[0] + corners[2]) * 0.5;
         let depth = Plane { normal: forward, d: near - forward.dot(middle) };
         let centre = corners.iter().copied().sum::<DVec3>() * 0.125;
@@ -121,7 +120,7 @@ impl View {
         let mut sides = [depth; 4];
         for (i, side) in sides.iter_mut().enumerate() {
             let next = (i + 1) % 4;
-            // The far rectangle is never the smaller one, so its side has the more precise
+            // The far rectangle is never smaller than the near one, so its side has the more precise
             // direction.
             let normal = (corners[i + 4] - corners[i]).cross(corners[next + 4] - corners[i + 4]);
             let normal = normal / checks::length(normal);
@@ -131,21 +130,21 @@ impl View {
         Self { corners, near, far, depth, sides }
     }
 
-    /// Where points are in the picture.
+    /// Returns the mapping of points to positions in the picture.
     pub(crate) fn picture(&self) -> Picture {
-        // Sides 0 to 3 are top, right, bottom, left; each distance is divided by that of the
-        // opposite end of the far rectangle.
+        // Sides 0 to 3 are top, right, bottom, left. Each distance is divided by the distance of the opposite
+        // end of the far rectangle.
         let side = |side: usize, opposite: usize| (self.sides[side], self.sides[side].distance(self.corners[opposite]));
         Picture { axes: [[side(3, 5), side(1, 4)], [side(0, 7), side(2, 4)]] }
     }
 
-    /// Corners of the rectangle at a view depth; not a number for an empty view.
+    /// Returns the corners of the rectangle at a view depth. NaN for an empty view.
     pub(crate) fn rectangle(&self, depth: f64) -> [DVec3; 4] {
         let t = (depth - self.near) / (self.far - self.near);
         core::array::from_fn(|i| self.corners[i] * (1.0 - t) + self.corners[i + 4] * t)
     }
 
-    /// The part between two view depths, cut to the frustum's own.
+    /// Returns the part between two view depths, limited to the frustum.
     pub(crate) fn slice(&self, near: f64, far: f64) -> Slice {
         let (near, far) = (near.max(self.near).min(self.far), far.min(self.far).max(self.near));
         let mut corners = [DVec3::ZERO; 8];
@@ -157,7 +156,8 @@ impl View {
         Slice { corners, planes, near, far }
     }
 
-    /// Least and greatest view depth of a box that may touch the frustum; `None` when it does not.
+    /// Returns the least and greatest view depth of a box that may touch the frustum, or `None` if it does
+    /// not.
     pub(crate) fn depths(&self, min: DVec3, max: DVec3) -> Option<Depths> {
         if self.sides.iter().any(|plane| plane.farthest(min, max) < 0.0) {
             return None;
@@ -168,16 +168,16 @@ impl View {
     }
 }
 
-/// Positions in the picture of a view.
+/// The mapping of points to positions in the picture of a view.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Picture {
-    /// The sides at 0 and 1 of both axes, with the distances to divide by.
+    /// The planes of the sides at positions 0 and 1 of both axes, with the distances to divide by.
     axes: [[(Plane, f64); 2]; 2],
 }
 
 impl Picture {
-    /// Position of a point in the picture: 0..1 from left to right and from top to bottom. The point
-    /// must not lie before the near plane.
+    /// Returns the position of a point in the picture: 0..1 from left to right and from top to bottom. The
+    /// point must not lie in front of the near plane.
     #[inline]
     pub(crate) fn position(&self, p: DVec3) -> [f64; 2] {
         self.axes.map(|[(one, most), (other, other_most)]| {
@@ -197,14 +197,13 @@ pub(crate) struct Slice {
     pub(crate) far: f64,
 }
 
-/// Pairs of corners that an edge joins, for frusta and boxes alike ([`box_corners`] has the same
-/// order).
+/// Pairs of corners that an edge joins, for frusta and for boxes ([`box_corners`] has the same order).
 pub(crate) const EDGES: [(usize, usize); 12] =
     [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)];
 
 impl Slice {
-    /// Passes on all vertices of box ∩ slice, some of them more than once, and possibly points of
-    /// its edges. Nothing when they do not meet.
+    /// Calls `emit` for all vertices of box ∩ slice, for some more than once, and possibly for points on its
+    /// edges. Makes no call if the intersection is empty.
     pub(crate) fn clip(&self, min: DVec3, max: DVec3, emit: &mut impl FnMut(DVec3)) {
         let mut crossed = [false; 6];
         for (plane, crossed) in self.planes.iter().zip(&mut crossed) {
@@ -218,7 +217,7 @@ impl Slice {
             return corners.into_iter().for_each(emit);
         }
         self.clip_box(&corners, crossed, emit);
-        // An edge of the slice meets no box that does not cross both of its planes.
+        // A slice edge meets only boxes that cross both of its planes.
         for ((i, j), (one, other)) in EDGES.into_iter().zip(PLANES_OF_EDGES) {
             if crossed[one]
                 && crossed[other]
@@ -230,10 +229,10 @@ impl Slice {
         }
     }
 
-    /// Passes on the corners of a box, and the ends of its edges, inside the planes that it crosses.
+    /// Emits the corners of a box and the ends of its clipped edges, inside the planes that the box crosses.
     #[inline]
     fn clip_box(&self, corners: &[DVec3; 8], crossed: [bool; 6], emit: &mut impl FnMut(DVec3)) {
-        // Distances of the corners within the planes.
+        // Distances of the corners from the planes, positive inside.
         let mut inside = [[0.0; 8]; 6];
         let mut count = 0;
         for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| *crossed) {
@@ -258,11 +257,12 @@ impl Slice {
     }
 }
 
-/// The planes that each of a slice's [edges](EDGES) lies on.
+/// The two planes of each of a slice's [edges](EDGES).
 const PLANES_OF_EDGES: [(usize, usize); 12] =
     [(0, 4), (1, 4), (2, 4), (3, 4), (0, 5), (1, 5), (2, 5), (3, 5), (3, 0), (0, 1), (1, 2), (2, 3)];
 
-/// The shares of an edge between which it lies inside planes, by the distances of all corners within each.
+/// Returns the range of an edge inside some planes, as shares of its length. `inside` has the distances of
+/// all corners from each plane.
 #[inline]
 pub(crate) fn inner_part(inside: &[[f64; 8]], i: usize, j: usize) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -280,18 +280,18 @@ pub(crate) fn inner_part(inside: &[[f64; 8]], i: usize, j: usize) -> Option<(f64
     if enter > leave { None } else { Some((enter, leave)) }
 }
 
-/// The point of a segment at a share of its length; exact at both ends.
+/// Returns the point of a segment at a share of its length. Exact at both ends.
 pub(crate) fn at(a: DVec3, b: DVec3, t: f64) -> DVec3 {
     a * (1.0 - t) + b * t
 }
 
-/// The part of a segment inside a box.
+/// Returns the part of a segment inside a box.
 pub(crate) fn clip_to_box(a: DVec3, b: DVec3, min: DVec3, max: DVec3) -> Option<(DVec3, DVec3)> {
     let (enter, leave) = crossing(a, b - a, min, max)?;
     Some((at(a, b, enter), at(a, b, leave)))
 }
 
-/// Shares of a ray or segment, from its start along a vector, at which it enters and leaves a box.
+/// Returns the shares of a segment, given by its start and a vector, at its entry into a box and its exit.
 #[inline]
 pub(crate) fn crossing(start: DVec3, along: DVec3, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -311,7 +311,7 @@ pub(crate) fn crossing(start: DVec3, along: DVec3, min: DVec3, max: DVec3) -> Op
     if enter > leave { None } else { Some((enter, leave)) }
 }
 
-/// Rays across and down the picture.
+/// Number of rays across and down the picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayCount {
     pub(crate) columns: usize,
@@ -319,14 +319,14 @@ pub(crate) struct RayCount {
 }
 
 impl RayCount {
-    /// For maps that are read by view depth.
+    /// Rays for maps that are read by view depth.
     pub(crate) const FINE: Self = Self { columns: 32, rows: 18 };
-    /// For maps that are read by coverage, whose splits matter less.
+    /// Rays for maps that are read by coverage, with less influence of the splits.
     pub(crate) const COARSE: Self = Self { columns: 20, rows: 11 };
 }
 
-/// Columns and rows of rays that may meet a box; all of them where it reaches before the near
-/// plane.
+/// Returns the columns and rows of rays that may meet a box. All of them if a part of it lies in front of the
+/// near plane.
 pub(crate) fn covered(
     view: &View,
     picture: &Picture,

@@ -1,5 +1,6 @@
-//! The demand of a frame, estimated from the [boxes along rays](crate::demand::from_boxes). If the surfaces in a box are
-//! nearly flat, a ray meets the plane through the middle of the box. Otherwise it may meet a surface anywhere in it.
+//! Visible demand of a frame, estimated from the [boxes along rays](crate::demand::from_boxes). If the
+//! surfaces in a box are nearly flat, a ray meets the plane through the middle of the box. Otherwise it may
+//! meet a surface anywhere in the box.
 
 use glam::DVec3;
 
@@ -20,7 +21,7 @@ struct Surface {
     middle: DVec3,
 }
 
-/// Adds the demand of the boxes that the views of a frame see.
+/// Adds the demand of the boxes in the views of a frame.
 pub(super) fn add(cells: &mut Cells, frame: &Frame, plane: &Plane) {
     let Frame { input, content, .. } = frame;
     for part in content.whole_views() {
@@ -79,8 +80,8 @@ impl<'a> Picture<'a> {
         Self { plane, right, down, pixels }
     }
 
-    /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share; returns
-    /// the share of the ray that ends there.
+    /// Emits the points of a box that a ray may meet, each with the texel that it needs and its share.
+    /// Returns the share of the ray that ends there.
     fn look(&self, ray: &Ray, layer: &Layer, surface: &Surface, mut emit: impl FnMut(DVec3, f64, f32)) -> f32 {
         let (Ray { start, along, .. }, Surface { cone, middle }) = (*ray, surface);
         let (enter, leave) = (f64::from(layer.enter), f64::from(layer.leave));
@@ -95,7 +96,7 @@ impl<'a> Picture<'a> {
         let normal = cone.axis.as_dvec3();
         let across = normal.dot(along);
         let t = normal.dot(*middle - start) / across;
-        // A ray along the surface meets it nowhere.
+        // A ray along the surface never meets it.
         let met = if t >= enter && t <= leave { MET } else { BESIDE };
         let is_lit = normal.dot(self.plane.axes.z.as_dvec3()) * -across > 0.0;
         if is_lit && t.is_finite() {
@@ -109,21 +110,23 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Share of the points with the finest demands. They count as no finer than the others, since estimates from boxes find
-/// too many near the eye.
+/// Share of the points with the finest demands. They count as no finer than the other points, since estimates
+/// from boxes find too many points near the eye.
 const OVERRATED: f32 = 0.1;
 
 /// Cosine of the half angle of a cone above which its surfaces count as flat.
 const FLAT: f32 = 0.97;
 
-/// Share of the rays through a box that meet a surface in it, where surfaces face everywhere.
+/// Share of the rays through a box that meet a surface in it, if the surfaces face in all directions.
 const SOLID: f32 = 0.3;
 
-/// The same where surfaces are nearly flat and the ray meets their plane in the box.
+/// Share of the rays that meet a surface if the surfaces are nearly flat and the ray meets their plane in the
+/// box.
 const MET: f32 = 0.85;
 
-/// The same where the ray meets their plane beside the box.
+/// Share of the rays that meet a surface if the surfaces are nearly flat and the ray meets their plane beside
+/// the box.
 const BESIDE: f32 = 0.3;
 
-/// Shares of a ray's way through a box at which it may meet a surface.
+/// Positions along a ray's way through a box at which it may meet a surface, as shares of this way.
 const SAMPLES: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];

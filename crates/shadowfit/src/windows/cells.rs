@@ -10,26 +10,26 @@ use crate::demand::grid::{DemandGrid, DemandSpace, Plane, SIDE};
 /// A number for each cell.
 pub(super) type PerCell = [f32; MAX_CELLS];
 
-/// Share of the visible points with the finest demands. They count as no finer than the others, since surfaces at
-/// grazing angles ask for arbitrarily fine texels.
+/// Share of the visible points with the finest demands. They count as no finer than the other points, since
+/// surfaces at grazing angles need arbitrarily fine texels.
 const GRAZING: f32 = 0.02;
 
-/// Slight enlargement of shares, so that rounding never leaves a sliver of a covered cell. The last of many windows would
-/// be placed by such slivers alone.
+/// Slight enlargement of shares, so that rounding never leaves a sliver of a covered cell. Otherwise the last
+/// of many windows would be placed by such slivers alone.
 const INSIDE: f64 = 1.0 + 1e-5;
 
-/// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
-/// at a time are computed with.
+/// The cells of a frame: squares of the plane, with the demand of the points in them. They are stored in
+/// columns, so that four are computed at a time.
 pub(super) struct Cells {
-    /// Middles, relative to the origin of the fit, in metres of the plane.
+    /// Middles of the cells, relative to the origin of the fit, in metres of the plane.
     pub(super) x: PerCell,
     pub(super) y: PerCell,
-    /// Halves of the sides, in metres, and one over the sides, times [`INSIDE`].
+    /// Halves of the cells' sides, in metres, and reciprocals of the sides, times [`INSIDE`].
     pub(super) half: PerCell,
     per_side: PerCell,
     /// Numbers of points, or shares of them.
     pub(super) weight: PerCell,
-    /// What a texel of one metre costs the points.
+    /// Cost of a texel of one metre for the points.
     pub(super) cost: PerCell,
     pub(super) len: usize,
 }
@@ -40,8 +40,8 @@ impl Cells {
         Self { x: NONE, y: NONE, half: NONE, per_side: NONE, weight: NONE, cost: NONE, len: 0 }
     }
 
-    /// Leaves out cells that are farther from the last window than its own size: nothing is seen there, and a
-    /// grid that was never filled may put them anywhere.
+    /// Removes cells that are farther from the last window than its own size. No point is visible there, and
+    /// a grid that was never filled may have cells anywhere.
     pub(super) fn keep_near(&mut self, last: &Rect) {
         let (low, high) = (last.min - last.size, last.min + last.size * 2.0);
         let mut kept = 0;
@@ -58,8 +58,8 @@ impl Cells {
         self.len = kept;
     }
 
-    /// Adds points that were counted in a space. A `share` of them with the finest demands count as no finer than the
-    /// others.
+    /// Adds points that were counted in a space. A `share` of them with the finest demands count as no finer
+    /// than the others.
     pub(super) fn add(&mut self, counted: &Counted, share: f32, space: &DemandSpace, plane: &Plane, origin: DVec3) {
         let offset = plane.of(plane.axes.project(space.origin - origin));
         let finest = counted.finest(share);
@@ -71,9 +71,9 @@ impl Cells {
             let texel = (texel as f32).max(finest * space.texel);
             let (middle, half, per_side) = ((middle + offset).as_vec2(), half as f32, (INSIDE * 0.5 / half) as f32);
             let cost = weight * cost_of(1.0 / texel);
-            // Sums over all cells stay finite: a grid that was never filled may hold any numbers.
+            // Keeps sums over all cells finite: a grid that was never filled may hold any numbers.
             let moment = (middle.abs().max_element() + half + 1.0) * cost * MAX_CELLS as f32;
-            // The greatest element may be a number where one is NaN.
+            // `max_element` may return a number even if one element is NaN.
             if middle.is_finite() && moment.is_finite() && per_side.is_finite() {
                 let i = self.len;
                 (self.x[i], self.y[i], self.half[i], self.per_side[i]) = (middle.x, middle.y, half, per_side);
@@ -97,7 +97,7 @@ impl Cells {
         self.add(&counted, GRAZING, &grid.space, plane, origin);
     }
 
-    /// Shares of the cells that lie in a rectangle.
+    /// Computes the shares of the cells inside a rectangle.
     pub(super) fn shares(&self, rect: &Rect, shares: &mut PerCell) {
         let (min, max) = (rect.min, rect.min + rect.size);
         let n = self.len;
@@ -111,7 +111,7 @@ impl Cells {
         }
     }
 
-    /// Sum of a number of each cell, which also depends on another one, in an order of its own.
+    /// Sums a value that depends on two numbers of each cell, in a fixed order.
     pub(super) fn sum(&self, of: &PerCell, other: &PerCell, value: impl Fn(f32, f32) -> f32) -> f32 {
         const LANES: usize = 8;
         let (of, other) = (&of[..self.len], &other[..self.len]);

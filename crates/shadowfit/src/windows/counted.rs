@@ -1,28 +1,28 @@
-//! Numbers of points by cells: a hash table of a fixed size.
+//! Numbers of points per cell, in a hash table of a fixed size.
 //!
-//! If it is full, the cells with the fewest points are left out. With n points in all cells, the first time leaves out
-//! cells with at most n / 4096 points each: a quarter of the mean of 1,024 cells, so that less than a quarter of the
-//! points are lost, even if they lie as evenly as possible. Each further time doubles that limit, or raises it to
-//! n / 4096 by then. A cell that asks for more than the limit is never left out, so that windows still find all places
-//! where many points lie.
+//! If the table is full, the cells with the fewest points are removed. With n points in all cells, the first
+//! removal takes cells with at most n / 4096 points each. This is a quarter of the mean of 1,024 cells, so
+//! less than a quarter of the points are lost, even if they are spread evenly. Each further removal doubles
+//! that limit, or raises it to n / 4096 at that time. A cell with more points than the limit is never
+//! removed, so windows still find all places with many points.
 
 use crate::demand::grid::{LEVELS, SIDE};
 
-/// Most cells that are kept.
+/// Greatest number of cells.
 pub(super) const MAX_CELLS: usize = 1024;
 
-/// Points by the cells of a space.
+/// Numbers of points in the cells of a space.
 pub(super) struct Counted {
-    /// Index of a cell and number of its points, or a share of it.
+    /// Index of each cell, and its number of points or a share of it.
     cells: [(u32, f32); MAX_CELLS],
     len: usize,
-    /// Places in `cells` plus one by the cells' hash; zero for none.
+    /// Position in `cells` plus one, by the cell's hash; zero for none.
     table: [u16; TABLE],
     /// Cells with no more points than this are left out.
     least: f32,
 }
 
-/// Places of the hash table: twice as many as cells.
+/// Slots of the hash table: twice the number of cells.
 const TABLE: usize = 2 * MAX_CELLS;
 
 impl Counted {
@@ -30,7 +30,7 @@ impl Counted {
         Self { cells: [(0, 0.0); MAX_CELLS], len: 0, table: [0; TABLE], least: 0.0 }
     }
 
-    /// Adds points to a cell that has none.
+    /// Adds a new cell with points.
     pub(super) fn push(&mut self, index: usize, weight: f32) {
         if self.len == MAX_CELLS {
             self.thin();
@@ -43,7 +43,7 @@ impl Counted {
 
     /// Adds points to a cell.
     pub(super) fn add(&mut self, index: usize, weight: f32) {
-        // False for NaN, too.
+        // NaN does not count either.
         let counts = weight > 0.0;
         if !counts {
             return;
@@ -64,7 +64,7 @@ impl Counted {
         }
     }
 
-    /// Where a cell is in the table, or would be.
+    /// Returns the slot of a cell in the table, or the slot where it would be added.
     fn place(&self, key: u32) -> usize {
         let mut place = (key.wrapping_mul(2_654_435_769) >> 21) as usize % TABLE;
         while self.table[place] != 0 && self.cells[usize::from(self.table[place]) - 1].0 != key {
@@ -73,13 +73,13 @@ impl Counted {
         place
     }
 
-    /// The cells, each with its index and its number of points.
+    /// Returns the cells, each with its index and its number of points.
     pub(super) fn cells(&self) -> &[(u32, f32)] {
         &self.cells[..self.len]
     }
 
-    /// Returns the texel that a share of the points with the finest demands ask for at most, relative to the texel of
-    /// the finest level.
+    /// Returns the width below which the finest demands lie, for the given share of the points. It is
+    /// relative to the texel of the finest level.
     pub(super) fn finest(&self, share: f32) -> f32 {
         let mut levels = [0.0_f32; LEVELS];
         for (index, weight) in &self.cells[..self.len] {
@@ -95,7 +95,7 @@ impl Counted {
         0.0
     }
 
-    /// Leaves out the cells with the fewest points. See the head of the file for a bound of the error.
+    /// Removes the cells with the fewest points. The module's documentation has a bound of the error.
     fn thin(&mut self) {
         let total: f32 = self.cells[..self.len].iter().map(|cell| cell.1).sum();
         self.least = (self.least * 2.0).max(total / MAX_CELLS as f32 * 0.25);

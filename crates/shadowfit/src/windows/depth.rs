@@ -1,5 +1,5 @@
-//! What windows must hold: how far the receivers in view reach, and how deep all that casts and
-//! receives over a window lies.
+//! The region that windows must hold: the extent of the receivers in view, and the depths of all casters and
+//! receivers over a window.
 
 use glam::{DVec2, DVec3};
 
@@ -11,19 +11,20 @@ use crate::fits::{Depth, FitRule};
 use crate::light::{BoundSource, Column, LightAxes};
 use crate::view::Range;
 
-/// Boxes as the light sees them, those of the lists three elements each: least and greatest x and y, and z.
+/// Boxes as seen from the light. Boxes of the lists have three elements each: least x and y, greatest x and
+/// y, and range of z.
 pub(super) struct Shadows<'a, 'b> {
     content: &'a Content<'b>,
     axes: LightAxes,
     receivers: &'a [DVec2],
     casters: &'a [DVec2],
-    /// Least and greatest corner of what is in view, along the light's axes.
+    /// Least and greatest corner of the content in view, along the light's axes.
     min: DVec3,
     max: DVec3,
     pub(super) is_empty: bool,
 }
 
-/// Elements of storage for a box.
+/// Elements of storage per box.
 const PER_BOX: usize = 3;
 
 impl<'a, 'b> Shadows<'a, 'b> {
@@ -59,7 +60,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
         Ok(shadows)
     }
 
-    /// Finds what is in view.
+    /// Finds the bounds of the content in view.
     fn find_bounds(&mut self, range: Range) {
         let content = self.content;
         if content.knows_receivers() {
@@ -77,7 +78,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
         }
     }
 
-    /// What the last window must hold, with room for rounding, in the plane.
+    /// Returns the bounds of the last window's content in the plane, with room for rounding.
     pub(super) fn bounds(&self, plane: &Plane) -> (DVec2, DVec2) {
         let (min, max) = (plane.of(self.min), plane.of(self.max));
         let far = |min: f64, max: f64| min.abs().max(max.abs());
@@ -86,7 +87,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
         (min - pad, max + pad)
     }
 
-    /// The depths of the parts of all boxes that lie over a rectangle.
+    /// Computes the depths of the parts of all boxes over a rectangle.
     pub(super) fn depth(&self, min: DVec2, max: DVec2, rule: &FitRule) -> WindowDepth {
         let [receivers, casters] = self.content.lists();
         let mut over = Over::new(&self.axes, min, max);
@@ -105,7 +106,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
             Depth::AtCovered | Depth::Doubled => {}
             Depth::Extended(metres) => (high, near_by) = (high + metres, BoundSource::CasterExtension),
             Depth::AtCasterBounds | Depth::AtCasters => {
-                // They move the near plane alone.
+                // Casters only move the near plane.
                 (over.low, over.farthest_squared) = (f64::MIN, f64::MAX);
                 over.add_list(casters, self.casters, self.content.origin);
                 if self.is_empty {
@@ -125,7 +126,7 @@ impl<'a, 'b> Shadows<'a, 'b> {
 /// Least and greatest corner of the receivers in view, along the light's axes.
 struct SeenBounds<'a> {
     axes: &'a LightAxes,
-    /// Boxes of the list as [`project`] has projected them.
+    /// Boxes of the list, projected by [`project`].
     projected: &'a [[DVec2; PER_BOX]],
     min: DVec3,
     max: DVec3,
@@ -145,7 +146,7 @@ impl VisitCorners for SeenBounds<'_> {
     }
 
     fn wants_box(&self, found: &Found) -> bool {
-        // The tree has asked for its boxes already.
+        // The tree has already tested its boxes with `wants`.
         self.projected.get(found.index).is_none_or(|b| self.may_widen(b))
     }
 
@@ -155,7 +156,7 @@ impl VisitCorners for SeenBounds<'_> {
     }
 }
 
-/// The depths of the parts of boxes that lie over a rectangle, in metres along the light's z.
+/// Depths of the parts of boxes over a rectangle, in metres along the light's z.
 struct Over<'a> {
     axes: &'a LightAxes,
     column: Column,
@@ -166,14 +167,14 @@ struct Over<'a> {
 }
 
 impl<'a> Over<'a> {
-    /// No boxes over a rectangle. Corners that are no farther away than its own do not count.
+    /// Creates an empty range of depths. Only corners farther away than the rectangle's own corners count.
     fn new(axes: &'a LightAxes, min: DVec2, max: DVec2) -> Self {
         let corner = min.abs().max(max.abs());
         let column = Column::new(axes, min, max);
         Self { axes, column, low: f64::MAX, high: f64::MIN, farthest_squared: corner.dot(corner) }
     }
 
-    /// Adds the boxes of a list, which [`project`] has projected.
+    /// Adds the boxes of a list, projected by [`project`].
     fn add_list(&mut self, list: Option<Boxes>, projected: &[DVec2], origin: DVec3) {
         let Some(list) = list else { return };
         for (aabb, b) in list.boxes.iter().zip(projected.as_chunks().0) {
@@ -184,7 +185,8 @@ impl<'a> Over<'a> {
         }
     }
 
-    /// Whether a box with depths over the rectangle reaches beyond those so far, or has a corner farther away.
+    /// Returns whether a box with depths over the rectangle extends the depths so far, or has a corner
+    /// farther away.
     #[inline]
     fn is_new(&self, z: DVec2, b: &[DVec2; PER_BOX]) -> bool {
         z.x <= z.y && (z.x < self.low || z.y > self.high || farthest_squared(b) > self.farthest_squared)
@@ -198,8 +200,9 @@ impl<'a> Over<'a> {
         }
     }
 
-    /// Least and greatest depth of the part of a box over the rectangle; the least is above the greatest where there is
-    /// none. A large ground under a low sun is many times as deep as any of its parts.
+    /// Returns the least and greatest depth of the part of a box over the rectangle. Without such a part, the
+    /// least depth is above the greatest. A large ground under a low sun is many times deeper than any of its
+    /// parts.
     fn part(&self, min: DVec3, max: DVec3, b: &[DVec2; PER_BOX]) -> DVec2 {
         let (low, high) = self.column.depths(min, max);
         let rounding = min.abs().max(max.abs()).element_sum() * ROUNDING;
@@ -219,14 +222,14 @@ impl Visit for Over<'_> {
     }
 }
 
-/// Square of the greatest distance of a corner of a box along the light's axes from the origin.
+/// Returns the square of the greatest distance of a box's corner from the origin, along the light's axes.
 #[inline]
 fn farthest_squared(b: &[DVec2; PER_BOX]) -> f64 {
     let (across, along) = (b[0].abs().max(b[1].abs()), b[2].x.abs().max(b[2].y.abs()));
     across.dot(across) + along * along
 }
 
-/// A window's depths along the light's axes, in metres, and what set them.
+/// A window's depths along the light's axes, in metres, and their sources.
 pub(super) struct WindowDepth {
     pub(super) low: f64,
     pub(super) high: f64,
@@ -236,16 +239,16 @@ pub(super) struct WindowDepth {
     pub(super) vertices: f64,
 }
 
-/// Greatest size of the last window over that of what it must hold: borders of a quarter of its texels on
-/// either side, and the texels of the grid's steps and of what is held.
+/// Greatest ratio of the last window's size to its content's size. It covers borders of a quarter of the
+/// texels on either side, and the oversize of the grid's steps and of held texels.
 const WIDENING: f64 = 4.0;
 
-/// Whether a box lies over a rectangle.
+/// Returns whether a box lies over a rectangle.
 fn is_over(b: &[DVec2; PER_BOX], min: DVec2, max: DVec2) -> bool {
     b[0].x <= max.x && b[0].y <= max.y && b[1].x >= min.x && b[1].y >= min.y
 }
 
-/// Boxes along the light's axes; an empty one lies over nothing.
+/// Projects boxes to the light's axes. An empty box lies over no rectangle.
 fn project(boxes: &Boxes, origin: DVec3, axes: &LightAxes, out: &mut [DVec2]) {
     let offset = boxes.origin - origin;
     for (aabb, out) in boxes.boxes.iter().zip(out.chunks_exact_mut(PER_BOX)) {
@@ -258,7 +261,7 @@ fn project(boxes: &Boxes, origin: DVec3, axes: &LightAxes, out: &mut [DVec2]) {
     }
 }
 
-/// A box along the light's axes.
+/// Projects a box to the light's axes.
 #[inline]
 fn projected(min: DVec3, max: DVec3, axes: &LightAxes) -> [DVec2; PER_BOX] {
     let (x, y, z) = (axes.x.as_dvec3().abs(), axes.y.as_dvec3().abs(), axes.z.as_dvec3().abs());

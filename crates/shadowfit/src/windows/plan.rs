@@ -1,7 +1,7 @@
 //! Sizes and places of all windows, and how they change.
 //!
-//! A plan P has a texel width tᵢ and a place for each window i. Its cost is what the visible points pay for texels that
-//! are too wide:
+//! A plan P has a texel width tᵢ and a place for each window i. Its cost is the sum over all visible points
+//! that read too wide texels:
 //!
 //! ```text
 //!   cost(P) = Σ over cells c   w_c · Σ over windows i   share_i(c) · (t_i / s_c)^(3/2)
@@ -10,7 +10,7 @@
 //!   s_c        texel width that c asks for    t_i          texel width of window i
 //! ```
 //!
-//! The [search](super::search) has three plans, of which only one is drawn. In a frame:
+//! The [search](super::search) has three plans, only one of which is drawn. In each frame:
 //!
 //! ```text
 //!   drawn ──move_windows: each keeps 99.3% of its best place──▶ drawn'       best ◀── try_changes: one window a frame
@@ -31,10 +31,10 @@ use super::raster;
 use crate::light::grid;
 use crate::technique::settings::MAX_MAPS;
 
-/// Texels and places of all windows, the finest first.
+/// Texels and places of all windows, finest first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Plan {
-    /// Widths of texels, in eighths of an octave of a metre.
+    /// Texel widths, in eighths of an octave of a metre.
     pub(super) steps: [i32; MAX_MAPS],
     pub(super) rects: [Rect; MAX_MAPS],
 }
@@ -45,27 +45,27 @@ impl Plan {
         (self.steps[window], self.rects[window]) = (other.steps[window], other.rects[window]);
     }
 
-    /// Returns this plan with a window of another one.
+    /// Returns this plan with one window of another plan.
     fn replaced(mut self, window: usize, other: &Self) -> Self {
         self.replace(window, other);
         self
     }
 }
 
-/// Compares and changes plans.
+/// Context for comparing and changing plans.
 pub(super) struct Planner<'a> {
     pub(super) cells: &'a Cells,
     /// Texels of a window between its borders.
     pub(super) usable: Vec2,
-    /// Least width of texels, in eighths of an octave of a metre.
+    /// Least texel width, in eighths of an octave of a metre.
     pub(super) least: i32,
     pub(super) count: usize,
 }
 
-/// What some of a plan's windows, the finest ones, cover.
+/// Coverage by the finest windows of a plan.
 #[derive(Clone)]
 struct Coverage {
-    /// Shares of the cells that none of them covers.
+    /// Share of each cell that none of these windows covers.
     left: PerCell,
     /// Price of each cell: `Σ share_i · t_i^(3/2)` over these windows.
     price: PerCell,
@@ -74,7 +74,7 @@ struct Coverage {
 /// A drawn plan after a replacement.
 pub(super) struct Replacement {
     pub(super) plan: Plan,
-    /// Whether further windows are to be replaced in the next frames.
+    /// Whether further windows will be replaced in the next frames.
     pub(super) has_more_to_come: bool,
 }
 
@@ -84,30 +84,31 @@ struct Candidate {
     cost: f32,
 }
 
-/// Ratios of the texels of neighbours with which a search begins, in eighths of an octave.
+/// Ratios of neighbouring windows' texels with which a search begins, in eighths of an octave.
 const LADDERS: [i32; 6] = [4, 7, 10, 13, 17, 22];
 
-/// Greatest ratio of the last window's texels to those of the first one, in eighths of an octave: more than the octaves
-/// of a demand grid, and little enough that all grid lines are exact.
+/// Greatest ratio of the last window's texels to the first window's, in eighths of an octave. It exceeds the
+/// octaves of a demand grid, and is small enough that all grid lines are exact.
 const GREATEST_RATIO: i32 = 20 * 8;
 
-/// Changes of a window's texels that are tried, in eighths of an octave.
+/// Changes of a window's texels to try, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
-/// Share of the cost in the best place that a window must hold to stay in its place.
+/// Share of the best place's cost that a window must hold to stay in its place.
 const HOLDS: f32 = 0.993;
 
-/// Share of the cost that a window held at its last search. If it holds less, it is searched out of turn.
+/// Factor for the share of the cost that a window held at its last search. Below it, the window is searched
+/// out of turn.
 const LOOKS: f32 = 0.99;
 
-/// Cost of the drawn windows over that of the best plan up to which none is replaced.
+/// Greatest ratio of the drawn windows' cost to the best plan's at which no window is replaced.
 pub(super) const SERVES: f32 = 1.1;
 
-/// Share of the points that every change counts for, at least.
+/// Least share of the points that a change counts for.
 const FEW: f32 = 0.02;
 
 impl Planner<'_> {
-    /// Returns the best of several even ladders of windows below a given last one.
+    /// Returns the best of several even ladders of windows below a given last window.
     pub(super) fn ladder(&self, last: i32, rect: Rect) -> Plan {
         let mut best: Option<Candidate> = None;
         for ratio in LADDERS {
@@ -126,8 +127,8 @@ impl Planner<'_> {
         best.map_or_else(Plan::default, |best| best.plan)
     }
 
-    /// Improves a plan: puts one window in its best place, and tries changes of single windows. `turn` counts the
-    /// changes that were tried.
+    /// Improves a plan: moves one window to its best place, and tries changes of single windows. `turn`
+    /// counts the tried changes.
     pub(super) fn try_changes(&self, plan: &mut Plan, turn: &mut u32, changes: u32) {
         let others = self.count as u32 - 1;
         if others == 0 {
@@ -149,12 +150,12 @@ impl Planner<'_> {
         }
     }
 
-    /// Number of all changes of all windows but the last.
+    /// Returns the number of all changes of all windows except the last.
     pub(super) const fn changes_per_round(&self) -> u32 {
         (self.count as u32 - 1) * CHANGES.len() as u32
     }
 
-    /// Fits a plan below a last window that may have other texels than its own.
+    /// Fits a plan below a last window whose texels may differ from the plan's.
     pub(super) fn below(&self, mut plan: Plan, last: i32, rect: Rect) -> Plan {
         plan.steps[self.count - 1] = last;
         plan.rects[self.count - 1] = rect;
@@ -171,9 +172,9 @@ impl Planner<'_> {
         plan
     }
 
-    /// Moves each window that no longer holds most of what its best place would. `holds` has the shares of the cost that
-    /// windows held at their last searches. Each call searches for one window in turn, and for those whose shares have
-    /// fallen.
+    /// Moves each window that no longer holds most of the cost that its best place would hold. `holds` has
+    /// the shares of the cost that windows held at their last searches. Each call searches one window in
+    /// turn, and the windows whose shares have fallen.
     pub(super) fn move_windows(&self, plan: &mut Plan, best: &Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
         for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
@@ -183,8 +184,8 @@ impl Planner<'_> {
             if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
                 let mut moved = *plan;
                 moved.rects[i] = self.least_move(&plan.rects[i], &left);
-                // Two windows must not swap places for what the other one holds. A window in its place of the best plan
-                // would be put back there again and again.
+                // Two windows must not swap places for each other's content. A window in its place of the
+                // best plan would be moved back there again and again.
                 let way = (moved.rects[i].min - plan.rects[i].min).abs();
                 let is_leap = way.cmpgt(plan.rects[i].size * 0.5).any();
                 let is_best = (plan.steps[i], plan.rects[i]) == (best.steps[i], best.rects[i]);
@@ -210,22 +211,23 @@ impl Planner<'_> {
         plan
     }
 
-    /// Replaces one drawn window by its counterpart in the best plan, if the drawn plan costs more than the best one
-    /// times `limit`. Its texels must lie between those of its neighbours, so that several windows in a row may have to
-    /// be replaced for a gain. The others follow in the next frames.
+    /// Replaces one drawn window by its counterpart in the best plan, if the drawn plan costs more than the
+    /// best one times `limit`. The window's texels must lie between its neighbours' texels, so several
+    /// windows in a row may have to be replaced for a gain. The others follow in the next frames.
     pub(super) fn replace_one(&self, drawn: Plan, best: &Plan, limit: f32) -> Replacement {
         let is_good = self.cost(&drawn) <= self.cost(best) * limit;
         let run = if is_good { None } else { self.best_run(&drawn, best) };
         let Some(run) = run else { return Replacement { plan: drawn, has_more_to_come: false } };
         let replaced = run.clone().map(|i| drawn.replaced(i, best));
-        // Of windows that all become coarser it is the coarsest, of those that become finer the finest.
+        // If all windows of the run become coarser, this is the coarsest. If they become finer, it is the
+        // finest.
         let may_be = replaced.filter(|plan| *plan != drawn && self.is_in_order(&plan.steps));
         let cheapest = may_be.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
         Replacement { plan: cheapest.unwrap_or(drawn), has_more_to_come: run.len() > 1 }
     }
 
-    /// Returns the run of consecutive windows whose replacement by another plan's gains most for each point that then
-    /// reads other texels. `None` if no run gains anything.
+    /// Returns the run of consecutive windows whose replacement by the other plan's windows gains most per
+    /// point that then reads other texels. Returns `None` if no run gains anything.
     fn best_run(&self, plan: &Plan, target: &Plan) -> Option<Range<usize>> {
         let (cost, readers) = (self.cost(plan), self.readers(plan));
         let mut best: Option<(f32, Range<usize>)> = None;
@@ -244,7 +246,7 @@ impl Planner<'_> {
         best.map(|(_, run)| run)
     }
 
-    /// Shares of the points that read each window.
+    /// Returns the shares of the points that read each window.
     fn readers(&self, plan: &Plan) -> [f32; MAX_MAPS] {
         let points = |left: &PerCell| self.cells.sum(&self.cells.weight, left, |weight, left| weight * left);
         let mut left = [1.0; MAX_CELLS];
@@ -260,8 +262,8 @@ impl Planner<'_> {
         })
     }
 
-    /// Returns a plan with other texels of one window, in its best place. `None` if sizes would cross. `finer` is the
-    /// coverage of the finer windows.
+    /// Returns a plan with other texels of one window, which is moved to its best place. Returns `None` if
+    /// sizes would cross. `finer` is the coverage of the finer windows.
     fn changed(&self, plan: &Plan, finer: &Coverage, window: usize, change: i32) -> Option<Candidate> {
         let mut plan = *plan;
         plan.steps[window] += change;
@@ -273,8 +275,8 @@ impl Planner<'_> {
         Some(Candidate { plan, cost })
     }
 
-    /// Returns the held place while it holds nearly as much as the best one, else the least move that does, and
-    /// [some more](MOVE_ON).
+    /// Returns the held place if it holds nearly as much as the best one. Otherwise returns the least move
+    /// that does, and [some more](MOVE_ON).
     fn least_move(&self, held: &Rect, left: &PerCell) -> Rect {
         let best = raster::best(self.cells, left, held.size);
         let enough = self.cost_inside(&best, left) * HOLDS;
@@ -287,7 +289,7 @@ impl Planner<'_> {
         share.map_or(best, |share| at(share + (1.0 - share) * MOVE_ON as f32))
     }
 
-    /// Puts all windows but the last in their best places, one after the other.
+    /// Moves all windows except the last to their best places, one after the other.
     fn place_all(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
@@ -339,7 +341,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the cost of what is left of the cells inside a rectangle.
+    /// Returns the cost of the uncovered shares of the cells inside a rectangle.
     fn cost_inside(&self, rect: &Rect, left: &PerCell) -> f32 {
         let mut shares = [0.0; MAX_CELLS];
         self.cells.shares(rect, &mut shares);
@@ -349,7 +351,7 @@ impl Planner<'_> {
         self.cells.sum(&self.cells.cost, &shares, |cost, share| cost * share)
     }
 
-    /// Takes the part of the cells inside a window from what is left.
+    /// Removes the part inside a window from the uncovered shares of the cells.
     fn add_window(&self, rect: &Rect, left: &mut PerCell) {
         let mut shares = [0.0; MAX_CELLS];
         self.cells.shares(rect, &mut shares);
@@ -362,7 +364,8 @@ impl Planner<'_> {
         self.usable * grid::eighths(steps) as f32
     }
 
-    /// Returns the least texels of a window. They are coarser than those of the windows before it.
+    /// Returns the least texels of a window, which are coarser than the least texels of the windows before
+    /// it.
     fn least_of(&self, window: usize) -> i32 {
         self.least.saturating_add(i32::from(window as u8))
     }
@@ -373,7 +376,7 @@ impl Planner<'_> {
     }
 }
 
-/// Returns the cost, in a window, of a point that asks for texels of one metre.
+/// Returns the cost of a point that needs texels of one metre and reads this window.
 fn price_of(steps: i32) -> f32 {
     cost_of(grid::eighths(steps) as f32)
 }

@@ -1,7 +1,7 @@
-//! The place where a window holds the greatest cost.
+//! The search for the place where a window holds the greatest cost.
 //!
-//! The cost of all cells is entered into a raster. The sum over every square as large as the window follows in steps: of
-//! 4 and of 16 rows, then of as many columns.
+//! The cost of all cells is entered into a raster. The sum over every square as large as the window is
+//! computed in steps: of 4 and 16 rows, then of 4 and 16 columns.
 
 use glam::Vec2;
 
@@ -9,23 +9,24 @@ use super::cells::{Cells, PerCell};
 use super::lattice::Rect;
 use crate::base::checks::{greater, lesser};
 
-/// Squares of the raster in a window's side: four times four.
+/// Squares of the raster per window side: four times four.
 const ACROSS: usize = 16;
 
-/// Squares of the raster along each axis: five windows.
+/// Squares of the raster along each axis: four windows.
 const RASTER: usize = 64;
 
-/// Squares at which a window may begin.
+/// Positions along each axis at which a window may begin.
 const PLACES: usize = RASTER - ACROSS + 1;
 
-/// Cells wider than this many squares of the raster are left out: what they ask for is far coarser.
+/// Greatest width of a cell, in squares of the raster. Wider cells are left out, since their demand is far
+/// coarser.
 const WIDEST: f32 = 16.0;
 
-/// Squares that such a cell may touch in a row, in groups of four.
+/// Squares that a cell of this width may touch in a row, in groups of four.
 const TOUCHED: usize = 20;
 const GROUP: usize = 4;
 
-/// Length of a row, with room for what a cell in the last square touches.
+/// Length of a row, with room for the squares that a cell in the last square touches.
 const ROW: usize = RASTER + TOUCHED;
 
 /// Costs by squares of the plane.
@@ -45,7 +46,7 @@ pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
     raster.enter(cells, left);
     raster.sum_rows(1);
     raster.sum_rows(4);
-    // Around the middle if nothing is left.
+    // Around the middle if no cost is left.
     let (mut most, mut at) = (0.0, ((RASTER - ACROSS) / 2, (RASTER - ACROSS) / 2));
     for (y, row) in raster.rows[..PLACES].iter().enumerate() {
         let row = sum_columns::<4>(&sum_columns::<1>(row));
@@ -59,7 +60,7 @@ pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
 }
 
 impl Raster {
-    /// An empty raster around the middle of the costs.
+    /// Creates an empty raster around the middle of the costs.
     #[expect(clippy::large_stack_arrays, reason = "21 KiB, for the time of a search")]
     fn new(cells: &Cells, left: &PerCell, pitch: Vec2) -> Self {
         let corner = middle(cells, left) - pitch * (RASTER / 2) as f32;
@@ -76,7 +77,7 @@ impl Raster {
             let (low, high) = ((from_corner - cells.half[i]) * per_pitch, (from_corner + cells.half[i]) * per_pitch);
             let is_in = high.x > 0.0 && high.y > 0.0 && low.x < size && low.y < size;
             let sides = high - low;
-            // Also for NaN.
+            // False for NaN too.
             if cost > 0.0 && is_in && sides.x <= WIDEST && sides.y <= WIDEST {
                 self.enter_cell(low, high, cost / (sides.x * sides.y));
             }
@@ -109,7 +110,7 @@ impl Raster {
         }
     }
 
-    /// Adds to each row three that follow at a distance.
+    /// Adds to each row the next three rows at a distance.
     fn sum_rows(&mut self, distance: usize) {
         for y in 0..RASTER - 3 * distance {
             let [row, one, two, three] = [0, 1, 2, 3].map(|k| y + k * distance);
@@ -122,7 +123,7 @@ impl Raster {
     }
 }
 
-/// Sums of each square of a row and three that follow at a distance.
+/// Sums each square of a row and the next three squares at a distance.
 fn sum_columns<const DISTANCE: usize>(row: &[f32; ROW]) -> [f32; ROW] {
     let mut sums = [0.0; ROW];
     for (x, sum) in sums[..RASTER - 3 * DISTANCE].iter_mut().enumerate() {
@@ -131,7 +132,7 @@ fn sum_columns<const DISTANCE: usize>(row: &[f32; ROW]) -> [f32; ROW] {
     sums
 }
 
-/// Middle of the costs.
+/// Returns the mean position of the costs.
 fn middle(cells: &Cells, left: &PerCell) -> Vec2 {
     let (mut sum, mut total) = (Vec2::ZERO, 0.0);
     for (i, left) in left.iter().enumerate().take(cells.len) {

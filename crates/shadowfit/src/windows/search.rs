@@ -1,17 +1,18 @@
 //! The search for better windows, a few changes in each frame.
 //!
-//! There are three [plans](super::plan): the drawn windows, the best plan so far, and a second search that is restarted
-//! from scratch whenever it has tried all its changes. The phase of a frame says which of them changes:
+//! There are three [plans](super::plan): the drawn windows, the best plan so far, and a second search that is
+//! restarted from scratch whenever it has tried all its changes. The phase of a frame decides which of them
+//! changes:
 //!
-//! | phase | when | what is tried | what may be drawn |
+//! | phase | condition | tried changes | windows that may be drawn |
 //! |---|---|---|---|
 //! | `First` | no frame before | a ladder and three rounds of changes of `best` | `best` |
-//! | `FirstDemand` | demand is known for the first time | a ladder and a round of changes of `best` | as many windows of `best` as it takes |
-//! | `ImproveBest` | `restart` has tried as many changes | one change of `best` for every four windows | moved windows, and one of `best` |
-//! | `ImproveRestart` | `best` has tried more changes | the same of `restart`; after a round the cheaper plan becomes `best`, and `restart` a new ladder | the same |
+//! | `FirstDemand` | demand is known for the first time | a ladder and a round of changes of `best` | all necessary windows of `best` |
+//! | `ImproveBest` | `restart` has tried the same number of changes or more | one change of `best` for every four windows | moved windows, and one of `best` |
+//! | `ImproveRestart` | `best` has tried more changes | one change of `restart` for every four windows; after a round the cheaper plan becomes `best`, and `restart` a new ladder | moved windows, and one of `best` |
 //!
-//! Drawn windows keep their texels and move as little as possible. One of them is replaced by its counterpart in the best
-//! plan only if that plan is cheaper by enough.
+//! Drawn windows keep their texels and move as little as possible. One of them is replaced by its counterpart
+//! in the best plan only if that plan is sufficiently cheaper.
 
 use glam::DVec3;
 
@@ -21,12 +22,12 @@ use super::plan::{Plan, Planner, Replacement, SERVES};
 use crate::demand::grid::Plane;
 use crate::technique::settings::MAX_MAPS;
 
-/// The state of windows from one frame to the next.
+/// State of the windows from one frame to the next.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Held {
     plane: Plane,
-    /// The windows that are drawn. Only these have depths.
+    /// The drawn windows. Only these have depths.
     pub(super) drawn: [Window; MAX_MAPS],
     /// The best windows found so far.
     best: [Window; MAX_MAPS],
@@ -35,34 +36,34 @@ pub(crate) struct Held {
     progress: Progress,
 }
 
-/// How far the search has come.
+/// Progress of the search.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Progress {
-    /// Number of the change that is tried next in the best plan.
+    /// Number of the next change to try in the best plan.
     next: u32,
-    /// The same in the second search.
+    /// Number of the next change to try in the second search.
     next_of_restart: u32,
-    /// Share of the cost in each place that the drawn windows held when their places were last looked for.
+    /// Share of the cost that each drawn window held at its last search.
     holds: [f32; MAX_MAPS],
     /// Frames since a drawn window was replaced, up to [`OLD`].
     age: u8,
-    /// Whether no demand grid is known yet, so that what is visible is estimated from boxes.
+    /// Whether no demand grid is known yet, so that the visible demand is estimated from boxes.
     is_guess: bool,
 }
 
-/// Rounds of changes that are tried for a first frame.
+/// Rounds of changes to try for a first frame.
 const ROUNDS_AT_FIRST: u32 = 3;
 
-/// Number of windows for which one change is tried in a frame.
+/// Number of windows per change that a frame tries.
 const WINDOWS_PER_CHANGE: u32 = 4;
 
-/// What is added to [`SERVES`] right after a window was replaced. It falls to 0 over [`OLD`] frames, so that
-/// changes are rare but never stop.
+/// Addition to [`SERVES`] right after a window was replaced. It falls to 0 over [`OLD`] frames, so that
+/// replacements are rare but never stop.
 const SERVES_LONGER: f32 = 0.25;
 const OLD: u8 = 60;
 
-/// What a frame searches.
+/// Task of the search in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     First,
@@ -75,9 +76,9 @@ enum Phase {
 pub(super) struct Search<'a> {
     planner: Planner<'a>,
     lattice: &'a Lattice,
-    /// The windows that were drawn in the frame before.
+    /// Windows drawn in the last frame.
     before: Option<&'a [Window; MAX_MAPS]>,
-    /// The last window, which is given, and its place.
+    /// The given last window, and its rectangle.
     whole: &'a Window,
     whole_rect: Rect,
     drawn: Plan,
@@ -88,7 +89,7 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// The search of a frame whose last window is given with its index.
+    /// Creates the search of a frame. The last window `whole` is given, with its index `last`.
     pub(super) fn new(
         lattice: &'a Lattice,
         cells: &'a Cells,
@@ -114,7 +115,7 @@ impl<'a> Search<'a> {
         Self { planner, lattice, before, whole, whole_rect, drawn, best, restart, progress, is_guess }
     }
 
-    /// Searches on. Returns this frame's windows and what the next frame begins with.
+    /// Continues the search. Returns this frame's windows, which are also the state for the next frame.
     pub(super) fn next(mut self) -> Held {
         let phase = self.phase();
         match phase {
@@ -139,7 +140,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Begins with some rounds at once. All plans are the same.
+    /// Tries some rounds at once. All plans are then the same.
     fn begin(&mut self) {
         self.best = self.ladder();
         let changes = ROUNDS_AT_FIRST * self.planner.changes_per_round();
@@ -148,7 +149,7 @@ impl<'a> Search<'a> {
         (self.drawn, self.restart) = (self.best, self.best);
     }
 
-    /// Uses the first demand grid: a whole round at once.
+    /// Uses the first demand grid, and tries a whole round at once.
     fn learn(&mut self) {
         self.best = self.planner.cheaper(self.best, self.ladder());
         self.planner.try_changes(&mut self.best, &mut self.progress.next, self.planner.changes_per_round());
@@ -161,7 +162,7 @@ impl<'a> Search<'a> {
         self.planner.try_changes(&mut self.best, &mut self.progress.next, changes);
     }
 
-    /// Tries changes in the second search, or takes what it found and restarts it.
+    /// Tries changes in the second search, or takes its result and restarts it.
     fn improve_restart(&mut self) {
         let changes = self.changes();
         let next = &mut self.progress.next_of_restart;
@@ -174,7 +175,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Moves the drawn windows as little as possible. Replaces some if the best plan is cheaper by enough.
+    /// Moves the drawn windows as little as possible. Replaces some if the best plan is sufficiently cheaper.
     fn draw(&mut self, phase: Phase) {
         let Progress { next, holds, age, .. } = &mut self.progress;
         self.planner.move_windows(&mut self.drawn, &self.best, holds, *next);
@@ -187,7 +188,7 @@ impl<'a> Search<'a> {
         *age = if plan == self.drawn {
             age.saturating_add(1).min(OLD)
         } else if has_more_to_come {
-            // As if no window had been replaced for long, until all have.
+            // Counts as a long time without a replacement, until all have been replaced.
             OLD
         } else {
             0
@@ -195,17 +196,17 @@ impl<'a> Search<'a> {
         self.drawn = plan;
     }
 
-    /// A plan with even ratios of texels in front of the last window.
+    /// Returns a plan with even ratios of texels in front of the last window.
     fn ladder(&self) -> Plan {
         self.planner.ladder(self.whole.steps, self.whole_rect)
     }
 
-    /// Number of changes that are tried in a frame.
+    /// Returns the number of changes that a frame tries.
     fn changes(&self) -> u32 {
         (self.planner.count as u32).div_ceil(WINDOWS_PER_CHANGE)
     }
 
-    /// The plans as windows on the world's grid.
+    /// Returns the plans as windows on the world's grid.
     fn held(&self) -> Held {
         let windows = |plan: &Plan| {
             let mut windows = [Window::default(); MAX_MAPS];
@@ -216,7 +217,7 @@ impl<'a> Search<'a> {
         };
         let mut drawn = windows(&self.drawn);
         for (i, window) in drawn.iter_mut().enumerate().take(self.planner.count - 1) {
-            // Rectangles are rounded, lines are not: what stays is taken as it is.
+            // Rectangles are rounded, but grid lines are not. So a window that did not move is copied.
             let (steps, rect) = (self.drawn.steps[i], self.drawn.rects[i]);
             let stays = |window: &&Window| window.steps == steps && self.lattice.rect(window) == rect;
             *window = self.before.map(|before| &before[i]).filter(stays).copied().unwrap_or(*window);
@@ -229,12 +230,12 @@ impl<'a> Search<'a> {
 }
 
 impl Held {
-    /// Whether what is visible was only estimated from the boxes.
+    /// Returns whether the visible demand was only estimated from the boxes.
     pub(crate) fn is_guess(&self) -> bool {
         self.progress.is_guess
     }
 
-    /// These windows for the light of another frame.
+    /// Returns these windows for the light of another frame.
     pub(super) fn in_plane(&self, lattice: &Lattice, origin: DVec3) -> Self {
         if self.plane == lattice.plane {
             return *self;

@@ -1,8 +1,8 @@
-//! The automatic biases hold in f32, on hardware that snaps, in every format of the map.
+//! The automatic biases are sufficient in f32, on hardware that snaps, in every format of the map.
 //!
-//! The chain is a GPU's: vertices in f32, depths stored at centres that are off by the
-//! rasteriser's snap, rounded to the format; positions and biases of the receiver in f32, texture
-//! coordinates snapped by the sampler.
+//! The computation is a GPU's. Vertices are in f32, and depths are stored at centres that are off by the
+//! rasteriser's snap, rounded to the format. Positions and biases of the receiver are in f32, and the sampler
+//! snaps texture coordinates.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -27,7 +27,7 @@ const SNAPS: f64 = 256.0;
 struct Stored<'a> {
     fit: &'a LightProjection,
     storage: DepthStorage,
-    /// World position, relative to the fit's origin, from texture coordinates and from the plane.
+    /// World position, relative to the fit's origin, from texture coordinates and the plane.
     world_from_rows: DMat3,
     offset: DVec3,
 }
@@ -41,15 +41,15 @@ impl<'a> Stored<'a> {
         Self { fit: &case.fit, storage, world_from_rows: rows.inverse(), offset }
     }
 
-    /// Distance from the near plane, 0..=1, that a vertex at the texel's centre gets.
+    /// Returns the distance from the near plane, 0..=1, of a vertex at the texel's centre.
     fn vertex_depth(&self, centre: DVec2) -> f64 {
         let uv = centre / self.fit.resolution.as_dvec2();
         let vertex = (self.world_from_rows * (uv.extend(0.0) + self.offset)).as_vec3();
         f64::from(apply(&self.fit.uv_from_world, vertex).z)
     }
 
-    /// Stored depth at a texel, with the centre off by half a snap to the worse side; `None`
-    /// where the plane leaves the map's depths.
+    /// Returns the stored depth of a texel, with the centre off by half a snap to the worse side, or `None`
+    /// if the plane is outside the map's depth range.
     fn depth(&self, centre: DVec2) -> Option<f64> {
         let snap = 0.5 / SNAPS;
         let corners = [(-snap, -snap), (snap, -snap), (-snap, snap), (snap, snap)];
@@ -64,15 +64,15 @@ impl<'a> Stored<'a> {
     }
 }
 
-/// What a format can make of a depth: the nearest of its values, or the next one to either side where hardware only
-/// cuts or raises.
+/// Returns the values that a format may store for a depth: the nearest one, or the one below or above on
+/// hardware that only rounds down or up.
 fn rounded(storage: DepthStorage, depth: f64) -> [f64; 3] {
     let step = f64::from(depth_step_at(storage, 1.0, depth as f32).unwrap());
     let steps = depth / step;
     [steps.round(), steps.floor(), steps.ceil()].map(|steps| (steps * step).clamp(0.0, 1.0))
 }
 
-/// A point of a plane under a fit, and the normal on the light's side.
+/// A point of a plane in a fit, and the normal on the light's side.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     fit: LightProjection,
@@ -81,15 +81,15 @@ struct Case {
 }
 
 impl Case {
-    /// Texels and compared depth of a point of the plane that is moved by `offset` along the normal
-    /// and by `depth` toward the light, as the receiver's shader has them.
+    /// Returns position (in texels) and compared depth of a point of the plane that is moved by `offset`
+    /// along the normal and by `depth` toward the light, as the receiver's shader computes them.
     fn look_up(&self, point: Vec3, offset: f32, depth: f32) -> (DVec2, f64) {
         let uv = apply(&self.fit.uv_from_world, point + self.normal * offset);
         let toward_light = if self.fit.depth == DepthConvention::Reversed { depth } else { -depth };
         ((uv.truncate() * self.fit.resolution.as_vec2()).as_dvec2(), f64::from(uv.z + toward_light))
     }
 
-    /// Offset and depth of a bias on the plane, as the receiver's shader has them.
+    /// Returns offset and depth of a bias on the plane, as the receiver's shader computes them.
     fn on_plane(&self, bias: &Bias) -> (f32, f32) {
         let cosine = self.normal.dot(-self.fit.direction).clamp(MIN_COSINE, 1.0);
         let sine = (1.0 - cosine * cosine).sqrt();
@@ -98,8 +98,8 @@ impl Case {
         (bias.normal_offset * sine, bias.constant_depth + depth)
     }
 
-    /// Depth by which the nearest texel in reach lies before the compared depth of a look-up;
-    /// positive is acne.
+    /// Returns by how much the nearest texel of the footprint lies before the compared depth of a look-up.
+    /// Positive values are acne.
     fn acne(&self, stored: &Stored, filter: &Filter, (at, compared): (DVec2, f64)) -> f64 {
         let snapped = (at * SNAPS).round() / SNAPS;
         let before =
@@ -107,21 +107,21 @@ impl Case {
         filter.texels(snapped).filter_map(|centre| stored.depth(centre)).map(before).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Acne of the case's own point under a bias.
+    /// Returns the acne of the case's own point under a bias.
     fn acne_under(&self, bias: &Bias, filter: &Filter, storage: DepthStorage) -> f64 {
         let (offset, depth) = self.on_plane(bias);
         self.acne(&Stored::new(self, storage), filter, self.look_up(self.point, offset, depth))
     }
 
-    /// Points of the plane whose look-ups, lifted by `offset`, come where filters change the texels
-    /// that they read, at texels' borders and centres: nearer than rounding may move them.
+    /// Returns points of the plane whose look-ups, lifted by `offset`, are within rounding of a texel border
+    /// or centre, where the footprint of a filter changes.
     fn worst_points(&self, offset: f32) -> impl Iterator<Item = Vec3> {
         let plane = Stored::new(self, DepthStorage::default());
         let farthest = self.fit.corners().map(Vec3::length).into_iter().fold(0.0, f32::max);
         let near = 0.5 / SNAPS + f64::from(f32::EPSILON * 2.0 * farthest / self.fit.texel_size.min_element());
         let (at, _) = self.look_up(self.point, 0.0, 0.0);
         let lift = self.normal.as_dvec3() * f64::from(offset);
-        // Lifting moves the plane's own constant, n·p.
+        // Lifting changes the plane's constant, n·p.
         let lifted = DVec3::Z * self.normal.as_dvec3().dot(lift);
         (0..64).map(move |i| {
             let edge = DVec2::new(f64::from(i & 1), f64::from(i >> 1 & 1)) * 0.5;
@@ -133,29 +133,30 @@ impl Case {
     }
 }
 
-/// A plane drawn as one large triangle: its vertices are rounded by their distance, and with them all of it.
+/// A plane drawn as one large triangle. Its vertices are rounded by their distance, which shifts the whole
+/// triangle.
 struct Triangle<'a> {
     case: &'a Case,
     vertices: [Vec3; 3],
-    /// Texture coordinates and depth of the vertices, as the vertex shader has them.
+    /// Texture coordinates and depth of the vertices, as the vertex shader computes them.
     projected: [Vec3; 3],
 }
 
 impl Triangle<'_> {
-    /// Weights of the three vertices at a place, by two of their coordinates.
+    /// Returns the weights of the three vertices at a position, given by two of their coordinates.
     fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> DVec3 {
         let whole = (b - a).perp_dot(c - a);
         let (v, w) = ((at - a).perp_dot(c - a) / whole, (b - a).perp_dot(at - a) / whole);
         DVec3::new(1.0 - v - w, v, w)
     }
 
-    /// A sum as the rasteriser computes it in f32.
+    /// Returns a sum as the rasteriser computes it in f32.
     fn interpolated(weights: DVec3, [a, b, c]: [f32; 3]) -> f32 {
         let weights = weights.as_vec3();
         a * weights.x + b * weights.y + c * weights.z
     }
 
-    /// The plane's point as the fragment shader gets it: interpolated between the vertices.
+    /// Returns the plane's point in the fragment shader: interpolated between the vertices.
     fn point(&self) -> Vec3 {
         let normal = self.case.normal.abs();
         let across = |v: Vec3| {
@@ -166,7 +167,7 @@ impl Triangle<'_> {
         Vec3::from_array([0, 1, 2].map(|i| Self::interpolated(weights, self.vertices.map(|v| v[i]))))
     }
 
-    /// Depth that the triangle stores at a texel's centre.
+    /// Returns the depth that the triangle stores at a texel's centre.
     fn depth(&self, storage: DepthStorage, centre: DVec2) -> Option<f64> {
         let uv = centre / self.case.fit.resolution.as_dvec2();
         let weights = Self::weights(self.projected.map(|p| p.truncate().as_dvec2()), uv);
@@ -175,7 +176,8 @@ impl Triangle<'_> {
         (0.0..=1.0).contains(&depth).then(|| (depth / step(depth)).round() * step(depth))
     }
 
-    /// Depth by which the nearest texel in a filter's reach lies before what it is compared with; positive is acne.
+    /// Returns by how much the nearest texel of a filter's footprint lies before the compared depth. Positive
+    /// values are acne.
     fn acne(&self, bias: &Bias, filter: &Filter, storage: DepthStorage) -> f64 {
         let (offset, depth) = self.case.on_plane(bias);
         let (at, compared) = self.case.look_up(self.point(), offset, depth);
@@ -187,8 +189,8 @@ impl Triangle<'_> {
     }
 }
 
-/// Fits of any camera and light, with maps from 64 texels on and uneven texels, relative to the eye
-/// or to points up to 60 boxes away, where f32 is coarse.
+/// Fits of any camera and light, with maps of at least 64 texels and uneven texels, relative to the eye or to
+/// points up to 60 boxes away, where f32 is coarse.
 fn any_fit() -> impl Strategy<Value = LightProjection> {
     let depth = prop_oneof![Just(DepthConvention::ZeroToOne), Just(DepthConvention::Reversed)];
     let resolution =
@@ -204,10 +206,10 @@ fn any_fit() -> impl Strategy<Value = LightProjection> {
     )
 }
 
-/// Points in the middle half of the map, on planes from square to the light to 88.7° from it.
+/// Points in the middle half of the map, on planes from 0° to 88.7° to the light.
 fn any_case() -> impl Strategy<Value = Case> {
     let tangent = [0.0, 3e-4, 0.1, 1.0, 10.0, 45.0].map(Just);
-    // Along an axis of the map only one coordinate has to be at its worst.
+    // Along an axis of the map, only one coordinate has to be at its worst.
     let azimuth = prop_oneof![(0..4_u8).prop_map(|i| f32::from(i) * FRAC_PI_2), float(0.0, 6.3)];
     let slope = (azimuth, Union::new(tangent));
     (any_fit(), slope, (float(0.25, 0.75), float(0.25, 0.75), float(0.25, 0.75))).prop_map(
@@ -222,12 +224,12 @@ fn any_case() -> impl Strategy<Value = Case> {
     )
 }
 
-/// Whether a plane that faces the light shadows itself at any of a thousand depths of a fit's range, with a number of
-/// depth steps and no other bias, however the format rounds the stored depth.
+/// Returns whether a plane that faces the light shadows itself at any of a thousand depths of a fit's range,
+/// with a number of depth steps and no other bias, for every possible rounding of the stored depth.
 fn has_bands(fit: &LightProjection, format: MapFormat, depth_steps: f32) -> bool {
     let settings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps };
     let bias = f64::from(Bias::from_texels(&settings, format, fit).constant_depth);
-    // The rounding of a 32-bit float, which the steps cover as part of the rounding of positions.
+    // Rounding of a 32-bit float, which the depth steps cover as part of the rounding of positions.
     let float = f64::from(f32::EPSILON) * 0.5;
     let is_reversed = fit.depth == DepthConvention::Reversed;
     (0..1000).map(|i| (f64::from(i) + 0.377) / 1000.0).any(|depth| {
@@ -284,7 +286,7 @@ proptest! {
         let (a, b) = case.normal.any_orthonormal_pair();
         let vertices = [0.3, 2.3, 4.5].map(|angle: f32| case.point + (a * (angle + turn).cos() + b * (angle + turn).sin()) * size);
         case.fit.vertex_distance = vertices.map(Vec3::length).into_iter().fold(0.0, f32::max);
-        // The plane is that of the rounded vertices.
+        // The plane is defined by the rounded vertices.
         let [p, q, r] = vertices.map(Vec3::as_dvec3);
         let normal = (q - p).cross(r - p).normalize();
         let normal = if normal.dot(case.normal.as_dvec3()) < 0.0 { -normal } else { normal };
@@ -315,12 +317,13 @@ proptest! {
         }
     }
 
-    /// What is predicted to be free of acne is free of it, however small the margin.
+    /// A point with a predicted margin of at least zero has no acne.
     #[test]
     fn a_margin_of_zero_or_more_means_no_acne(case in any_case(), (share, spare) in (float(0.0, 1.0), float(-0.5, 0.01))) {
         for filter in filters() {
             let storage = DepthStorage::Unorm16;
-            // Some of the plane's need as an offset, the rest as depth, and of both too little or more.
+            // A share of the plane's need as an offset, the rest as depth, in total slightly too little or
+            // too much.
             let reach = filter.reach.on_hardware(&case.fit);
             let needed = (1.0 + spare) * normal_offset(&case.fit, reach, case.normal).unwrap();
             let cosine = -case.normal.dot(case.fit.direction);
@@ -341,8 +344,8 @@ proptest! {
         }
     }
 
-    /// The offset that follows the azimuth is no larger than it must be, so hardware's snap and the
-    /// rounding of f32 are put to the test where they are worst.
+    /// The offset that depends on the azimuth is not larger than necessary. So test the hardware's snap and
+    /// the rounding of f32 at the worst points.
     #[test]
     fn the_offset_of_the_plane_itself_clears_it_at_the_worst_points(case in any_case()) {
         for filter in filters() {

@@ -1,5 +1,5 @@
-//! Every float input that is NaN, infinite, zero, subnormal or huge: an error or a finite fit,
-//! never a panic.
+//! NaN, infinity, zero, subnormal and huge values in every float input: an error or a finite fit, never a
+//! panic.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
@@ -10,7 +10,7 @@ use crate::support::{DIRECTION, KINDS, any_kind, camera, cases, exact, fitted};
 
 const NOT_FINITE: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// A float input of the whole chain, by name.
+/// A float input of the whole chain with its name.
 type Setter = (&'static str, fn(&mut Inputs, f32));
 
 #[derive(Clone, Copy)]

@@ -1,5 +1,5 @@
-//! Every float input of the biases, the diagnostics and the light steps that is NaN, infinite,
-//! zero, subnormal or huge: an error or a finite result, never a panic.
+//! NaN, infinity, zero, subnormal and huge values in every float input of the biases, the diagnostics and the
+//! light steps: an error or a finite result, never a panic.
 
 use proptest::prelude::*;
 use shadowfit::bias::{FilterRadius, acos_bias, depth_gradient, normal_offset, receiver_plane_depth};
@@ -16,7 +16,7 @@ const NOT_FINITE: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 const ODD: [f32; 12] =
     [0.0, -0.0, 1e-45, -1e-45, f32::MIN_POSITIVE, 1e-20, -1e-20, 1e20, -1e20, 1.0e18, f32::MAX, f32::MIN];
 
-/// Every input of these functions, with values that work.
+/// All inputs of these functions, with valid values.
 #[derive(Clone, Copy)]
 struct Inputs {
     normal: Vec3,
@@ -33,7 +33,7 @@ struct Inputs {
     seconds: f32,
 }
 
-/// A float input, by name.
+/// A float input with its name.
 type Setter = (&'static str, fn(&mut Inputs, f32));
 
 const SETTERS: [Setter; 29] = [
@@ -62,7 +62,7 @@ const SETTERS: [Setter; 29] = [
     ("steps.extent", |i, v| i.steps.extent = v),
     ("steps.fade", |i, v| i.steps.fade = v),
     ("seconds", |i, v| i.seconds = v),
-    // The same where another call reads them.
+    // The same inputs where another call reads them.
     ("normal", |i, v| i.normal = Vec3::splat(v)),
     ("point", |i, v| i.point = DVec3::splat(f64::from(v))),
     ("direction", |i, v| i.direction = Vec3::splat(v)),
@@ -86,7 +86,7 @@ fn good() -> Inputs {
     }
 }
 
-/// Calls everything and gives all numbers that come back, as soon as none of them is an error.
+/// Calls all functions. Returns all resulting numbers, or the first error.
 fn figures(fit: &LightProjection, i: &Inputs) -> Result<Vec<f32>, FitError> {
     let point = (i.point - fit.origin).as_vec3();
     let on_plane = i.bias.on_plane(fit, i.normal)?;

@@ -1,5 +1,5 @@
-//! Bad numbers in everything that whole scenes are made of: an error or finite maps, never a
-//! panic, and a fitter that an error leaves as it was.
+//! Bad numbers in all inputs of whole scenes: an error or finite maps, never a panic. An error leaves the
+//! fitter unchanged.
 
 use proptest::prelude::*;
 use shadowfit::NormalCone;
@@ -16,7 +16,7 @@ use shadowfit::{
 
 use crate::support::{DIRECTION, ShaderDepths, camera, cases, every_stabilise, sliced};
 
-/// All inputs of a fit of a scene.
+/// All inputs of a scene's fit.
 #[derive(Clone, Debug)]
 struct Inputs {
     views: Vec<ViewFrustum>,
@@ -78,14 +78,14 @@ impl Inputs {
         self.with(|input, scratch| shadowfit::fit_scene(input, &settings, scratch))
     }
 
-    /// Changes cascades; leaves other maps as they are.
+    /// Changes cascades. Leaves other maps unchanged.
     fn cascades(&mut self, change: impl FnOnce(&mut Cascades)) {
         if let Maps::Cascades(cascades) = &mut self.settings.maps {
             change(cascades);
         }
     }
 
-    /// Changes what keeps cascades and single maps.
+    /// Changes the stabilisation of cascades and single maps.
     fn stabilise(&mut self, change: impl FnOnce(&mut Stabilise)) {
         match &mut self.settings.maps {
             Maps::Windows(_) => {}
@@ -93,7 +93,7 @@ impl Inputs {
         }
     }
 
-    /// Changes how maps are held, where they are.
+    /// Changes the hysteresis, if there is one.
     fn hold(&mut self, change: impl FnOnce(&mut Hysteresis)) {
         self.stabilise(|stabilise| {
             if let Stabilise::Hysteresis(hold) = stabilise {
@@ -128,7 +128,7 @@ impl Inputs {
         });
     }
 
-    /// Fits twice, so that what is kept from the first frame is used by the second.
+    /// Fits twice, so that the second frame uses the state of the first.
     fn check(&self, name: &str) {
         let mut fitter = FitState::new();
         for _ in 0..2 {
@@ -153,10 +153,10 @@ fn is_finite(fit: &LightProjection) -> bool {
         && fit.box_max.is_finite()
 }
 
-/// A number of the input, by name.
+/// A number of the input with its name.
 type Setter = (&'static str, fn(&mut Inputs, f64));
 
-/// Every float but those of the camera, which have tests of their own.
+/// Every float except the camera's, which have their own tests.
 const SETTERS: [Setter; 57] = [
     ("view origin x", |i, v| i.views[0].origin.x = v),
     ("view origin y", |i, v| i.views[1].origin.y = v),
@@ -251,7 +251,7 @@ const VALUES: [f64; 22] = [
 const KINDS: [FitKind; 5] =
     [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-/// Cascades, single maps and windows with these kinds of fits, as far as they have one.
+/// Returns cascades, single maps and windows with these kinds of fits, where they have a kind.
 fn maps_of(kinds: &[FitKind]) -> Vec<Maps> {
     let shapes = kinds.iter().map(|kind| Shape::new(*kind));
     let all = shapes.flat_map(|shape| every_stabilise().map(|stabilise| (shape, stabilise)));
@@ -265,7 +265,7 @@ fn every_maps() -> Vec<Maps> {
     maps_of(&KINDS)
 }
 
-/// Whether maps have a number of this name.
+/// Returns whether maps have a number of this name.
 fn have(maps: &Maps, name: &str) -> bool {
     let stabilise = if let Maps::Windows(_) = maps { None } else { Some(maps.as_single().stabilise) };
     match name {
@@ -288,8 +288,8 @@ fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
     assert_refused_or_finite(|_, _, _| true);
 }
 
-/// Asserts that the numbers that a function picks, by the indices of the fit, the place and the number, give an error or
-/// finite maps.
+/// Asserts that the selected numbers give an error or finite maps. `is_picked` gets the indices of fit, input
+/// and value.
 fn assert_refused_or_finite(is_picked: impl Fn(usize, usize, usize) -> bool) {
     for (fit, maps) in every_maps().into_iter().enumerate() {
         for (setter, (name, set)) in SETTERS.into_iter().enumerate().filter(|(_, (name, _))| have(&maps, name)) {
@@ -305,8 +305,7 @@ fn assert_refused_or_finite(is_picked: impl Fn(usize, usize, usize) -> bool) {
     }
 }
 
-/// Numbers that are lengths, positions and directions: NaN and infinity are refused, wherever
-/// they stand.
+/// Lengths, positions and directions: NaN and infinity are always refused.
 #[test]
 fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
     let harmless = ["cone axis", "cone angle", "histogram near", "histogram far", "histogram bin", "histogram bins"];
@@ -319,7 +318,7 @@ fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
                 before.settings.maps = maps;
                 let mut bad = before.clone();
                 set(&mut bad, value);
-                // An infinite corner makes a box that holds nothing, which is allowed.
+                // An infinite corner makes an empty box, which is allowed.
                 let is_emptied = matches!(name, "receiver min" | "caster min") && value == f64::INFINITY
                     || matches!(name, "receiver max" | "caster max") && value == f64::NEG_INFINITY;
                 let mut fitter = FitState::new();
@@ -479,7 +478,7 @@ fn a_workspace_of_any_length_is_too_small_or_enough() {
     assert!(was_small > 0);
 }
 
-/// Small boxes on a circle across the light: each adds corners to the outline, and none hides
+/// Small boxes on a circle across the light: each adds corners to the outline, and they do not hide one
 /// another.
 #[test]
 fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
@@ -520,7 +519,7 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
 proptest! {
     #![proptest_config(cases(3000))]
 
-    /// Several numbers at once, any bit pattern among them.
+    /// Several numbers at once, including any bit pattern.
     #[test]
     fn no_bit_patterns_panic_and_every_map_that_is_made_is_finite(
         bits in prop::collection::vec((0..SETTERS.len(), any::<u32>(), any::<bool>()), 1..6),

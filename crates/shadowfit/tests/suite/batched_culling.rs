@@ -1,4 +1,4 @@
-//! Batched culling answers as the tests of single shapes do, to the last bit.
+//! Batched culling gives the same results as the tests of single shapes, to the last bit.
 
 use proptest::prelude::*;
 use shadowfit::culling::{Bounds, OrientedBox, Sphere, Sweep, cull};
@@ -8,7 +8,7 @@ use shadowfit::{Aabb, CasterVolume};
 
 use crate::support::{any_camera, any_direction, camera, exact, fitted, float};
 
-/// Numbers as they come, and now and then one of the awkward ones.
+/// Ordinary numbers, and occasionally an awkward one.
 fn any_number(half: f64) -> impl Strategy<Value = f32> {
     prop_oneof![
         40 => float(-half, half),
@@ -38,7 +38,7 @@ fn any_oriented() -> impl Strategy<Value = OrientedBox> {
         .prop_map(|(centre, a, b, c)| OrientedBox { centre, half_axes: [a, b, c] })
 }
 
-/// Volumes of all sorts: whole and swept maps that share normals, and invalid planes.
+/// Volumes of all kinds: whole and swept maps that share normals, and invalid planes.
 fn any_volumes() -> impl Strategy<Value = Vec<CasterVolume>> {
     let scene = (any_camera(), any_direction());
     let any_volume = (scene, 0..6_u8, float(0.0, 1.0), any_vector(1.0), any_number(50.0)).prop_map(
@@ -65,7 +65,7 @@ fn any_volumes() -> impl Strategy<Value = Vec<CasterVolume>> {
     prop::collection::vec(any_volume, 0..10)
 }
 
-/// Compares every bit, and what must stay as it was.
+/// Compares every bit, including the bits that must stay unchanged.
 fn assert_same<S: Bounds>(
     volumes: &[CasterVolume],
     origin: DVec3,

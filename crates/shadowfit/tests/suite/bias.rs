@@ -1,4 +1,4 @@
-//! The automatic bias clears planes, and no less would.
+//! The automatic bias clears planes, and a smaller one does not.
 
 use proptest::prelude::*;
 use shadowfit::bias::{
@@ -27,14 +27,14 @@ impl Plane {
         self.slope.dot(at)
     }
 
-    /// Unit normal toward the light (+z), and the sine of its angle to z.
+    /// Returns the unit normal toward the light (+z), and the sine of its angle to z.
     fn normal(&self) -> (DVec3, f64) {
         let normal = (-self.slope).extend(1.0).normalize();
         (normal, normal.truncate().length())
     }
 
-    /// Least clearance, in metres along the light, of a point of the plane that is lifted by
-    /// `offset` · sin θ along the normal, above all texel centres of the filter; negative is acne.
+    /// Returns the least clearance, in metres along the light, of a point of the plane that is lifted by
+    /// `offset` · sin θ along the normal, above all texel centres of the filter. Negative values are acne.
     fn clearance(&self, at: DVec2, texel: f64, offset: f64, filter: &Filter) -> f64 {
         let (normal, sine) = self.normal();
         let lifted = at.extend(self.height(at)) + normal * (offset * sine);
@@ -43,15 +43,15 @@ impl Plane {
     }
 }
 
-/// A disc of up to three and a half texels for the filters that have one.
+/// A disc of up to 3.5 texels for the soft filters.
 const SOFTNESS: Softness = Softness { radius: SoftRadius::Metres(1.0), floor: 1.0, ceiling: 3.5 };
 
-/// All kinds of filters and what they read.
+/// Returns all kinds of filters with their footprints.
 fn kinds() -> Vec<(FilterKind, Filter)> {
     FilterKind::ALL.into_iter().map(|kind| (kind, Filter::of_kind(kind, &SOFTNESS))).collect()
 }
 
-/// Offset, in texels that are square, that a plane needs whose slope has this azimuth in the map.
+/// Returns the offset, in square texels' sides, that a plane needs if its slope has this azimuth in the map.
 fn plane_normal_offset(reach: f32, azimuth: f32) -> f32 {
     reach * (azimuth.cos().abs() + azimuth.sin().abs())
 }
@@ -78,8 +78,8 @@ proptest! {
         prop_assert!((worst / automatic_normal_offset(reach) - 1.0).abs() < 1e-6);
     }
 
-    /// The stored and the compared depth of one point pass through different f32 roundings; the
-    /// constant covers both.
+    /// The stored and the compared depth of one point pass through different f32 roundings. The constant
+    /// covers both.
     #[test]
     fn the_precision_constant_covers_f32_rounding_of_both_depths(
         camera in any_camera(), direction in any_direction(), kind in any_kind(),
@@ -100,7 +100,8 @@ fn five_percent_less_than_the_plane_offset_leaves_acne() {
     for (kind, filter) in kinds() {
         for azimuth in [0.0, 0.3, 0.785, 1.2, 2.5, 4.0, 5.5] {
             let plane = Plane::new(1.2, azimuth);
-            // A disc reaches as far at all azimuths, the box of a look-up farther along its diagonals.
+            // A disc reaches equally far at all azimuths. The box of a look-up reaches farther along its
+            // diagonals.
             let disc = f64::from(SOFTNESS.filter_radius(kind) - kind.filter_radius());
             let offset = 0.95 * (disc + f64::from(plane_normal_offset(kind.filter_radius(), azimuth as f32)));
             let side = if kind.is_soft() { 30 } else { 100 };
@@ -132,7 +133,7 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
     assert_eq!(bias.slope_depth, 2.0 * texel / fit.depth_range);
     assert_eq!(bias.normal_offset, 3.0 * texel);
     assert_eq!(bias.receiver_plane, 0.7);
-    // A depth bias is as many metres along the light as it is texels.
+    // A depth bias is a distance along the light, in texels.
     let lifted = -fit.direction * (0.5 * texel);
     let moved = apply(&fit.uv_from_world, Vec3::ZERO).z - apply(&fit.uv_from_world, lifted).z;
     assert!((moved / bias.constant_depth - 1.0).abs() < 1e-2, "{moved} for {}", bias.constant_depth);
@@ -145,7 +146,7 @@ fn automatic_settings_follow_the_filter_s_reach() {
         let offset = BiasSettings::automatic_normal_offset(filter, &softness);
         assert_eq!((offset.normal_offset, offset.receiver_plane), (std::f32::consts::SQRT_2 * e, 0.0));
         let settings = BiasSettings::automatic(filter);
-        // Only the reach of one comparison is left to clear, for any filter.
+        // For any filter, only the reach of a single comparison remains to be cleared.
         assert_eq!(settings.receiver_plane, if filter == FilterKind::Point { 0.5 } else { 1.0 } + 1.0 / 256.0);
         assert_eq!((settings.slope, settings.normal_offset, settings.constant), (0.0, 0.0, offset.constant));
         // The constant and one step of the format cover the precision of an ordinary fit.
@@ -166,7 +167,7 @@ fn the_automatic_bias_is_the_worst_azimuth_s_on_hardware() {
     let bias = Bias::automatic(reach, DepthStorage::Unorm16, &fit).unwrap();
     let needed = f64::from(reach.on_hardware(&fit).taps) * fit.texel_size.as_dvec2().length();
     assert!((f64::from(bias.normal_offset) / needed - 1.0).abs() < 1e-6, "{bias:?} for {needed}");
-    // Less than a percent of it is hardware's, and less than half a step of the constant that of f32.
+    // Less than 1% of it is for the hardware. Less than half a step of the constant is for f32 rounding.
     assert!(needed < 1.01 * 2.0 * fit.texel_size.as_dvec2().length());
     assert!(bias.constant_depth > 1.0 / 65_535.0 && bias.constant_depth < 1.5 / 65_535.0, "{bias:?}");
     let plane = Bias::automatic_receiver_plane(reach, DepthStorage::Float32, &fit).unwrap();
@@ -211,7 +212,7 @@ fn a_bias_on_a_plane_is_the_sum_of_its_forms() {
         let turned = bias.on_plane(&fit, -normal * 7.0).unwrap();
         assert!((turned.depth / on_plane.depth - 1.0).abs() < 1e-4, "the side and length of a normal do not matter");
     }
-    // Edge-on every part is held at the least cosine.
+    // At grazing light, every part is limited by the least cosine.
     let grazing = bias.on_plane(&fit, across).unwrap();
     assert!(grazing.depth < 0.001 + (0.002 + 1.5) / MIN_COSINE && grazing.depth.is_finite(), "{grazing:?}");
     assert_eq!(Bias::fixed(XNA_DEPTH_BIAS).unwrap(), Bias { constant_depth: 0.001, ..Bias::default() });

@@ -1,4 +1,4 @@
-//! Feature `bytemuck`: bytes for GPUs, without uninitialised padding, and the same on every target.
+//! Feature `bytemuck`: bytes for GPUs, without uninitialised padding, equal on every target.
 
 use bytemuck::{Pod, bytes_of, cast_slice, from_bytes, offset_of};
 use shadowfit::NormalCone;

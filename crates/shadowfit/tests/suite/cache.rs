@@ -1,4 +1,4 @@
-//! The cache of maps: its plans, carried out on a model and counted.
+//! The cache of maps: its plans, executed on a model and measured.
 
 mod bad_input;
 mod fixtures;

@@ -1,4 +1,4 @@
-//! The volume of all that a map can store, and the tests of single shapes against it.
+//! The volume of all points that a map can store, and the tests of single shapes against it.
 
 use proptest::prelude::*;
 use shadowfit::culling::OrientedBox;
@@ -40,7 +40,7 @@ proptest! {
         }
     }
 
-    /// Planes bound the same set as `covers`, outside its tolerance of 1e-6.
+    /// The planes bound the same set as `covers`, up to its tolerance of 1e-6.
     #[test]
     fn a_point_is_inside_all_planes_where_it_is_covered(
         direction in any_direction(), kind in any_kind(),
@@ -87,8 +87,8 @@ fn a_box_outside_past_an_edge_is_the_known_false_positive() {
     let outward = (k[0] - centre).normalize();
     let large = 500.0;
     let volume = fit.caster_volume();
-    // The least distance at which a large cube, wholly beyond the corner along its diagonal,
-    // shares no point with the volume, but is behind none of its planes.
+    // The least distance at which a large cube beyond the corner, along its diagonal, has no point in the
+    // volume but is not behind any of its planes.
     let cube = k[0] + outward * 1.0 + outward.signum() * large;
     assert!(volume.intersects_aabb(cube - large, cube + large));
     assert!(!fit.covers(fit.origin + DVec3::from(cube - outward.signum() * large)));
@@ -135,8 +135,8 @@ fn planes_past_the_count_hold_everything_and_a_full_volume_takes_no_more() {
 }
 
 proptest! {
-    /// A sphere lies in its box, and a box in the box around it: what is kept of the smaller is kept of the larger.
-    /// The larger one is enlarged by the rounding of its own corners.
+    /// A sphere lies in its box, and a box in the box around it: if the smaller shape is kept, so is the
+    /// larger one. The larger one is enlarged by the rounding of its own corners.
     #[test]
     fn tests_of_spheres_and_oriented_boxes_agree_with_those_of_the_boxes_around_them(
         kind in any_kind(), direction in any_direction(), axis in any_direction(), turn in float(0.0, 3.0),
@@ -167,7 +167,7 @@ proptest! {
         }
     }
 
-    /// Moving by whole metres and back shifts planes by the rounding of their distance only.
+    /// Moving by whole metres and back shifts planes only by the rounding of their distance.
     #[test]
     fn a_moved_volume_is_the_same_one(
         kind in any_kind(), direction in any_direction(), (x, y, z) in (-1000..1000_i32, -1000..1000_i32, -1000..1000_i32),
@@ -178,7 +178,7 @@ proptest! {
         let moved = volume.relative_to(volume.origin + offset);
         prop_assert_eq!(volume.relative_to(volume.origin), volume);
         let centre = Vec3::new(a, b, c);
-        // Rounding of both tests, of the planes' move, and of the moved centre: 1e-6 of 2,000 m a piece.
+        // Rounding of both tests, of the planes' move, and of the moved centre: 1e-6 of 2,000 m each.
         let tolerance = 0.01;
         let centre_moved = (centre.as_dvec3() - offset).as_vec3();
         if volume.intersects_sphere(centre, radius) {

@@ -1,6 +1,5 @@
-//! No caster that casts a shadow into view is lost: every point of a caster's box that stands
-//! between the light and a visible point of a receiver lies in the map's depth range, and its box
-//! survives culling.
+//! Every caster with a visible shadow is kept: each point of a caster's box between the light and a visible
+//! receiver point is inside the map's depth range, and the box survives culling.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -12,15 +11,15 @@ use crate::scenes::{
 };
 use crate::support::{ShaderDepths, apply, cases, double};
 
-/// A box around a point on the way from the light to what is seen.
+/// A box around a point on the way from the light to a visible point.
 #[derive(Clone, Copy, Debug)]
 struct CasterPlan {
-    /// Which visible point it shades.
+    /// Number of the visible point that it shades.
     which: usize,
-    /// How far it stands before that point, and its half extents, in view depths (log10).
+    /// Its distance before that point, and its half extents, in view depths (log10).
     before: f64,
     half: [f64; 3],
-    /// Where in the box the light's ray passes, -1..1 of the half extents.
+    /// Where the light's ray passes through the box, -1..1 of the half extents.
     at: [f64; 3],
 }
 
@@ -59,7 +58,7 @@ impl CasterPlan {
     }
 }
 
-/// Distances toward the light at which the way from a point enters and leaves a box.
+/// Returns the distances toward the light at which the ray from a point enters and leaves a box.
 fn crossing(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (0.0_f64, f64::MAX);
     for axis in 0..3 {
@@ -77,16 +76,16 @@ fn crossing(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<(f64, f64)> {
     (enter <= leave).then_some((enter, leave))
 }
 
-/// Fails unless all of a caster that shades a point is in the map. `points` and boxes are relative
-/// to the eye, which is the fit's origin.
+/// Asserts that a caster that shades a point is completely in the map. `points` and boxes are relative to the
+/// eye, which is the fit's origin.
 fn assert_kept(fit: &LightProjection, point: DVec3, casters: &[Aabb], to_light: DVec3) {
     for aabb in casters {
         let Some((enter, leave)) = crossing(point, to_light, aabb) else { continue };
         for t in [enter, (enter + leave) * 0.5, leave] {
             let p = point + to_light * t;
             let depth = apply(&fit.uv_from_world, p.as_vec3()).z;
-            // Near and far plane have room for the rounding of what is covered; a caster's own
-            // distance is rounded by 2⁻²⁴ in each of up to eight steps of a shader.
+            // Near and far plane have a margin for the rounding of covered points. A caster's own distance is
+            // rounded by 2⁻²⁴ in each of up to eight steps of a shader.
             let slack = 8.0 / 16_777_216.0 * (1.0 + p.length() / f64::from(fit.depth_range)) as f32;
             assert!((-slack..=1.0 + slack).contains(&depth), "depth {depth} of {p} for {point}");
         }
@@ -94,7 +93,7 @@ fn assert_kept(fit: &LightProjection, point: DVec3, casters: &[Aabb], to_light: 
     }
 }
 
-/// A scene of receivers and casters that shade some of what is seen of them, relative to the eye.
+/// A scene of receivers, and casters that shade some of their visible points, relative to the eye.
 struct Stage {
     receivers: Vec<Aabb>,
     casters: Vec<Aabb>,
@@ -158,8 +157,7 @@ proptest! {
         }
     }
 
-    /// Boxes stand still in the world while the camera goes on; everything is handed in anew
-    /// relative to the eye.
+    /// Boxes do not move in the world while the camera does. All inputs are passed again relative to the eye.
     #[test]
     fn several_maps_keep_all_casters_that_shade_what_is_seen(
         view in any_view(), boxes in solid_boxes(), casters in prop::collection::vec(any_caster(), 1..6),

@@ -1,4 +1,4 @@
-//! Clusters hold their triangles, keep their limit and tell of their normals nothing that is untrue.
+//! Clusters contain their triangles, obey their limit, and their normal cones are never wrong.
 
 use std::collections::HashMap;
 
@@ -25,7 +25,7 @@ fn triangle() -> impl Strategy<Value = Triangle> {
         .prop_map(|(middle, size, flat, corners)| corners.map(|corner| middle + corner * flat * size))
 }
 
-/// Up to six objects of up to 60 triangles each, some without any.
+/// Up to six objects of up to 60 triangles each, some of them empty.
 fn objects() -> impl Strategy<Value = Vec<Vec<Triangle>>> {
     vec(vec(triangle(), 0..60), 0..6)
 }
@@ -34,7 +34,7 @@ fn slices(objects: &[Vec<Triangle>]) -> Vec<&[Triangle]> {
     objects.iter().map(Vec::as_slice).collect()
 }
 
-/// A bowl of `n` by `n` quads, one metre each.
+/// Returns a bowl of `n` by `n` quads, one metre each.
 fn bowl(n: usize) -> Vec<Triangle> {
     let at = |x: usize, z: usize| Vec3::new(x as f32, (x * x + z * z) as f32 * 0.05, z as f32);
     let quad = |x, z| {
@@ -44,19 +44,19 @@ fn bowl(n: usize) -> Vec<Triangle> {
     (0..n * n).flat_map(|i| quad(i % n, i / n)).collect()
 }
 
-/// Numbers to compare bit by bit.
+/// Returns all numbers of the clusters, for comparing them bit by bit.
 fn bits(clusters: &Clusters) -> Vec<u32> {
     let boxes = clusters.boxes().iter().flat_map(|b| [b.min.to_array(), b.max.to_array()]).flatten();
     let cones = clusters.cones().iter().flat_map(|c| c.axis.extend(c.cos_half_angle).to_array());
     boxes.chain(cones).map(f32::to_bits).collect()
 }
 
-/// Cubic metres in all boxes.
+/// Returns the total volume of all boxes, in cubic metres.
 fn volume(clusters: &Clusters) -> f32 {
     clusters.boxes().iter().map(|b| (b.max - b.min).element_product()).sum()
 }
 
-/// The clusters of each triangle.
+/// Returns the clusters of each triangle.
 fn owners(clusters: &Clusters) -> HashMap<(u32, u32), Vec<usize>> {
     let mut owners: HashMap<_, Vec<usize>> = HashMap::new();
     for cluster in 0..clusters.boxes().len() {
@@ -67,14 +67,14 @@ fn owners(clusters: &Clusters) -> HashMap<(u32, u32), Vec<usize>> {
     owners
 }
 
-/// Whether places on the triangles, by two numbers in 0..1, lie in boxes of their clusters.
+/// Returns whether points on the triangles, given by two numbers in 0..1, lie in boxes of their clusters.
 fn holds_all(clusters: &Clusters, objects: &[Vec<Triangle>], places: &[(f64, f64)]) -> bool {
     let owners = owners(clusters);
     let keys =
         (0..).zip(objects).flat_map(|(o, triangles)| (0..).zip(triangles).map(move |(t, corners)| ((o, t), corners)));
     keys.into_iter().all(|(key, corners)| {
         let [a, b, c] = corners.map(Vec3::as_dvec3);
-        // Boxes of parts of a triangle may part by the rounding of f64.
+        // Boxes of parts of a triangle may have gaps of the rounding of f64.
         let error = 1e-12 * (a.length() + b.length() + c.length());
         places.iter().all(|&(u, v)| {
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
@@ -88,7 +88,7 @@ fn holds_all(clusters: &Clusters, objects: &[Vec<Triangle>], places: &[(f64, f64
     })
 }
 
-/// Places on a triangle: its corners, and others.
+/// Points on a triangle: its corners and random ones.
 fn places() -> impl Strategy<Value = Vec<(f64, f64)>> {
     vec((double(0.0, 1.0), double(0.0, 1.0)), 8)
         .prop_map(|others| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].into_iter().chain(others).collect())
@@ -182,7 +182,7 @@ fn boxes_go_with_an_object_that_is_moved() {
         // Coordinates below 128 m are rounded by a step of 2⁻¹⁷ m, and rounded out by another.
         assert!((a.min + offset).abs_diff_eq(b.min, 2e-5) && (a.max + offset).abs_diff_eq(b.max, 2e-5), "{a:?} {b:?}");
     }
-    // Without cuts the boxes are those of a fresh build.
+    // Without cuts, the boxes equal the boxes of a fresh build.
     let mut whole = Clusters::build(&[&there], 1).unwrap();
     whole.refit(&[&here]).unwrap();
     assert_eq!(bits(&whole), bits(&Clusters::build(&[&here], 1).unwrap()));

@@ -104,8 +104,8 @@ fn a_fit_is_measured_in_whole_texels_of_both_axes() {
 }
 
 proptest! {
-    /// Moving the origin rounds one translation to f32: 2⁻²⁴ of the distance between the origins
-    /// and of the box, seen against the box.
+    /// Moving the origin rounds one translation to f32: by 2⁻²⁴ of the distance between the origins and of
+    /// the box, relative to the box.
     #[test]
     fn another_origin_gives_the_same_clip_position(
         camera in any_camera(), direction in any_direction(), kind in any_kind(),

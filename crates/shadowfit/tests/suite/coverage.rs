@@ -1,8 +1,8 @@
-//! No holes: every point of a receiver that a camera sees lies in the map that its view depth
-//! chooses, with the filter's border around it, for every fit but the XNA sample's.
+//! No holes: every visible point of a receiver lies in the map that its view depth selects, with the filter's
+//! border around it. This holds for every fit except the XNA sample's.
 //!
-//! Points and matrices are f32, as in a shader. There is no tolerance: the fits leave room for
-//! that rounding.
+//! Points and matrices are f32, as in a shader. There is no tolerance: the fits include a margin for that
+//! rounding.
 
 use proptest::prelude::*;
 use shadowfit::demand::DepthHistogram;
@@ -15,13 +15,12 @@ use crate::scenes::{
 };
 use crate::support::{ShaderDepths, any_camera, apply, cases};
 
-/// A point of a view: position in the picture and share of the depth, and whether that is of log
-/// depth.
+/// A point of a view: position in the picture and share of the depth or of the log depth.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     place: [f64; 3],
     is_log: bool,
-    /// Which box the point is moved into, if any.
+    /// Number of the box that the point is moved into, if any.
     which: usize,
 }
 
@@ -31,7 +30,7 @@ fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
 }
 
 impl Sample {
-    /// World position relative to the eye of what the view sees here.
+    /// Returns the world position, relative to the eye, of this point of the view.
     fn in_view(&self, view: &SceneView, last: f64) -> DVec3 {
         let [x, y, z] = self.place;
         let (near, far) = (view.lens.near, view.lens.far.min(last));
@@ -39,7 +38,7 @@ impl Sample {
         view.point(x, y, depth.min(far))
     }
 
-    /// A point of a box, relative to the box's origin.
+    /// Returns a point of a box, relative to the box's origin.
     fn in_box(&self, aabb: &Aabb) -> DVec3 {
         let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
         min + (max - min) * DVec3::from_array(self.place)
@@ -50,7 +49,7 @@ fn holds(aabb: &Aabb, p: DVec3) -> bool {
     p.cmpge(aabb.min.as_dvec3()).all() && p.cmple(aabb.max.as_dvec3()).all()
 }
 
-/// Points that the view sees of receivers, relative to its eye.
+/// Returns the visible points of receivers, relative to the view's eye.
 fn seen(samples: &[Sample], view: &SceneView, receivers: Option<Boxes>, last: f64) -> Vec<DVec3> {
     let mut points: Vec<DVec3> = samples.iter().map(|sample| sample.in_view(view, last)).collect();
     if let Some(Boxes { origin, boxes }) = receivers {
@@ -62,7 +61,7 @@ fn seen(samples: &[Sample], view: &SceneView, receivers: Option<Boxes>, last: f6
     points
 }
 
-/// Fails unless the point lies in the map as a shader computes it, with the border around it.
+/// Asserts that the point lies in the map, computed as in a shader, with the border around it.
 fn assert_stored(fit: &LightProjection, border: f32, point: DVec3) {
     let local = (point - fit.origin).as_vec3();
     let uv = apply(&fit.uv_from_world, local);
@@ -73,14 +72,15 @@ fn assert_stored(fit: &LightProjection, border: f32, point: DVec3) {
     assert!((0.0..=1.0).contains(&uv.z), "depth {} for {local}, range {}", uv.z, fit.depth_range);
 }
 
-/// The map that a shader takes for a view depth, and the next one where they overlap.
+/// Returns the map that a shader selects for a view depth, and the next one where they overlap.
 fn chosen(maps: &[FittedMap], depth: f32) -> impl Iterator<Item = &FittedMap> {
     let first = maps.iter().position(|map| depth < map.far()).unwrap_or(maps.len() - 1);
     let next = maps.get(first + 1).filter(move |next| depth >= next.covered_from());
     [Some(&maps[first]), next].into_iter().flatten()
 }
 
-/// Unknown, no, one or many boxes, relative to the world's origin or to a point near the eye.
+/// No list of boxes, or a list of zero, one or many, relative to the world's origin or to a point near the
+/// eye.
 fn any_receivers() -> impl Strategy<Value = (Option<Vec<BoxPlan>>, bool)> {
     let boxes = prop_oneof![
         1 => Just(None),
@@ -111,7 +111,7 @@ fn scratch(boxes: usize, views: usize) -> Vec<DVec2> {
     vec![DVec2::ZERO; Scratch::required(boxes, views)]
 }
 
-/// Fits one frame and looks up what its views see.
+/// Fits one frame and looks up the visible points of its views.
 fn check_frame(
     fitter: &mut FitState,
     settings: &Technique,
@@ -154,7 +154,7 @@ proptest! {
         let input = FitInput { receivers: stage.receivers(), ..FitInput::new(&frusta, direction) };
         let mut storage = scratch(10, 1);
         let map = shadowfit::fit_scene(&input, &fit, &mut Scratch::new(&mut storage)).unwrap();
-        // Only one fit looks at receivers; the others store all that is in view.
+        // Only one fit uses receivers. The others store the whole view.
         let receivers = if fit.shape.kind == FitKind::Focused { stage.receivers() } else { None };
         let points = seen(&samples, &view, receivers, f64::from(fit.map.max_distance));
         prop_assert!(points.is_empty() || !map.is_empty);
@@ -183,8 +183,7 @@ proptest! {
         }
     }
 
-    /// The same through the camera of the crate, whose corners are rounded once, with depth ratios
-    /// up to 10,000.
+    /// Uses the crate's own camera, whose corners are rounded once, with depth ratios up to 10,000.
     #[test]
     fn several_maps_of_a_camera_store_what_it_sees(
         camera in any_camera(), plans in any_receivers(), direction in any_light(), settings in any_technique(),

@@ -1,4 +1,4 @@
-//! The demand grid: which cell a visible point counts in, by hand and at any scale.
+//! The demand grid: the cell of a visible point, computed by hand and at any scale.
 
 use proptest::prelude::*;
 use shadowfit::demand::{CELLS, DemandSpace, LEVELS, MIN_FACING, SIDE};
@@ -8,7 +8,7 @@ use shadowfit::{FitError, PerspectiveCamera};
 use crate::scenes::any_light;
 use crate::support::{any_camera, any_direction, cases, float};
 
-/// A light straight down; cells of a quarter of a metre for texels of 1/1024 to 2/1024 m.
+/// Returns a space under a vertical light, with cells of 1/4 m for texels of 1/1024 to 2/1024 m.
 fn space() -> DemandSpace {
     DemandSpace {
         origin: DVec3::ZERO,
@@ -20,7 +20,7 @@ fn space() -> DemandSpace {
     }
 }
 
-/// A point of level ground that moves by so many metres for a pixel.
+/// Returns the cell of a point on level ground that moves by `pixel` metres per pixel.
 fn on_ground(space: &DemandSpace, x: f32, z: f32, pixel: f32) -> Option<usize> {
     space.index(Vec3::new(x, -2.0, z), Vec3::Y, Vec3::X * pixel, Vec3::Z * pixel)
 }
@@ -41,20 +41,20 @@ fn points_count_in_the_cells_that_hand_finds() {
         // The outermost cells of level 0 end at 16 · 0.25 m = 4 m.
         ((3.99, 3.99, 0.0015), Some(index(0, 0, 31))),
         ((-3.99, -3.99, 0.0015), Some(index(0, 31, 0))),
-        // Beyond that a point counts as coarser: 5 m are 10 cells of 0.5 m.
+        // Beyond that, a point counts as coarser: 5 m are 10 cells of 0.5 m.
         ((5.0, 0.0, 0.0015), Some(index(1, 16, 26))),
-        // 100 m are 12.5 cells of 8 m, the first that reach as far: those of 4 m end at 64 m.
+        // 100 m are 12.5 cells of 8 m, the first cells that reach it: cells of 4 m end at 64 m.
         ((-100.0, 0.0, 0.0015), Some(index(5, 16, 3))),
-        // Nothing is finer than level 0, however near.
+        // Level 0 is the finest, at any distance.
         ((0.3, -0.6, 1e-6), Some(index(0, 18, 17))),
         ((0.3, -0.6, 0.0), Some(index(0, 18, 17))),
-        // Octaves: 1/1024 m is the first of level 0, 2/1024 the first of level 1 with its cells of 0.5 m.
+        // Octaves: level 0 begins at 1/1024 m, level 1 with its cells of 0.5 m at 2/1024 m.
         ((0.3, -0.6, 1.0 / 1024.0), Some(index(0, 18, 17))),
         ((0.3, -0.6, 1.999 / 1024.0), Some(index(0, 18, 17))),
         ((0.3, -0.6, 2.0 / 1024.0), Some(index(1, 17, 16))),
         ((0.3, -0.6, 3.9 / 1024.0), Some(index(1, 17, 16))),
         ((0.3, -0.6, 4.0 / 1024.0), Some(index(2, 16, 16))),
-        // Nothing is coarser than level 15, from 32 m, whose cells of 8192 m reach 131,072 m.
+        // Level 15 is the coarsest, from 32 m, and its cells of 8192 m reach 131,072 m.
         ((1e5, 0.0, 33.0), Some(index(15, 16, 28))),
         ((1e5, 0.0, 1e6), Some(index(15, 16, 28))),
         ((131_073.0, 0.0, 33.0), None),
@@ -71,12 +71,12 @@ fn the_finer_axis_of_the_texel_counts() {
     // 1.5 mm along x and 100 mm along z: the least singular value is the former.
     assert_eq!(count(Vec3::X * 0.0015, Vec3::Z * 0.1), Some(index(0, 16, 16)));
     assert_eq!(count(Vec3::X * 0.1, Vec3::Z * 0.0015), Some(index(0, 16, 16)));
-    // A square turned by 45° is as large as before: 0.003 √2 · √½ · … = 3 mm in both directions.
+    // A square turned by 45° keeps its size: 0.003 √2 · √½ · … = 3 mm in both directions.
     let half = 0.003 * core::f32::consts::FRAC_1_SQRT_2;
     assert_eq!(count(Vec3::new(half, 0.0, half), Vec3::new(-half, 0.0, half)), Some(index(1, 16, 16)));
-    // Along one line only, the other axis asks for any texel.
+    // The pixel moves the point along one line only, so the other axis needs no particular texel size.
     assert_eq!(count(Vec3::X, Vec3::X), Some(index(0, 16, 16)));
-    // What moves along the light does not move in the plane.
+    // Movement along the light does not count in the plane.
     assert_eq!(count(Vec3::new(0.0015, 9.0, 0.0), Vec3::new(0.0, -9.0, 0.0015)), Some(index(0, 16, 16)));
     // A plane whose second axis is twice as long halves the texel there: 2 · 0.8 mm.
     let space = DemandSpace { y: Vec3::NEG_Z * 2.0, ..space() };
@@ -169,8 +169,8 @@ proptest! {
         }
     }
 
-    /// The sixteen octaves end where a pixel of the far end does, and a cell is a quarter of the distance that its
-    /// level is made for, so that what is in view has a cell of its octave or hardly coarser.
+    /// The sixteen octaves end at the pixel size of the far end. A cell is a quarter of the distance for its
+    /// level, so visible points have a cell of their octave or a slightly coarser one.
     #[test]
     fn what_is_in_view_counts_by_its_octave(
         camera in any_camera(), direction in any_light(), (x, y) in (float(-1.0, 1.0), float(-1.0, 1.0)),
@@ -187,19 +187,20 @@ proptest! {
         let pixel = 2.0 * height / shadowfit::demand::PIXELS;
         let p = forward * depth + side * (x * height) + above * (y * height);
         let (a, b) = (space.x * pixel, space.y.normalize() * (pixel / space.y.length()));
-        // What lies farther away in the plane than twice the far end's distance may have none.
+        // Points farther away in the plane than twice the far end's distance may have no cell.
         let farthest = space.x.dot(p).abs().max(space.y.dot(p).abs());
         prop_assume!(farthest < 2.0 * camera.far);
         let index = space.index(p, -space.direction, a, b).expect("it has a cell");
         let level = (pixel / space.texel).log2();
-        // Rounding may choose the other side of an octave's end. In the corners of a picture, and where the plane's
-        // second axis is up to four times as long, points may be too far away for their level's cells.
+        // Rounding may select the other side of an octave's end. Points in the corners of a picture, or where
+        // the plane's second axis is up to four times longer, may be too far away for their level's cells.
         let (found, least) = ((index / (SIDE * SIDE)) as f32, level.floor().min((level - 1e-4).floor()));
         prop_assert!(found >= least.max(0.0) && found <= level.max(0.0) + 2.0, "level {found} for {level}");
     }
 }
 
-/// A lens's space for a camera that looks level along -z, under a sun at an elevation in degrees to the left.
+/// Returns a lens's space for a camera that looks level along -z, under a sun at an elevation in degrees to
+/// the left.
 fn space_of(fov_y: f32, elevation: f32) -> DemandSpace {
     let (eye, forward, up) = (DVec3::ZERO, Vec3::NEG_Z, Vec3::Y);
     let camera = PerspectiveCamera { eye, forward, up, fov_y, aspect: 16.0 / 9.0, near: 0.1, far: 500.0 };
@@ -207,8 +208,9 @@ fn space_of(fov_y: f32, elevation: f32) -> DemandSpace {
     DemandSpace::new(&camera.frustum().unwrap(), Vec3::new(cos, -sin, 0.0), up, f32::MAX).unwrap()
 }
 
-/// Octaves by which a point counts as coarser than it asks for, on average over an octave of view depths. The point is at
-/// shares of the view depth to the right and above, on a surface that faces the camera or the sun's side.
+/// Returns the mean number of octaves by which a point counts as too coarse, over an octave of view depths.
+/// The point is at shares of the view depth to the right and above, on a surface that faces the camera or the
+/// sun's side.
 fn octaves_too_coarse(fov_y: f32, elevation: f32, (right, above): (f32, f32), normal: Vec3) -> f32 {
     let space = space_of(fov_y, elevation);
     let octave = |i: u8| {
@@ -224,21 +226,21 @@ fn octaves_too_coarse(fov_y: f32, elevation: f32, (right, above): (f32, f32), no
     (0..8).map(octave).sum::<f32>() / 8.0
 }
 
-/// The least singular value of a matrix of these columns.
+/// Returns the least singular value of a matrix with these columns.
 fn least_singular_value([(ax, ay), (bx, by)]: [(f32, f32); 2]) -> f32 {
     let sum = ax * ax + ay * ay + bx * bx + by * by;
     let det = ax * by - ay * bx;
     ((sum - (sum * sum - 4.0 * det * det).max(0.0).sqrt()) * 0.5).sqrt()
 }
 
-/// A street's wall asks for texels a sixth as wide as its pixels under a sun 80 degrees high.
+/// A street's wall needs texels a sixth as wide as its pixels under a sun 80 degrees high.
 #[test]
 fn walls_under_a_high_sun_count_by_their_own_octave_or_the_next() {
     let coarser = octaves_too_coarse(0.9, 80.0, (0.4, 0.2), Vec3::NEG_X);
     assert!(coarser < 1.0, "{coarser} octaves too coarse");
 }
 
-/// The sides of a picture of 170 degrees lie twenty times as far from the eye as their view depth.
+/// The sides of a picture of 170 degrees are twenty times farther from the eye than their view depth.
 #[test]
 fn the_sides_of_a_wide_picture_count_by_their_own_octave_or_the_next() {
     let coarser = octaves_too_coarse(2.967, 45.0, (15.0, 5.0), Vec3::NEG_X);

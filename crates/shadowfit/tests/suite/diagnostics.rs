@@ -1,4 +1,4 @@
-//! Figures of a fit against numeric differentiation, other algorithms and cases known by hand.
+//! Figures of a fit compared with numeric differentiation, other algorithms and hand-computed cases.
 
 use proptest::prelude::*;
 use shadowfit::bias::{FilterRadius, normal_offset};
@@ -22,7 +22,7 @@ fn texel(fit: &LightProjection, p: DVec3) -> DVec2 {
     (fit.uv_from_world.as_dmat4() * p.extend(1.0)).truncate().truncate() * fit.resolution.as_dvec2()
 }
 
-/// ∂(pixel)/∂(texel) by central differences over the surface.
+/// Returns ∂(pixel)/∂(texel) by central differences over the surface.
 fn numeric(fit: &LightProjection, clip: &Mat4, point: DVec3, normal: DVec3, step: f64) -> DMat2 {
     let (a, b) = normal.any_orthonormal_pair();
     let difference = |f: &dyn Fn(DVec3) -> DVec2, t: DVec3| (f(point + t * step) - f(point - t * step)) / (2.0 * step);
@@ -30,7 +30,8 @@ fn numeric(fit: &LightProjection, clip: &Mat4, point: DVec3, normal: DVec3, step
     jacobian(&|p| pixel(clip, p)) * jacobian(&|p| texel(fit, p)).inverse()
 }
 
-/// Greatest stretch of a unit vector, by trying 3600 of them (off by at most 4e-7 of itself).
+/// Returns the greatest stretch of a unit vector, by trying 3600 of them (with an error of at most 4e-7 of
+/// itself).
 fn greatest_stretch(matrix: DMat2) -> f64 {
     (0..3600)
         .map(|i| (f64::from(i) * std::f64::consts::PI / 3600.0).sin_cos())
@@ -41,9 +42,9 @@ fn greatest_stretch(matrix: DMat2) -> f64 {
 proptest! {
     #![proptest_config(cases(256))]
 
-    /// Central differences over a thousandth of the distance err by its square, 1e-6, and the
-    /// search for the worse axis by 4e-7 (of the axis itself): 1e-4 leaves room for surfaces that
-    /// are nearly edge-on.
+    /// Central differences over a thousandth of the distance have an error of its square, 1e-6, and the
+    /// search for the worse axis of 4e-7 (of the axis itself): 1e-4 leaves a margin for surfaces that are
+    /// nearly edge-on.
     #[test]
     fn pixels_per_texel_equals_numeric_differentiation(
         camera in any_camera(), direction in any_direction(), kind in any_kind(), normal in any_direction(),
@@ -115,14 +116,14 @@ fn depth_steps_are_those_of_the_formats() {
     }
     assert_eq!(at(DepthStorage::Float32, 1.0), power(-24));
     assert_eq!(at(DepthStorage::Float32, 0.0), power(-126));
-    // The XNA sample's casters lie at depths up to 0.5, where half a step is the 0.00012 of its lore.
+    // The XNA sample's casters have depths up to 0.5, where half a step is its well-known 0.00012.
     assert!((depth_step_at(DepthStorage::Float16, 1.0, 0.499).unwrap() / 2.0 - 0.000_122).abs() < 1e-6);
     for storage in [DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32] {
         assert_eq!(depth_step(storage, 100.0), at(storage, 1.0), "the coarsest step is at the far end");
     }
 }
 
-/// A point at texture coordinates and a distance from the near plane, all 0..1 inside.
+/// Returns a point at texture coordinates and a distance from the near plane, all 0..1 inside.
 fn in_map(fit: &LightProjection, u: f64, v: f64, depth: f64) -> DVec3 {
     let corners = fit.corners().map(Vec3::as_dvec3);
     let edge = |i: usize, share: f64| (corners[i] - corners[0]) * share;
@@ -153,7 +154,7 @@ fn coverage_names_the_side_on_which_a_point_is_out() {
     }
 }
 
-/// Area of the convex hull of points, clipped to the unit square: Andrew's monotone chain, then
+/// Returns the area of the convex hull of points, clipped to the unit square: Andrew's monotone chain, then
 /// Sutherland and Hodgman's clipping.
 fn clipped_hull_area(mut points: Vec<DVec2>) -> f64 {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -196,7 +197,7 @@ proptest! {
         shared in prop::collection::vec((double(-0.5, 1.5), double(-0.5, 1.5)), 0..24), grid in any::<bool>(),
     ) {
         let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
-        // Many points in line and at the same places, or none.
+        // With `grid`, many points are collinear or equal.
         let round = |x: f64| if grid { (x * 4.0).round() / 4.0 } else { x };
         let points: Vec<Vec3> =
             shared.iter().map(|(u, v)| (in_map(&fit, round(*u), round(*v), 0.3) - fit.origin).as_vec3()).collect();
@@ -233,7 +234,7 @@ fn shares_of_the_map_that_are_known_by_hand() {
     assert!(share(&[(2.0, 0.0), (3.0, 0.0), (2.0, 1.0)]) < 1e-6, "outside of the map nothing counts");
 }
 
-/// With exactly what the plane needs, hardware's share and the precision are all that is missing.
+/// If the bias is exactly the plane's need, only the hardware's share and the precision are missing.
 #[test]
 fn the_acne_margin_is_what_is_given_less_what_the_plane_needs() {
     let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb).with_resolution(UVec2::new(2048, 1024)));

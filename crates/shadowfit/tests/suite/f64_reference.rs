@@ -1,4 +1,5 @@
-//! f32 results against a chain in f64 that rounds nothing: from the published box on, and from the camera on.
+//! Compares f32 results with an f64 computation without rounding: from the published box, and from the
+//! camera.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec3, DVec4, Vec3, Vec4};
@@ -7,7 +8,7 @@ use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera};
 
 use crate::support::{any_camera, any_direction, double, exact, fitted};
 
-/// Rounding of f32, as a share.
+/// Relative rounding error of f32.
 const EPSILON: f64 = 1.0 / 16_777_216.0;
 
 fn any_depth() -> impl Strategy<Value = DepthConvention> {
@@ -20,14 +21,14 @@ fn any_fit() -> impl Strategy<Value = FitKind> {
     prop_oneof![Just(XnaSample), Just(FrustumAabb), Just(Oriented), Just(Sphere), Just(Focused)]
 }
 
-/// Clip depth at a share of the depth range behind the near plane, and its change over that range.
+/// Returns clip depth at the near plane, and its change over the depth range.
 fn depth_terms(depth: DepthConvention) -> (f64, f64) {
     let near = f64::from(depth.near());
     (near, f64::from(depth.far()) - near)
 }
 
-/// Clip position of a position relative to the fit's origin, by the published axes, box and depth range, and the sum
-/// of the magnitudes that it is made of.
+/// Returns the clip position of a position relative to the fit's origin, computed from the published axes,
+/// box and depth range, and the sum of the magnitudes of its terms.
 fn from_box(fit: &LightProjection, p: DVec3) -> (DVec3, DVec3) {
     let m = fit.light_from_world;
     let (min, max) = (fit.box_min.as_dvec3(), fit.box_max.as_dvec3());
@@ -44,13 +45,13 @@ fn from_box(fit: &LightProjection, p: DVec3) -> (DVec3, DVec3) {
     (clip, DVec3::new(x.1 / half.x, y.1 / half.y, near.abs() + change.abs() * (max.z.abs() + z.1) / range))
 }
 
-/// An f32 matrix times a point, in f64.
+/// Returns an f32 matrix times a point, in f64.
 fn applied(fit: &LightProjection, p: DVec3) -> DVec3 {
     let clip: DVec4 = fit.clip_from_world.as_dmat4() * p.extend(1.0);
     clip.truncate()
 }
 
-/// Corners of a camera's frustum relative to its eye, from its numbers alone.
+/// Returns the corners of a camera's frustum relative to its eye, computed from its fields.
 fn corners(camera: &PerspectiveCamera) -> [DVec3; 8] {
     let forward = camera.forward.as_dvec3().normalize();
     let right = forward.cross(camera.up.as_dvec3()).normalize();
@@ -64,14 +65,15 @@ fn corners(camera: &PerspectiveCamera) -> [DVec3; 8] {
     })
 }
 
-/// World to light axes: those of a light straight down, turned by the shortest arc.
+/// Returns the matrix from world to light axes: the axes of a vertical light, turned by the shortest arc.
 fn light_axes(direction: Vec3) -> DMat3 {
     let turn = DQuat::from_rotation_arc(DVec3::NEG_Y, direction.as_dvec3().normalize());
     DMat3::from_cols(turn * DVec3::X, turn * DVec3::NEG_Z, turn * DVec3::Y).transpose()
 }
 
 proptest! {
-    /// Box, depth range and scales are rounded once each, and the product of two of them once more: four steps.
+    /// Box, depth range and scales are rounded once each, and the product of two of them once more: four
+    /// steps.
     #[test]
     fn matrices_say_what_axes_and_box_say(
         camera in any_camera(),
@@ -88,16 +90,17 @@ proptest! {
         prop_assert!(error.cmple(bound).all(), "{error} of {bound}");
     }
 
-    /// The frustum's corners reach the sides of the map, up to the rounding of f32 at their distance from the eye, as a
-    /// share of the map's extent, which is two: one of the corner and three of the axes, 28 that the fit adds on each
-    /// side against them (of the extent too, and of the depth twice), and the four above.
+    /// The frustum's corners reach the sides of the map, up to the rounding of f32 at their distance from the
+    /// eye, as a share of the map's extent, which is two. The steps are: one of the corner, three of the
+    /// axes, 28 that the fit adds on each side against them (of the extent too, and twice for the depth), and
+    /// the four above.
     #[test]
     fn a_fit_is_the_same_when_nothing_is_rounded(
         camera in any_camera(),
         direction in any_direction(),
         depth in any_depth(),
     ) {
-        // Straight up is the one direction that the axes do not turn through.
+        // Straight up is the only direction without a shortest arc.
         prop_assume!(direction.y < 0.999);
         let fit = fitted(&camera, direction, &exact(FitKind::FrustumAabb).with_depth(depth));
         let (corners, axes) = (corners(&camera), light_axes(direction));

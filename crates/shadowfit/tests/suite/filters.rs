@@ -1,20 +1,20 @@
-//! Filters as the texels that they read, simulated from their definitions.
+//! Filters as lists of the texels that they read, simulated from their definitions.
 
 use shadowfit::bias::FilterRadius;
 use shadowfit::glam::DVec2;
 use shadowfit::settings::{FilterKind, Softness};
 
-/// What one look-up of a filter reads.
+/// The texels of one look-up of a filter.
 #[derive(Clone, Copy)]
 pub(crate) enum LookUp {
     /// The nearest texel.
     Nearest,
-    /// The four around, those of zero weight left out.
+    /// The four nearest texels, without texels of zero weight.
     Bilinear,
 }
 
 impl LookUp {
-    /// Texels whose centres have a weight at a position in texels.
+    /// Returns the centres of the texels with a weight at a position, in texels.
     pub(crate) fn texels(self, at: DVec2) -> impl Iterator<Item = DVec2> {
         let first = match self {
             Self::Nearest => at.floor(),
@@ -32,7 +32,7 @@ impl LookUp {
     }
 }
 
-/// A filter: where it looks, relative to the sampled point in texels, and the reach that it has.
+/// A filter: the offsets of its look-ups from the sampled point, in texels, and its reach.
 pub(crate) struct Filter {
     pub(crate) name: &'static str,
     pub(crate) reach: FilterRadius,
@@ -41,7 +41,7 @@ pub(crate) struct Filter {
 }
 
 impl Filter {
-    /// Centres of all texels that it reads around a position, all in texels.
+    /// Returns the centres of all texels that it reads around a position, in texels.
     pub(crate) fn texels(&self, at: DVec2) -> impl Iterator<Item = DVec2> {
         self.offsets.iter().flat_map(move |offset| self.look_up.texels(at + *offset))
     }
@@ -52,7 +52,8 @@ impl Filter {
         Self { name, reach: FilterRadius::kernel(taps), look_up: LookUp::Bilinear, offsets }
     }
 
-    /// Look-ups spread evenly over a disc (H. Vogel, 1979), turned as they are from pixel to pixel.
+    /// Returns look-ups spread evenly over a disc (H. Vogel, 1979), in all rotations that occur from pixel to
+    /// pixel.
     fn vogel(name: &'static str, count: u8, radius: f32, turns: u8) -> Self {
         let turn = |turn: u8| {
             (0..count).map(move |i| {
@@ -64,7 +65,7 @@ impl Filter {
         Self { name, reach: FilterRadius::HARDWARE_2X2.over_disc(radius), look_up: LookUp::Bilinear, offsets }
     }
 
-    /// A kind of filter, with the widest disc that a softness allows.
+    /// Returns a kind of filter with the widest disc that a softness allows.
     pub(crate) fn of_kind(kind: FilterKind, softness: &Softness) -> Self {
         let one = |look_up| Self { name: "one", reach: kind.into(), look_up, offsets: vec![DVec2::ZERO] };
         let vogel = |count| Self::vogel("Vogel", count, softness.ceiling, 32);
@@ -80,7 +81,7 @@ impl Filter {
         }
     }
 
-    /// A disc: its rim, and as many look-ups inside.
+    /// Returns a disc: 32 look-ups on its rim and 32 inside.
     fn disc(name: &'static str, reach: FilterRadius, look_up: LookUp) -> Self {
         let radii = reach.disc.as_dvec2();
         let offsets = (0..64)
@@ -94,7 +95,7 @@ impl Filter {
     }
 }
 
-/// Every kind of filter, with reaches from half a texel to four.
+/// Returns every kind of filter, with reaches from half a texel to four.
 pub(crate) fn filters() -> Vec<Filter> {
     let one = |name, reach, look_up| Filter { name, reach, look_up, offsets: vec![DVec2::ZERO] };
     let ellipse = FilterRadius { disc: shadowfit::glam::Vec2::new(3.5, 1.2), ..FilterRadius::POINT };

@@ -33,7 +33,8 @@ fn an_orthographic_lens_without_a_height_is_refused_by_name() {
 }
 
 proptest! {
-    /// Corners, matrix and frustum of the matrix agree: each is rounded to f32 by 2⁻²⁴ of the distance from the eye.
+    /// Corners, matrix and frustum of the matrix agree: each is rounded to f32 by 2⁻²⁴ of the distance from
+    /// the eye.
     #[test]
     fn a_camera_of_either_lens_has_the_frustum_of_its_matrices(camera in any_camera(), height in float(0.01, 100.0)) {
         let perspective = Camera::from(camera);
@@ -59,8 +60,8 @@ proptest! {
         }
     }
 
-    /// Corners are rounded to f32 once for the frustum and once for its slice, each by 2⁻²⁴ of
-    /// their distance; for a slice near the eye the far corner's rounding shrinks with it.
+    /// Corners are rounded to f32 once for the frustum and once for its slice, each by 2⁻²⁴ of their
+    /// distance; for a slice near the eye the far corner's rounding shrinks with it.
     #[test]
     fn a_slice_is_the_frustum_of_a_camera_with_those_planes(
         camera in any_camera(), (a, b) in (float(0.0, 1.0), float(0.0, 1.0)),

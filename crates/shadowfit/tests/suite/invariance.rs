@@ -1,4 +1,4 @@
-//! What moving, scaling and turning the world leaves as it was.
+//! Properties of fits that stay unchanged when the world is moved, scaled or turned.
 
 use proptest::prelude::*;
 use shadowfit::PerspectiveCamera;
@@ -7,7 +7,7 @@ use shadowfit::settings::FitKind;
 
 use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, cases, double, exact, fitted, float};
 
-/// Texture coordinates of the frustum's own corners.
+/// Returns the texture coordinates of the frustum's own corners.
 fn corner_uvs(camera: &PerspectiveCamera, direction: Vec3, kind: FitKind) -> [Vec3; 8] {
     let fit = fitted(camera, direction, &exact(kind));
     camera.frustum().unwrap().corners.map(|c| apply(&fit.uv_from_world, c))
@@ -36,8 +36,8 @@ proptest! {
         prop_assert_eq!(here.uv_from_world, there.uv_from_world);
     }
 
-    /// The scaled distances are rounded to f32 anew (6e-8), seen from up to six box sizes away and
-    /// through an f32 matrix: as in the tightness tests, 1e-5.
+    /// The scaled distances are rounded to f32 again (6e-8), at up to six box sizes from the eye and through
+    /// an f32 matrix: 1e-5, as in the tightness tests.
     #[test]
     fn unit_scale_leaves_texture_coordinates_as_they_were(
         camera in any_camera(), direction in any_direction(), kind in any_kind(), exponent in float(-3.0, 3.0),
@@ -53,7 +53,7 @@ proptest! {
         prop_assert!(error < 1e-5, "{error:e}");
     }
 
-    /// Powers of two scale without rounding, so not one bit changes.
+    /// Powers of two scale without rounding, so no bit changes.
     #[test]
     fn power_of_two_scale_changes_no_bit_of_texture_coordinates(
         camera in any_camera(), direction in any_direction(), kind in any_kind(), exponent in -20_i32..20,
@@ -63,9 +63,9 @@ proptest! {
         prop_assert_eq!(corner_uvs(&camera, direction, kind), corner_uvs(&scaled, direction, kind));
     }
 
-    /// The turned vectors are rounded to f32 anew (6e-8 rad each for view, up and light). The
-    /// light's rounding turns the map by 6e-8 / sin θ about itself, θ its angle to the vertical;
-    /// with sin θ > 0.1 and corners six box sizes away that is below 1e-5.
+    /// The turned vectors are rounded to f32 again (6e-8 rad each for view, up and light). The light's
+    /// rounding turns the map by 6e-8 / sin θ about itself, θ its angle to the vertical; with sin θ > 0.1 and
+    /// corners six box sizes away that is below 1e-5.
     #[test]
     fn turning_camera_and_light_about_up_leaves_xna_texture_coordinates_as_they_were(
         camera in any_camera(), direction in any_direction(), angle in double(0.0, 6.3),
@@ -79,8 +79,8 @@ proptest! {
         prop_assert!(error < 3e-5, "{error:e}");
     }
 
-    /// A quarter turn is exact in f32, so only the order of sums differs; the shortest arc's axes
-    /// stay behind by that quarter, which exchanges u and v: (u, v) -> (v, 1 - u).
+    /// A quarter turn is exact in f32, so only the order of sums differs. The shortest arc's axes do not turn
+    /// with it, which exchanges u and v: (u, v) -> (v, 1 - u).
     #[test]
     fn quarter_turns_about_up_exchange_the_axes_of_the_aabb_fit(
         camera in any_camera(), direction in any_direction(),
@@ -96,8 +96,8 @@ proptest! {
         }
     }
 
-    /// The shortest arc turns the roll by at most tan(α/2) times the light's own turn, α being its
-    /// angle from straight down; at 150° that is 3.7, and the axes' tilt adds one.
+    /// The shortest arc turns the roll by at most tan(α/2) times the light's own turn, α being its angle from
+    /// straight down; at 150° that is 3.7, and the axes' tilt adds one.
     #[test]
     fn aabb_axes_turn_continuously_with_the_light(a in any_direction(), b in any_direction(), step in float(1e-4, 1e-2)) {
         prop_assume!(a.y < 0.86 && a.cross(b).length() > 0.1);

@@ -1,4 +1,4 @@
-//! A held light keeps its bits, steps when it must, and fades without a jump.
+//! A held light keeps its bits, steps when necessary, and fades without a jump.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
@@ -11,14 +11,14 @@ use crate::support::{DIRECTION, camera, double, exact, fitted};
 /// One texel at the edge of a map of 2048.
 const SETTINGS: LightSteps = LightSteps { texels: 1.0, extent: 2048.0, fade: 0.0 };
 
-/// A sun that circles the vertical: its direction at an angle, in radians.
+/// Returns the direction of a sun on a circle around the vertical, at an angle in radians.
 fn sun(angle: f64) -> Vec3 {
     (DVec3::new(angle.cos(), 0.0, angle.sin()) - DVec3::Y).normalize().as_vec3()
 }
 
-/// Angle of the circle for a turn of the light that moves the edge by the given texels.
+/// Returns the angle on the circle for a turn of the light that moves the edge by the given texels.
 fn texels(texels: f64) -> f64 {
-    // The sun stands at 45°, so its direction turns by 1/√2 of the circle's angle.
+    // The sun is at an elevation of 45°, so its direction turns by 1/√2 of the circle's angle.
     texels * SETTINGS.angle().unwrap() * std::f64::consts::SQRT_2
 }
 
@@ -54,7 +54,7 @@ fn a_day_has_as_many_steps_as_its_turn_has_texels() {
             directions.push(step.direction);
         }
     }
-    // 1000 texels, and a step of 0.01 to find out each time.
+    // 1000 texels, with an overshoot of up to 0.01 in each step.
     assert!((980..=1000).contains(&directions.len()), "{}", directions.len());
 }
 
@@ -76,7 +76,7 @@ fn a_fade_grows_from_zero_to_one_and_joins_the_steps_without_a_jump() {
     let mut last = steps.update(sun(0.0), &settings, 0.0).unwrap();
     let (mut begun, mut ended) = (0, 0);
     for i in 1..1000 {
-        // 0.02 texels a frame: a step every 51 frames, a fade of 31.
+        // 0.02 texels per frame: a step every 51 frames, a fade of 31.
         let step = steps.update(sun(texels(f64::from(i) * 0.02)), &settings, 1.0 / 60.0).unwrap();
         assert!((0.0..=1.0).contains(&step.blend), "{step:?}");
         match (last.previous, step.previous) {
@@ -144,7 +144,8 @@ fn an_error_leaves_the_state_as_it_was() {
     assert!(matches!(filled.update(DIRECTION, &SETTINGS, 0.1), Err(FitError::NotFinite { .. })));
 }
 
-/// Texels by which a world point moves across the map when the light turns, the map's middle held.
+/// Returns by how many texels a world point moves across the map when the light turns, relative to the map's
+/// middle.
 fn movement(from: &LightProjection, to: &LightProjection, point: Vec3) -> f64 {
     let at = |fit: &LightProjection| {
         let m = fit.light_from_world.as_dmat4();
@@ -154,7 +155,7 @@ fn movement(from: &LightProjection, to: &LightProjection, point: Vec3) -> f64 {
 }
 
 proptest! {
-    /// The bound is linear in the angle; a thousandth of a radian squared is left to it.
+    /// The bound is linear in the angle. The tolerance allows for a thousandth of a radian squared.
     #[test]
     fn no_point_of_the_box_moves_by_more_than_the_extent_says(
         azimuth in double(0.0, 6.3), elevation in double(0.01, 1.57), (along, up) in (double(-1e-3, 1e-3), double(-1e-3, 1e-3)),

@@ -1,4 +1,5 @@
-//! Facts that the core keeps, by subject. Tolerances are relative and justified where they stand.
+//! Tests of the core's guarantees, by subject. Tolerances are relative, and a comment next to each one
+//! justifies it.
 
 mod automatic_bias;
 mod bad_input;

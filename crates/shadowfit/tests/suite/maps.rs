@@ -1,4 +1,4 @@
-//! Several maps for one view: where they are split, what they say of themselves, what is held.
+//! Several maps for one view: their splits, their fields, and the values that are held.
 
 use proptest::prelude::*;
 use shadowfit::BoundSource;
@@ -37,7 +37,7 @@ fn kept(kind: FitKind, splits: SplitScheme, count: u32, stabilise: Stabilise) ->
     sliced(&fit, Cascades { count, splits, selection, stabilise, ..Cascades::default() })
 }
 
-/// Ends of all maps but the last.
+/// Returns the ends of all maps except the last one.
 fn splits_of(maps: &[FittedMap]) -> Vec<f64> {
     maps[..maps.len() - 1].iter().map(|map| f64::from(map.far())).collect()
 }
@@ -54,8 +54,8 @@ fn assert_splits(maps: &[FittedMap], expected: impl Fn(f64) -> f64) {
 proptest! {
     #![proptest_config(cases(1000))]
 
-    /// Maps follow each other without a gap, reach from the near plane without an end, and begin
-    /// to cover before their range by the overlap's share of the range before.
+    /// Maps follow each other without a gap, from the near plane to infinity. Each map covers view depths
+    /// before its range by the overlap's share of the previous range.
     #[test]
     fn ranges_of_maps_ascend_without_gaps(view in any_view(), direction in any_light(), settings in any_technique()) {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
@@ -71,7 +71,7 @@ proptest! {
             let before = pair[1].near() - overlap * (pair[0].far() - pair[0].near());
             prop_assert!(pair[1].projection.is_empty || (pair[1].covered_from() - before).abs() <= 1e-6 * before.abs());
         }
-        // Maps without a range are chosen by no depth.
+        // No depth selects a map without a range.
         for depth in [views[0].near, views[0].far, 0.5 * (views[0].near + views[0].far)] {
             let chosen = maps.iter().find(|map| depth < map.far()).unwrap();
             prop_assert!(chosen.near() < chosen.far());
@@ -92,8 +92,8 @@ proptest! {
         assert_splits(&at(SplitScheme::Practical(lambda)), |s| l * logarithmic(s) + (1.0 - l) * uniform(s));
     }
 
-    /// The first map of a scheme around boxes still begins at the near plane, and the splits are
-    /// spread over what is seen of the boxes.
+    /// With a scheme that uses boxes, the first map still begins at the near plane, and the splits are spread
+    /// over the visible parts of the boxes.
     #[test]
     fn splits_are_spread_over_the_depths_of_receivers(count in 2..=8_u32, near in crate::support::float(5.0, 20.0)) {
         let views = [ahead()];
@@ -121,7 +121,7 @@ proptest! {
         }
     }
 
-    /// While nothing moves nothing changes, but that a held map says so.
+    /// While nothing moves, nothing changes, except the flag of a held map.
     #[test]
     fn maps_stay_bit_for_bit_while_nothing_moves(
         view in any_view(), direction in any_light(), settings in any_technique(),
@@ -141,9 +141,9 @@ proptest! {
         }
     }
 
-    /// By what they model, splits from boxes are no worse than logarithmic ones. Nothing is known of
-    /// receivers here, so every octave of depth counts alike. Splits lie on 64 bins, each of which
-    /// may cost its own width, and extents are estimated from 32 directions, which may cost 5%.
+    /// By their own model, splits from boxes are no worse than logarithmic ones. Without known receivers,
+    /// every octave of depth counts alike. Splits lie on 64 bins, each of which may cost its own width, and
+    /// extents are estimated from 32 directions, which may cost 5%.
     #[test]
     fn splits_by_content_are_no_worse_than_logarithmic_ones(
         camera in any_camera(), direction in any_direction(), count in 1..=6_u32,
@@ -151,7 +151,7 @@ proptest! {
     ) {
         let views = [camera.frustum().unwrap()];
         let input = FitInput::new(&views, direction);
-        // Of rectangles of least area the longer side, which counts here, is what it happens to be.
+        // For rectangles of least area, the longer side, which counts here, is arbitrary. So use squares.
         let square = |splits| squared(&settings(kind, splits, count));
         let measure = |splits| quantile(&fit_once(&input, &square(splits)), &views[0]);
         let (chosen, logarithmic) = (measure(SplitScheme::FromBoxes), measure(SplitScheme::Logarithmic));
@@ -160,18 +160,18 @@ proptest! {
     }
 }
 
-/// The same with square maps.
+/// Returns the technique with square maps.
 fn squared(technique: &Technique) -> Technique {
     let shape = technique.maps.shape().unwrap().with_rectangle(RectangleKind::MinimumSquare);
     technique.with_maps(technique.maps.with_shape(shape))
 }
 
-/// The quantile with another number of maps.
+/// Returns the quantile with another number of maps.
 fn error_of(input: &FitInput, settings: &Technique, count: u32) -> f64 {
     quantile(&fit_once(input, &settings.with_count(count)), &input.views[0])
 }
 
-/// 95% quantile of the wider texel side per view depth, over depths at even steps of their log.
+/// Returns the 95% quantile of the wider texel side per view depth, over depths at even steps of their log.
 fn quantile(maps: &[FittedMap], view: &ViewFrustum) -> f64 {
     let (near, far) = (f64::from(view.near).max(f64::from(view.far) / 65_536.0), f64::from(view.far));
     let mut errors: Vec<f64> = (0..1000)
@@ -185,7 +185,7 @@ fn quantile(maps: &[FittedMap], view: &ViewFrustum) -> f64 {
     errors[950]
 }
 
-/// A view from the origin along -z, 0.1 to 100 m.
+/// Returns a view from the origin along -z, 0.1 to 100 m.
 fn ahead() -> ViewFrustum {
     PerspectiveCamera {
         eye: DVec3::ZERO,
@@ -225,8 +225,8 @@ fn manual_splits_outside_of_what_is_shadowed_leave_maps_empty() {
     }
 }
 
-/// A histogram of a narrow band: nearly all pixels see it, so the map that they choose is made for
-/// them, and finer than by logarithmic splits.
+/// A histogram of a narrow band: nearly all pixels see it, so the map that they select is made for them, and
+/// finer than with logarithmic splits.
 #[test]
 fn a_histogram_with_one_narrow_band_splits_around_it() {
     let views = [ahead()];
@@ -246,12 +246,12 @@ fn a_histogram_with_one_narrow_band_splits_around_it() {
         let (chosen, map) = at(SplitScheme::FromHistogram);
         let (logarithmic, _) = at(SplitScheme::Logarithmic);
         assert!(chosen < logarithmic, "{kind:?}: {chosen} and {logarithmic}");
-        // It ends with the band, but for the few points that may be left out.
+        // It ends with the band, except for the few points that may be left out.
         assert!(map.far() > 18.0 && map.far() < 25.0, "{kind:?}: {}..{}", map.near(), map.far());
     }
 }
 
-/// Boxes at two depths: what lies between and beyond them gets no maps of its own.
+/// Boxes at two depths: the empty depths between and beyond them get no separate maps.
 #[test]
 fn splits_from_boxes_are_finer_where_boxes_are() {
     let views = [ahead()];
@@ -272,7 +272,7 @@ fn splits_from_boxes_are_finer_where_boxes_are() {
     }
 }
 
-/// Receivers end at 45 m, in front of the ends that are set for the second map and those behind it. Splits of spheres end
+/// Receivers end at 45 m, in front of the manual ends of the second and later maps. Splits of spheres end
 /// with the receivers.
 #[test]
 fn cascades_behind_all_receivers_begin_where_shadows_end() {
@@ -305,10 +305,10 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
         let third = 10.0_f32.cbrt();
         assert!(is_near(inner(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]), "{kind:?}");
         assert!(is_near(inner(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
-        // Bounds beyond the view are the view's own.
+        // Bounds beyond the view are clamped to the view.
         let whole = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Logarithmic, 3));
         assert!(is_near(inner(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near(), whole[2].near()]), "{kind:?}");
-        // A wall that is one depth all over.
+        // A wall at a single depth.
         let flat = fit_once(&bounds(5.0, 5.0), &settings(kind, SplitScheme::Logarithmic, 3));
         assert!(
             flat.iter().any(|map| map.near() <= 4.9 && map.far() > 4.9) && flat.iter().any(|map| map.far() >= 100.0)
@@ -321,7 +321,7 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     }
 }
 
-/// Held splits are made anew when the bounds have left them, and not before.
+/// Held splits are recomputed only after the bounds have left them.
 #[test]
 fn held_splits_follow_depth_bounds_that_leave_them() {
     let views = [ahead()];
@@ -341,7 +341,7 @@ fn held_splits_follow_depth_bounds_that_leave_them() {
 proptest! {
     #![proptest_config(cases(200))]
 
-    /// Nothing is known of receivers, so every octave of depth counts alike, as in [`quantile`].
+    /// Without known receivers every octave of depth counts alike, as in [`quantile`].
     #[test]
     fn the_fewest_maps_waste_no_more_than_they_may(
         camera in any_camera(), direction in any_direction(), count in 1..=6_u32, waste in 1.0_f32..8.0,
@@ -354,7 +354,7 @@ proptest! {
         let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Scratch::new(&mut storage)).unwrap();
         let found = fewest(waste);
         prop_assert!((1..=count).contains(&found) && fewest(1.0) >= found && fewest(100.0) <= found);
-        // Bins and directions are as coarse as for the splits, in both.
+        // Bins and directions cost the same as for the splits, in both.
         let bin = f64::from(camera.far / camera.near).powf(1.0 / 64.0);
         prop_assert!(error_of(&input, &settings, found) <= error_of(&input, &settings, count) * f64::from(waste) * bin * bin * 1.1, "{found} of {count}");
         if found > 1 {
@@ -382,7 +382,7 @@ fn no_receivers_give_empty_maps_and_no_error() {
     }
 }
 
-/// The lens zooms out of reach of held splits, and in again.
+/// The lens zooms beyond the held splits, and back.
 #[test]
 fn a_far_plane_that_comes_nearer_leaves_held_splits_without_error() {
     for kind in COVERING {
@@ -426,7 +426,7 @@ fn what_set_each_plane_is_named() {
         let expected = [Receivers, Receivers, Receivers, Receivers, Receivers, Casters];
         assert_eq!(bounds_from(&boxed, FitKind::Focused, casters), expected);
     }
-    // A floor under all that is seen: the view ends it to the sides, the floor itself below.
+    // A floor under the whole view: the view bounds it at the sides, the floor itself below.
     let floor = [Aabb::new(Vec3::new(-500.0, -2.0, -500.0), Vec3::new(500.0, -1.0, 500.0))];
     let floored = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &floor }), ..input };
     let by = bounds_from(&floored, FitKind::Focused, CasterPolicy::None);

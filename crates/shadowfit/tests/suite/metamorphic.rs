@@ -1,8 +1,9 @@
-//! What turning, mirroring, scaling and moving whole scenes, boxes included, does to a fit.
+//! Metamorphic tests: the effect on a fit of turning, mirroring, scaling and moving whole scenes, including
+//! boxes.
 //!
-//! The light's own axes are left out of what is compared where they are not part of the promise:
-//! rectangles that may turn are compared up to quarter turns and mirror images of the map, and
-//! where two rectangles are equally good by their cost alone.
+//! The light's own axes are not compared where they are not guaranteed. Rectangles that may turn are compared
+//! up to quarter turns and mirror images of the map. If two rectangles are equally good, only their costs are
+//! compared.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec3};
@@ -20,7 +21,7 @@ use crate::texel_phase::exact_texel;
 struct Scene {
     frustum: ViewFrustum,
     direction: Vec3,
-    /// Relative to the eye, so that moving the eye rounds none of them.
+    /// Relative to the eye, so that moving the eye does not change their rounding.
     receivers: Option<Vec<Aabb>>,
     casters: Vec<Aabb>,
 }
@@ -41,7 +42,7 @@ impl Scene {
         shadowfit::fit_scene(&input, settings, &mut Scratch::new(&mut storage)).unwrap()
     }
 
-    /// The scene seen through a linear map that takes boxes to boxes, or that has none to take.
+    /// Returns the scene under a linear map, which must map boxes to boxes if the scene has boxes.
     fn image(&self, map: DMat3) -> Self {
         let turned = |v: Vec3| (map * v.as_dvec3()).as_vec3();
         let boxed = |b: &Aabb| Aabb::new(turned(b.min).min(turned(b.max)), turned(b.min).max(turned(b.max)));
@@ -74,7 +75,7 @@ impl Scene {
         }
     }
 
-    /// Texture coordinates of the view's corners.
+    /// Returns the texture coordinates of the view's corners.
     fn uvs(&self, fit: &LightProjection) -> [Vec3; 8] {
         self.frustum.corners.map(|c| apply(&fit.uv_from_world, c))
     }
@@ -91,7 +92,7 @@ fn settings(kind: FitKind, rectangle: RectangleKind) -> FitSettings {
         .with_resolution(UVec2::splat(512))
 }
 
-/// One map on the world's grid.
+/// Returns a technique with one map on the world grid.
 fn snapped(fit: &FitSettings) -> Technique {
     Technique::default().with_maps(SingleMap { shape: fit.shape, stabilise: SNAP }).with_fit(fit.map)
 }
@@ -101,8 +102,8 @@ fn area(fit: &LightProjection) -> f64 {
     size.x * size.y
 }
 
-/// Rounding of corners and axes in f32, 2⁻²³ of the view's reach, as a share of the map's least
-/// extent: a map of a far small thing has all the more of it.
+/// Returns the rounding of corners and axes in f32, 2⁻²³ of the view's reach, as a share of the map's least
+/// extent. It is large for a map of a small distant object.
 fn rounding(scene: &Scene, fit: &LightProjection) -> f64 {
     let reach = scene.frustum.corners.iter().fold(0.0, |m: f64, c| m.max(c.as_dvec3().length()));
     reach / (fit.box_max - fit.box_min).as_dvec3().min_element() / 8_388_608.0
@@ -112,20 +113,20 @@ fn difference(a: [Vec3; 8], b: [Vec3; 8]) -> f32 {
     a.into_iter().zip(b).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
 }
 
-/// The eight symmetries of the square map.
+/// Returns the eight symmetries of the square map.
 fn symmetries(uv: Vec3) -> [Vec3; 8] {
     let (u, v, z) = (uv.x, uv.y, uv.z);
     let (s, t) = (1.0 - u, 1.0 - v);
     [(u, v), (v, s), (s, t), (t, u), (s, v), (u, t), (v, u), (t, s)].map(|(u, v)| Vec3::new(u, v, z))
 }
 
-/// Least difference of two maps' coordinates over the symmetries.
+/// Returns the least difference of two maps' coordinates over the symmetries.
 fn symmetric_difference(a: [Vec3; 8], b: [Vec3; 8]) -> f32 {
     (0..8).map(|i| difference(a.map(|uv| symmetries(uv)[i]), b)).fold(f32::MAX, f32::min)
 }
 
-/// Whether an outline has two rectangles that are within 1e-3 of the best: any pair of its points
-/// may give one a direction.
+/// Returns whether an outline has two rectangles within 1e-3 of the best cost. Any pair of its points may
+/// define a direction.
 fn is_ambiguous(points: &[DVec2]) -> bool {
     let cost = |axis: DVec2| {
         let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
@@ -148,7 +149,7 @@ fn is_ambiguous(points: &[DVec2]) -> bool {
     found.iter().any(|(cost, axis)| *cost <= best.0 * (1.0 + 1e-3) && is_turned(*axis))
 }
 
-/// Compares two fits that must be the same but for the map's symmetries.
+/// Compares two fits that must be equal up to the map's symmetries.
 fn assert_same_shape(a: (&Scene, &LightProjection), b: (&Scene, &LightProjection), rectangle: RectangleKind) {
     let ratio = area(a.1) / area(b.1);
     assert!((ratio - 1.0).abs() < 1e-5 + 8.0 * rounding(a.0, a.1), "areas differ by {ratio}");
@@ -173,7 +174,7 @@ fn any_fit_kind() -> impl Strategy<Value = FitKind> {
     prop::sample::select(COVERING.to_vec())
 }
 
-/// Rotations of the coordinate axes onto each other.
+/// Rotations that map the coordinate axes onto each other.
 fn any_quarter_turn() -> impl Strategy<Value = DMat3> {
     (0..6_usize, 0..4_usize).prop_map(|(side, turn)| {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
@@ -188,7 +189,7 @@ fn any_quarter_turn() -> impl Strategy<Value = DMat3> {
 proptest! {
     #![proptest_config(cases(2000))]
 
-    /// Rectangles that turn about the light know nothing of the world's axes.
+    /// Rectangles that turn about the light do not depend on the world's axes.
     #[test]
     fn a_rigid_motion_turns_the_oriented_fit_with_it(
         view in any_view(), direction in any_light(), axis in any_direction(), turn in double(0.0, 6.3),
@@ -201,7 +202,7 @@ proptest! {
         assert_same_shape((&here, &a), (&there, &b), rectangle);
     }
 
-    /// A box that bounds nothing leaves the fit to the frustum: the same bits.
+    /// A box that contains the whole view leaves the fit to the frustum.
     #[test]
     fn a_box_around_all_that_is_seen_changes_nothing(
         view in any_view(), direction in any_light(), rectangle in any_rectangle(),
@@ -210,7 +211,7 @@ proptest! {
         let reach = bare.frustum.corners.iter().fold(0.0_f32, |m, c| m.max(c.abs().max_element())) * 4.0;
         let boxed = Scene { receivers: Some(vec![Aabb::new(Vec3::splat(-reach), Vec3::splat(reach))]), ..bare.clone() };
         let (a, b) = (bare.fit(&settings(FitKind::Oriented, rectangle)), boxed.fit(&settings(FitKind::Focused, rectangle)));
-        // The clipped box's vertices are the frustum's own corners, blended once more in f64.
+        // The clipped box's vertices are the frustum's own corners, interpolated once more in f64.
         prop_assert!((area(&a) / area(&b) - 1.0).abs() < 1e-6);
         prop_assert!((a.depth_range / b.depth_range - 1.0).abs() < 1e-6);
         prop_assert_eq!(a.bounds_from, b.bounds_from);
@@ -224,18 +225,19 @@ proptest! {
     ) {
         let here = scene(&view, direction, boxes.as_deref());
         let there = here.image(turn);
-        // Casters seen edge-on are cut by an outline that is widened by rounding, at any height.
+        // Edge-on casters are clipped by an outline with a rounding margin, at any height, so leave them out.
         let settings = settings(FitKind::Focused, rectangle).with_casters(CasterPolicy::None);
         let (a, b) = (here.fit(&settings), there.fit(&settings));
         assert_same_shape((&here, &a), (&there, &b), rectangle);
         prop_assert_eq!(a.is_empty, b.is_empty);
-        // The light's axis in f32 differs by 1e-7; corners of orthographic views reach twice as far as they are deep.
+        // The light's axis in f32 differs by 1e-7. Corners of orthographic views are up to twice as far away
+        // as their depth.
         let reach = view.lens.far * 4.0;
         prop_assert!(f64::from((a.depth_range - b.depth_range).abs()) < 1e-5 * reach, "{} {}", a.depth_range, b.depth_range);
     }
 
-    /// Powers of two change no rounding: not one bit of what a shader reads differs, casters and
-    /// receivers included, and on the snapped grid neither.
+    /// Powers of two change no rounding: all bits that a shader reads stay equal, with casters, receivers and
+    /// the snapped grid.
     #[test]
     fn powers_of_two_scale_whole_scenes_without_a_trace(
         view in any_view(), direction in any_light(), boxes in any_boxes(), kind in any_fit_kind(),
@@ -249,7 +251,8 @@ proptest! {
         prop_assert_eq!(a.texel_size * 2.0_f32.powi(exponent), b.texel_size);
     }
 
-    /// Any other unit rounds each corner anew. Ties may turn the rectangle, so that area counts.
+    /// Any other unit rounds each corner differently. Ties may turn the rectangle, so only its area is
+    /// compared.
     #[test]
     fn any_unit_gives_the_same_texels(
         view in any_view(), direction in any_light(), rectangle in any_rectangle(), exponent in double(-3.0, 3.0),
@@ -264,8 +267,8 @@ proptest! {
         prop_assert!((ratio - 1.0).abs() <= 1e-6 + 4.0 * rounding(&here, &a), "{ratio}");
     }
 
-    /// Quantised extents are eighths of an octave, so a unit of 2^(k/8) scales them exactly,
-    /// unless the extent lies within rounding of a step.
+    /// Quantised extents are eighths of an octave, so a unit of 2^(k/8) scales them exactly, unless the
+    /// extent is within rounding of a step.
     #[test]
     fn an_eighth_of_an_octave_scales_snapped_maps_by_just_that(
         view in any_view(), direction in any_light(), eighths in -24_i32..24, kind in any_fit_kind(),
@@ -282,18 +285,18 @@ proptest! {
         let ratio = (texel(&here.scaled(scale as f32)) / texel(&here)).as_dvec2() / scale;
         let step = (1.0_f64 / 8.0).exp2();
         let is_one_step_off = |r: f64| (r * step - 1.0).abs() < 1e-6 || (r / step - 1.0).abs() < 1e-6;
-        // On a step rounding decides.
+        // On a step, rounding decides.
         prop_assume!(!is_one_step_off(ratio.x) && !is_one_step_off(ratio.y));
         prop_assert!((ratio - 1.0).abs().max_element() < 1e-6, "{ratio}");
     }
 
-    /// The shortest arc from straight down has x = +x and y = -z for a light straight down. The
-    /// mirror image in x turns the other way about: x' = -Mx, y' = My, so u becomes 1 - u. The
-    /// mirror image in z has x' = Mx, y' = -My, so v becomes 1 - v.
+    /// The shortest arc from straight down has x = +x and y = -z for a light straight down. The mirror image
+    /// in x turns the other way about: x' = -Mx, y' = My, so u becomes 1 - u. The mirror image in z has x' =
+    /// Mx, y' = -My, so v becomes 1 - v.
     #[test]
     fn mirror_images_mirror_the_map(
         view in any_view(), direction in any_direction(), boxes in any_boxes(),
-        // Look-at axes come from x alone: any upright mirror mirrors them in u.
+        // Look-at axes depend on x alone: any upright mirror mirrors them in u.
         (kind, in_z) in prop::sample::select(vec![
             (FitKind::XnaSample, false),
             (FitKind::FrustumAabb, false),
@@ -302,7 +305,7 @@ proptest! {
             (FitKind::Focused, true),
         ]),
     ) {
-        // Straight up and down the plan's own axes stand in for a shortest arc or an azimuth.
+        // Straight up and down, the plan's own axes replace a shortest arc or an azimuth.
         prop_assume!(direction.x.hypot(direction.z) > 1e-3);
         let here = scene(&view, direction, boxes.as_deref());
         let mirror = if in_z { DVec3::new(1.0, 1.0, -1.0) } else { DVec3::new(-1.0, 1.0, 1.0) };
@@ -312,13 +315,13 @@ proptest! {
         let expected = here.uvs(&a).map(|uv| {
             if in_z { Vec3::new(uv.x, 1.0 - uv.y, uv.z) } else { Vec3::new(1.0 - uv.x, uv.y, uv.z) }
         });
-        // Coordinates of corners that lie far outside of a small box's map are as large.
+        // Corners far outside a small box's map have large coordinates.
         let largest = expected.iter().fold(1.0_f32, |m, uv| m.max(uv.abs().max_element()));
         let error = difference(expected, there.uvs(&b)) / largest;
         prop_assert!(f64::from(error) < 1e-5 + 4.0 * rounding(&here, &a), "{error}");
     }
 
-    /// Reversal and range are of the stored depth alone.
+    /// Reversal and range affect only the stored depth.
     #[test]
     fn the_depth_convention_changes_depth_only(
         view in any_view(), direction in any_light(), boxes in any_boxes(), kind in any_fit_kind(),
@@ -339,8 +342,8 @@ proptest! {
         }
     }
 
-    /// Far from the world's origin, too, moving everything by the same way changes no bit of a fit
-    /// that has no grid.
+    /// Moving everything by the same offset changes no bit of a fit without a grid, also far from the world's
+    /// origin.
     #[test]
     fn translation_changes_no_bit_of_fits_around_boxes(
         view in any_view(), direction in any_light(), boxes in any_boxes(), rectangle in any_rectangle(),
@@ -372,14 +375,14 @@ proptest! {
         let a = snapped(&here);
         let [right, up] = [a.light_from_world.row(0), a.light_from_world.row(1)].map(|r| r.truncate().as_dvec3());
         let texel = exact_texel(&a, 0.0);
-        // The f32 axes are not quite of unit length or square, so the step is solved for.
+        // The f32 axes are not exactly orthonormal, so the step is solved for.
         let (xx, xy, yy) = (right.dot(right), right.dot(up), up.dot(up));
         let (s, t) = (texel.x * f64::from(i), texel.y * f64::from(j));
         let step = (right * (s * yy - t * xy) + up * (t * xx - s * xy)) / (xx * yy - xy * xy);
         let origin = here.frustum.origin + step;
         let b = snapped(&Scene { frustum: ViewFrustum { origin, ..here.frustum }, ..here.clone() });
         prop_assert_eq!(a.texel_size, b.texel_size);
-        // The map's middle is rounded to f32, and so is the view's position in f64, 1e-16 of it.
+        // The map's middle is rounded to f32, and the view's position to f64, by 1e-16 of it.
         let centre = |fit: &LightProjection| fit.light_from_world.w_axis.truncate().truncate().as_dvec2();
         let shift = ((centre(&b) - centre(&a)) / texel).abs().max_element();
         let rounding = 2e-7 * centre(&a).abs().max_element() / texel.min_element();

@@ -1,4 +1,4 @@
-//! Feature `mint`: what other maths crates hand over, and what they get.
+//! Feature `mint`: inputs from other maths crates, and outputs for them.
 
 use mint::{ColumnMatrix4, Point3, RowMatrix4, Vector3};
 use shadowfit::culling::{OrientedBox, Sphere};

@@ -1,5 +1,6 @@
-//! Views with tilted near planes: mirrors, water and portals, of all lenses and depth conventions. All that such a view
-//! shows lies in its frustum and in a map, with its casters, and the frustum is not much larger than that.
+//! Views with tilted near planes: mirrors, water and portals, with all lenses and depth conventions. The
+//! frustum contains the whole visible volume of such a view and is not much larger. The maps cover it, with
+//! its casters.
 
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
@@ -15,29 +16,29 @@ use shadowfit::{
 use crate::scenes::{Lens, SceneView, any_light, any_view};
 use crate::support::{any_direction, cases, double};
 
-/// A plane through a point of a view, on whose other side the eye lies.
+/// A plane through a point of a view. The eye is on its other side.
 #[derive(Clone, Copy, Debug)]
 struct TiltedPlane {
-    /// Unit normal away from the eye.
+    /// Unit normal, pointing away from the eye.
     normal: DVec3,
     /// Distance of the eye, in metres.
     distance: f64,
-    /// Factor of the clip depth: 1 puts the far plane at the farthest corner of the view.
+    /// Factor of the clip depth. With 1, the far plane touches the farthest corner of the view.
     scale: f64,
 }
 
-/// A view whose near plane is another.
+/// A view with a replaced near plane.
 #[derive(Clone, Copy, Debug)]
 struct Oblique {
     view: SceneView,
     plane: TiltedPlane,
-    /// Where shadows end, in metres.
+    /// Distance at which shadows end, in metres.
     distance: f32,
 }
 
 impl Oblique {
-    /// E. Lengyel's matrix, "Oblique view frustum depth projection and clipping", 2005, for any depth convention: clip
-    /// space from world axes relative to the eye.
+    /// Returns E. Lengyel's matrix, "Oblique view frustum depth projection and clipping", 2005, for any depth
+    /// convention: from world axes relative to the eye to clip space.
     fn clip_from_eye(&self) -> DMat4 {
         let matrix = self.view.clip_from_eye();
         let depth = self.view.lens.depth;
@@ -52,7 +53,8 @@ impl Oblique {
         rows.transpose()
     }
 
-    /// The corner of the far plane that lies farthest beyond the tilted plane; homogeneous.
+    /// Returns the corner of the far plane that is farthest beyond the tilted plane, in homogeneous
+    /// coordinates.
     fn farthest_corner(&self) -> DVec4 {
         let eye_from_clip = self.view.clip_from_eye().inverse();
         let clip_plane = eye_from_clip.transpose() * self.plane.normal.extend(-self.plane.distance);
@@ -60,7 +62,7 @@ impl Oblique {
         eye_from_clip * DVec4::new(clip_plane.x.signum(), clip_plane.y.signum(), far, 1.0)
     }
 
-    /// Whether the matrix turns the plane around, since no corner of the far plane lies beyond it.
+    /// Returns whether the matrix turns the plane around, since no corner of the far plane is beyond it.
     fn is_turned(&self) -> bool {
         self.plane.normal.extend(-self.plane.distance).dot(self.farthest_corner()) <= 0.0
     }
@@ -70,7 +72,7 @@ impl Oblique {
         ViewFrustum::from_world_from_clip_f64(&world_from_clip, self.view.eye, self.view.lens.depth, self.distance)
     }
 
-    /// Whether a point relative to the eye is in the picture, before the end of shadows.
+    /// Returns whether a point relative to the eye is in the picture and before the end of shadows.
     fn sees(&self, p: DVec3) -> bool {
         let clip = self.clip_from_eye() * p.extend(1.0);
         let (low, high) = match self.view.lens.depth {
@@ -85,7 +87,7 @@ impl Oblique {
             && p.dot(forward) <= f64::from(self.distance)
     }
 
-    /// Points of the picture relative to the eye, by shares of its width, its height and its depth.
+    /// Returns points of the picture relative to the eye, by shares of its width, its height and its depth.
     fn points(&self, shares: &[[f64; 3]]) -> Vec<DVec3> {
         let (least, most) = (self.view.lens.near * 0.1, f64::from(self.distance));
         let depth = |share: f64| least * (most / least).powf(share);
@@ -94,13 +96,13 @@ impl Oblique {
     }
 }
 
-/// Tilted planes that cut the view of a lens, as far away as a share of its depth.
+/// Tilted planes that cut the view of a lens, at a distance that is a share of its depth.
 fn any_plane() -> impl Strategy<Value = (Vec3, f64, f64)> {
     let scale = prop_oneof![3 => Just(1.0), 1 => double(0.4, 1.0)];
     (any_direction(), double(-3.0, -0.2).prop_map(|e| 10.0_f64.powf(e)), scale)
 }
 
-/// Views through tilted planes that show something.
+/// Views through tilted planes that leave something visible.
 fn any_oblique() -> impl Strategy<Value = Oblique> {
     (any_view(), any_plane(), double(0.3, 1.5))
         .prop_map(|(view, (normal, distance, scale), end)| {
@@ -109,7 +111,7 @@ fn any_oblique() -> impl Strategy<Value = Oblique> {
             Oblique { view, plane, distance: (view.lens.far * end) as f32 }
         })
         .prop_filter("the plane must leave some of the picture", |oblique| {
-            // What an orthographic view shows before a plane that faces it lies behind the camera.
+            // Before a plane that faces it, an orthographic view shows only points behind the camera.
             let is_ahead = view_is_ahead(oblique);
             is_ahead && !oblique.is_turned() && oblique.points(&grid(9)).len() > 12
         })
@@ -123,13 +125,13 @@ fn view_is_ahead(oblique: &Oblique) -> bool {
     lens.is_perspective || is_cut && plane.normal.dot(view.axes()[2]) > 0.02
 }
 
-/// Shares at even steps along all three axes.
+/// Returns shares at even steps along all three axes.
 fn grid(side: u32) -> Vec<[f64; 3]> {
     let at = |i: u32| f64::from(i) / f64::from(side - 1);
     (0..side.pow(3)).map(|i| [at(i % side), at(i / side % side), at(i / side / side)]).collect()
 }
 
-/// Whether a frustum holds a point relative to its eye, up to a share of its distance.
+/// Returns whether a frustum contains a point relative to its eye, up to a share of its distance.
 fn holds(frustum: &ViewFrustum, p: DVec3, tolerance: f64) -> bool {
     let depth = p.dot(frustum.forward.as_dvec3());
     let (near, far) = (f64::from(frustum.near), f64::from(frustum.far));
@@ -160,7 +162,8 @@ proptest! {
         }
     }
 
-    /// What an f32 matrix shows is what its elements say, whatever they were rounded from.
+    /// The elements of an f32 matrix define its picture, independent of the values that they were rounded
+    /// from.
     #[test]
     fn all_that_an_f32_matrix_shows_lies_in_its_frustum(
         oblique in any_oblique(), clip in prop::collection::vec([double(-1.0, 1.0), double(-1.0, 1.0), double(-1.0, 1.0)], 200),
@@ -168,7 +171,7 @@ proptest! {
         let Oblique { view, distance, .. } = oblique;
         let eye_from_clip = oblique.clip_from_eye().inverse().as_mat4();
         let Ok(frustum) = ViewFrustum::from_eye_from_clip(&eye_from_clip, view.eye, view.lens.depth, distance) else {
-            // The rounding of a far plane that hardly differs from the near one.
+            // The far plane hardly differs from the near plane, so it may be lost to rounding.
             return Ok(());
         };
         let is_symmetric = view.lens.depth == DepthConvention::NegativeOneToOne;
@@ -185,7 +188,7 @@ proptest! {
 proptest! {
     #![proptest_config(cases(64))]
 
-    /// By the view alone and by boxes, with every preset.
+    /// With and without boxes, for every preset.
     #[test]
     fn all_that_a_tilted_near_plane_leaves_is_in_a_map_with_its_casters(oblique in any_oblique(), direction in any_light()) {
         let (views, eye) = ([oblique.frustum().unwrap()], oblique.view.eye);
@@ -198,7 +201,7 @@ proptest! {
         };
         let casters: Vec<Aabb> = points.iter().map(|p| cube(*p + to_light * half * 7.0)).collect();
         let boxes: Vec<Aabb> = points.iter().map(|p| cube(*p)).chain(casters.iter().copied()).collect();
-        // The sample's map has no room for a filter.
+        // The XNA sample's map has no room for a filter.
         for preset in PRESETS.iter().filter(|preset| preset.name != "xna-1") {
             let technique = preset.technique().with_max_distance(oblique.distance);
             for known in [None, Some(Boxes { origin, boxes: &boxes })] {
@@ -235,7 +238,7 @@ fn assert_proven(input: &FitInput, maps: &FittedMaps, technique: &Technique) {
     }
 }
 
-/// Share of a frustum that its view shows, by points at even steps.
+/// Returns the share of a frustum that its view shows, by points at even steps.
 fn shown(oblique: &Oblique) -> f64 {
     const STEPS: u32 = 12;
     let frustum = oblique.frustum().unwrap();
@@ -266,7 +269,7 @@ fn frusta_are_not_much_larger_than_what_they_are_for() {
     assert!(tenth > 0.25 && quarter > 0.4 && half > 0.6, "{tenth} {quarter} {half}");
 }
 
-/// A camera over water that looks down by an angle, mirrored at the water.
+/// Returns a camera over water that looks down by an angle, mirrored at the water.
 fn mirrored(height: f64, pitch: f64) -> Oblique {
     let lens = Lens {
         is_perspective: true,
@@ -299,13 +302,13 @@ fn a_mirror_s_frustum_leaves_out_what_lies_under_the_water() {
     }
 }
 
-/// What is held from frame to frame depends on the lens and on where shadows begin.
+/// The state that is held from frame to frame depends on the lens and on the depth at which shadows begin.
 #[test]
 fn frusta_of_a_moving_mirror_mostly_keep_their_lens() {
     let lens = |i: u32| {
         let oblique = mirrored(3.0 + 0.2 * (f64::from(i) * 0.05).sin(), 0.3 + 0.02 * (f64::from(i) * 0.031).cos());
         let frustum = oblique.frustum().unwrap();
-        // Angles of the sides, to rounding, and the planes.
+        // The planes, and the angles of the sides up to rounding.
         let tangent = |c: usize| (frustum.corners[c].length() / frustum.far * 1e4).round();
         (frustum.near.to_bits(), frustum.far.to_bits(), [4, 5, 6, 7].map(tangent).map(f32::to_bits))
     };
@@ -313,7 +316,7 @@ fn frusta_of_a_moving_mirror_mostly_keep_their_lens() {
     assert!(changes <= 12, "{changes} of 400 frames");
 }
 
-/// Half a turn of a plane shows the eye's own side of it.
+/// A near plane that is turned by 180° shows the eye's own side of it.
 #[test]
 fn a_near_plane_that_faces_the_eye_is_refused_by_name() {
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne] {
@@ -323,7 +326,7 @@ fn a_near_plane_that_faces_the_eye_is_refused_by_name() {
             |matrix: DMat4, named| ViewFrustum::from_world_from_clip_f64(&matrix.inverse(), DVec3::ZERO, named, 200.0);
         let matrix = oblique.clip_from_eye();
         assert!(read(matrix, depth).is_ok());
-        // The plane turned around keeps its far plane.
+        // A plane that is turned around keeps its far plane.
         let mut rows = matrix.transpose();
         rows.z_axis = match depth {
             DepthConvention::Reversed => rows.w_axis * 2.0 - rows.z_axis,
@@ -360,7 +363,7 @@ fn planes_of_a_picture_that_cannot_be_divided_by_w_are_named() {
         let text = error.unwrap_err().to_string();
         assert!(text.contains(plane) && text.contains("changes its sign"), "{text}");
     }
-    // A keystone whose w stays positive.
+    // A keystone projection with positive w.
     let frustum = ViewFrustum::from_eye_from_clip(
         &with_w(0.4, 0.2, 1.0).as_mat4(),
         DVec3::ZERO,
@@ -370,14 +373,14 @@ fn planes_of_a_picture_that_cannot_be_divided_by_w_are_named() {
     assert_eq!(frustum.unwrap().forward, Vec3::Z);
 }
 
-/// A plane that is tilted far and an infinite lens leave some rays without an end.
+/// With a far-tilted plane and an infinite lens, some rays have no end.
 #[test]
 fn a_tilted_far_plane_at_infinity_needs_a_distance() {
     let oblique = Oblique { distance: f32::MAX, ..mirrored(2.0, 0.1) };
     assert_eq!(oblique.frustum(), Err(FitError::Endless));
 }
 
-/// All that is seen lies behind the end of shadows.
+/// All visible points are behind the end of shadows.
 #[test]
 fn a_mirror_beyond_the_shadows_is_an_empty_view() {
     let mut oblique = mirrored(100.0, 0.8);
@@ -403,7 +406,7 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
             let stored = |i: u32| {
                 let ndc = |i: u32, side: u32| (f64::from(i) + 0.5) / f64::from(side) * 2.0 - 1.0;
                 let (x, y) = (ndc(i % SIZE[0], SIZE[0]), -ndc(i / SIZE[0], SIZE[1]));
-                // Any two points of a ray tell its direction.
+                // Any two points of a ray give its direction.
                 let [a, b] = [0.2, 0.8].map(|z| world_from_clip * DVec4::new(x, y, z, 1.0));
                 let ray = (a.truncate() * b.w - b.truncate() * a.w).normalize();
                 let clip = clip_from_world * (ray * (wall / ray.z)).extend(1.0);
@@ -429,7 +432,8 @@ fn a_mirror_s_depth_buffer_is_counted_where_its_points_are() {
     }
 }
 
-/// A camera below the water's surface that looks down, and whose near plane shows only the things above the surface.
+/// A camera below the water's surface that looks down, with a near plane that leaves only the objects above
+/// the surface.
 #[test]
 fn a_plane_that_hides_the_whole_picture_leaves_an_empty_view() {
     let (tangent, pitch) = (DVec2::new(0.8, 0.5), 0.8_f64);

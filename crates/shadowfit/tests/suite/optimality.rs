@@ -1,5 +1,5 @@
-//! Fits that are defined as the least: compared with searches that know nothing of hulls, calipers or
-//! Welzl's construction.
+//! Fits that are defined as minimal, compared with brute-force searches without hulls, calipers or Welzl's
+//! construction.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Mat3, UVec2, Vec3};
@@ -9,7 +9,7 @@ use shadowfit::{LightProjection, ViewFrustum};
 use crate::scenes::{any_light, any_view, of_camera};
 use crate::support::{any_camera, any_direction, cases};
 
-/// Extents of points along a direction of the plane and across it.
+/// Returns the extents of points along a direction of the plane and across it.
 fn extents(points: &[DVec2], angle: f64) -> DVec2 {
     let (sin, cos) = angle.sin_cos();
     let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
@@ -20,7 +20,7 @@ fn extents(points: &[DVec2], angle: f64) -> DVec2 {
     max - min
 }
 
-/// Least cost of all angles: tried every 0.09°, then ever closer around the best of them.
+/// Returns the least cost of all angles: tried every 0.09°, then ever closer around the best of them.
 fn least(points: &[DVec2], cost: impl Fn(DVec2) -> f64) -> f64 {
     let (mut centre, mut best) = (0.0, f64::MAX);
     let mut step = std::f64::consts::FRAC_PI_2 / 1000.0;
@@ -39,7 +39,7 @@ fn least(points: &[DVec2], cost: impl Fn(DVec2) -> f64) -> f64 {
     best
 }
 
-/// Corners in the plane of a fit's own axes.
+/// Returns the corners in the plane of a fit's own axes.
 fn projected(fit: &LightProjection, frustum: &ViewFrustum) -> Vec<DVec2> {
     let axes = Mat3::from_mat4(fit.light_from_world).as_dmat3();
     frustum.corners.iter().map(|corner| (axes * corner.as_dvec3()).truncate()).collect()
@@ -56,8 +56,8 @@ fn oriented(frustum: &ViewFrustum, direction: Vec3, rectangle: RectangleKind) ->
     shadowfit::fit(frustum, direction, &settings).unwrap()
 }
 
-/// A fit may exceed the least by its room for rounding, 28 · 2⁻²⁴ of the reach on each side; a narrow
-/// view seen end-on is 1e-2 of its reach wide, so that this is 3e-4 of its width.
+/// Excess of a fit over the least one by its margin for rounding, 28 · 2⁻²⁴ of the reach on each side. The
+/// width of a narrow view seen end-on is 1e-2 of its reach, so that the margin is 3e-4 of its width.
 const TOLERANCE: f64 = 1e-3;
 
 fn assert_least_rectangles(frustum: &ViewFrustum, direction: Vec3) {
@@ -73,7 +73,7 @@ fn assert_least_rectangles(frustum: &ViewFrustum, direction: Vec3) {
     assert!((size.x - size.y).abs() <= 1e-6 * size.x, "{size} is no square");
 }
 
-/// The sphere through up to four points with its centre in their plane, by Cramer's rule.
+/// Returns the sphere through up to four points with its centre in their plane, by Cramer's rule.
 fn circumsphere(points: &[DVec3]) -> Option<(DVec3, f64)> {
     let a = points[0];
     let d: Vec<DVec3> = points[1..].iter().map(|p| *p - a).collect();
@@ -94,7 +94,7 @@ fn circumsphere(points: &[DVec3]) -> Option<(DVec3, f64)> {
     radius.is_finite().then_some((a + offset, radius))
 }
 
-/// Least radius of all spheres through two to four corners that hold the others.
+/// Returns the least radius of all spheres through two to four corners that contain the others.
 fn least_radius(corners: &[DVec3; 8]) -> f64 {
     let mut best = f64::MAX;
     for set in 1_u32..256 {

@@ -1,4 +1,4 @@
-//! Matrices of other code, taken as fits.
+//! Fits made from other code's matrices.
 
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings};
@@ -22,7 +22,7 @@ fn known(kind: FitKind, depth: DepthConvention) -> LightProjection {
     fit(&camera.frustum().unwrap(), DIRECTION, &settings).unwrap()
 }
 
-/// Clip space from world space, in f64.
+/// Returns the clip-from-world matrix in f64.
 fn world_matrix(fit: &LightProjection) -> DMat4 {
     fit.clip_from_world.as_dmat4() * DMat4::from_translation(-fit.origin)
 }
@@ -46,7 +46,7 @@ fn the_matrix_of_a_fit_gives_the_fit_back() {
                     .expect_err("its depth runs the other way");
             }
             assert_eq!((again.depth, again.resolution, again.origin), (depth, known.resolution, known.origin));
-            // Rows are normalised once more: a few roundings of the extent, of some 100 m.
+            // Rows are normalised once more: a few roundings of the extent, which is about 100 m.
             assert!(again.clip_from_world.abs_diff_eq(known.clip_from_world, 4e-6), "{again:?}\n{known:?}");
             assert!(again.uv_from_world.abs_diff_eq(known.uv_from_world, 4e-6));
             assert!(again.texel_size.abs_diff_eq(known.texel_size, 1e-6));

@@ -1,4 +1,4 @@
-//! The proof: what it proves of fits, and what it finds in broken ones.
+//! The coverage proof: it succeeds for correct fits and finds the holes of broken ones.
 
 use proptest::prelude::*;
 use shadowfit::bias::FilterRadius;
@@ -68,7 +68,8 @@ fn any_plans() -> impl Strategy<Value = Plans> {
 
 fn scene(plans: &Plans, camera: &PerspectiveCamera) -> Scene {
     let origin = if plans.2 { DVec3::ZERO } else { camera.eye.round() };
-    // Somewhere in the view, so that scenes of a wide range of depths are hit too.
+    // A centre inside the view and a scale between near and far, so that scenes with large depth ratios are
+    // hit too.
     let scale = f64::from(camera.near) * (f64::from(camera.far) / f64::from(camera.near)).sqrt() * 4.0;
     let centre = camera.eye - origin + camera.forward.as_dvec3() * scale * 0.5;
     let aabb = |plan: &Plan| {
@@ -76,7 +77,7 @@ fn scene(plans: &Plans, camera: &PerspectiveCamera) -> Scene {
         Aabb::new((middle - half).as_vec3(), (middle + half).as_vec3())
     };
     let receivers: Option<Vec<Aabb>> = plans.0.as_ref().map(|plans| plans.iter().map(aabb).collect());
-    // What receives also casts.
+    // All receivers are also casters.
     let casters = plans.1.iter().map(aabb).chain(receivers.iter().flatten().copied()).collect();
     Scene { receivers, casters, origin }
 }
@@ -126,7 +127,7 @@ fn any_technique() -> impl Strategy<Value = Technique> {
     })
 }
 
-/// The widest reach that a border is enough for.
+/// Returns the widest reach that the border allows.
 fn reach_of(settings: &MapSettings) -> FilterRadius {
     FilterRadius::taps(settings.border.unwrap_or(3.0) + 0.5)
 }
@@ -150,7 +151,8 @@ proptest! {
         prop_assert!(proof.is_proven(), "{proof:?}");
     }
 
-    /// What is proven holds for points that no clipping has found: f32 matrix times f32 position.
+    /// Checks that the proof also holds for sampled points, which no clipping produced: f32 matrix times f32
+    /// position.
     #[test]
     fn everything_seen_of_a_proven_box_is_inside(
         camera in any_camera(), plans in any_plans(), direction in any_direction(), fit in any_fit(),
@@ -163,7 +165,7 @@ proptest! {
         let mut storage = storage(scene.len());
         let mut scratch = Scratch::new(&mut storage);
         let mut map = shadowfit::fit_scene(&input, &fit, &mut scratch).unwrap();
-        // Shift the map by up to a tenth: most of these have holes, and the others must have none.
+        // Shift the map by up to a tenth. Most of these maps have holes, and the proof must reject them.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();
         let query = CoverageQuery { near: f32::MIN, far: f32::MAX, ..CoverageQuery::of_fit(&fit, reach_of(&fit.map)) };
@@ -206,8 +208,8 @@ proptest! {
     }
 }
 
-/// A filter that is wide beside a coarse map reads casters up to its reach beside a receiver, at the
-/// map's edge too.
+/// A filter that is wide compared with a coarse map reads casters up to its reach beside a receiver, also at
+/// the map's edge.
 #[test]
 fn stable_maps_keep_the_casters_that_wide_filters_read() {
     let camera = PerspectiveCamera {
@@ -252,12 +254,12 @@ fn a_map_for_all_view_depths_is_made_for_what_lies_behind_the_eye_of_orthographi
     assert_eq!(by_map, by_fit);
 }
 
-/// What a shader computes for a world position, in f32.
+/// Returns the texture coordinates of a world position as a shader computes them, in f32.
 fn looked_up(fit: &LightProjection, point: DVec3) -> Vec3 {
     apply(&fit.uv_from_world, (point - fit.origin).as_vec3())
 }
 
-/// An orthographic view from above: 8 m wide, 4 m high, from 1 m to 3 m below the eye.
+/// Returns an orthographic view from above: 8 m wide, 4 m high, from 1 m to 3 m below the eye.
 fn from_above() -> ViewFrustum {
     let corner = |x: f32, z: f32, depth: f32| Vec3::new(x * 4.0, -depth, z * 2.0);
     let rectangle = |depth| {
@@ -286,7 +288,7 @@ fn proof(input: &FitInput, fit: &LightProjection, query: &CoverageQuery) -> Cove
     prove(input, fit, query, &mut Scratch::new(&mut storage)).unwrap()
 }
 
-/// A box with its middle over the view's, relative to the eye.
+/// Returns a box around a point over the view's centre, relative to the eye.
 fn over(x: f32, y: f32, half: f32) -> Aabb {
     Aabb::new(Vec3::new(x - half, y - half, -half), Vec3::new(x + half, y + half, half))
 }
@@ -310,7 +312,7 @@ fn the_margins_left_are_those_of_the_settings() {
     }
     // The caster's top is 0.625 m below the eye, the near plane 0.5 m.
     assert!((margins.casters - 0.125).abs() < 1e-4, "{}", margins.casters);
-    // The filter takes its reach, from half a texel on, and the normal offset what it is long.
+    // The filter reduces the margin by its reach beyond half a texel, and the normal offset by its length.
     let query = CoverageQuery::of_fit(&settings, FilterRadius::POINT.over_disc(3.0)).with_normal_offset(0.1);
     let CoverageProof::Proven(wide) = proof(&input, &fit, &query) else { panic!("{fit:?}") };
     for (i, per_metre) in [800.0 / 9.0, 800.0 / 9.0, 80.0, 80.0].into_iter().enumerate() {
@@ -328,7 +330,7 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
     assert!(proof(&input, &fit, &query).is_proven());
     for (i, plane) in MapPlane::ALL.into_iter().enumerate() {
         let mut small = fit;
-        // One side of the box moves in by 1% of its extent, in all that the fit says.
+        // Move one side of the box inward by 1% of its extent, in all fields of the fit.
         let (axis, is_high) = (i / 2, i % 2 == 1);
         let extent = (fit.box_max - fit.box_min)[axis];
         let (low, high) = if is_high { (0.0, 0.01) } else { (0.01, 0.0) };
@@ -361,7 +363,7 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
     }
 }
 
-/// Moves the lower or upper end of the range that a row of a matrix maps to inward by 1% of it.
+/// Moves the lower or upper end of the range that a row of a matrix maps to, inward by 1% of it.
 fn squeeze(matrix: &mut Mat4, row: usize, (low, high): (f32, f32), is_high: bool) {
     let fixed = if is_high { low } else { high };
     for column in [&mut matrix.x_axis, &mut matrix.y_axis, &mut matrix.z_axis, &mut matrix.w_axis] {
@@ -403,17 +405,17 @@ fn a_near_plane_behind_a_caster_loses_it() {
         let query = CoverageQuery { filter_radius: FilterRadius::POINT, ..*query };
         proof(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &query)
     };
-    // 5 m above the eye; the near plane is 1 m below it.
+    // The caster is 5 m above the eye. The near plane is 1 m below it.
     let CoverageProof::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &query) else { panic!("not lost") };
     assert!((by - 6.0).abs() < 1e-3 && (point.y - origin.y - 5.0).abs() < 1e-9, "{point} by {by}");
     assert!(looked_up(&fit, point).z < 0.0);
-    // Beside the view nothing casts a shadow into it, nor from below.
+    // Casters beside the view or below it cast no shadow into it.
     assert!(check(over(5.1, 4.0, 1.0), &query).is_proven());
     assert!(check(over(0.0, -9.0, 1.0), &query).is_proven());
-    // A part over the view counts, and with depth clamp nothing.
+    // A caster partly over the view counts. With depth clamp none does.
     assert!(!check(over(4.9, 4.0, 1.0), &query).is_proven());
     assert!(check(over(0.0, 4.0, 1.0), &CoverageQuery { casters: CasterPolicy::DepthClamp, ..query }).is_proven());
-    // A texel has 1 cm: what stands 1.5 cm beside the view is read by a filter of reach 2 only.
+    // A texel is 1 cm wide: only a filter of reach 2 reads a caster 1.5 cm beside the view.
     let beside = over(5.015, 4.0, 1.0);
     assert!(check(beside, &query).is_proven());
     let casters = [beside];
@@ -437,7 +439,7 @@ fn the_xna_fit_covers_the_view_but_loses_casters_before_it() {
     let input = FitInput { casters: Some(Boxes { origin: fit.origin, boxes: &casters }), ..input };
     let CoverageProof::CasterLost { point, by } = proof(&input, &fit, &query) else { panic!("not lost") };
     assert!(by > 10.0 && by < 12.0 && !fit.covers(point), "{point} by {by}");
-    // Its corners stand in its planes: without a margin, rounding may put them beyond.
+    // Its corners lie exactly in its planes: without a margin, rounding may put them beyond.
     let exact = shadowfit::fit(&views[0], DIRECTION, &settings.with_margin(0.0)).unwrap();
     let CoverageProof::Uncovered { by, .. } = proof(&FitInput::new(&views, DIRECTION), &exact, &query) else {
         panic!("proven")
@@ -454,7 +456,7 @@ fn receivers_of_a_map_that_nobody_draws_are_found() {
     let fit = LightProjection { is_empty: true, ..shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap() };
     let query = CoverageQuery::of_fit(&plain(), FilterRadius::POINT);
     assert!(matches!(proof(&input, &fit, &query), CoverageProof::MarkedEmpty { .. }));
-    // Nothing is required where nothing receives, in the range or at all.
+    // Without receivers, in the range or at all, an empty map is correct.
     for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
         let boxes = Boxes { origin: views[0].origin, boxes };
         let input = FitInput { receivers: Some(boxes), ..input };
@@ -474,7 +476,7 @@ fn another_origin_far_away_is_refused_for_its_rounding() {
     assert!(proof(&input, &fit, &query).is_proven());
     let near = fit.relative_to(fit.origin + DVec3::new(10.0, 0.0, 10.0));
     assert!(proof(&input, &near, &query).is_proven());
-    // At 10 km f32 has steps of a millimetre.
+    // At 10 km, f32 has steps of 1 mm.
     let far = fit.relative_to(fit.origin + DVec3::new(1e4, 0.0, 1e4));
     assert!(!proof(&input, &far, &query).is_proven());
 }

@@ -1,5 +1,5 @@
-//! Maps that are read by coverage: whichever map a visible point reads has all of its casters, in depth and among what
-//! culling leaves, and the proof proves it.
+//! Maps with selection by coverage: the map that a visible point reads has all of the point's casters, in its
+//! depth range and after culling, and the proof confirms it.
 
 use proptest::prelude::*;
 use shadowfit::bias::FilterRadius;
@@ -13,7 +13,7 @@ use shadowfit::{
 use crate::scenes::{BoxPlan, any_box, any_light, any_technique, any_view, any_walk, share};
 use crate::support::{cases, read_by};
 
-/// A receiver's point, and a caster's above it.
+/// A receiver's point, and a caster's point above it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) receiver: usize,
@@ -40,7 +40,7 @@ pub(crate) fn input<'a>(views: &'a [ViewFrustum], direction: Vec3, origin: DVec3
     FitInput { receivers: boxes, casters: boxes, ..FitInput::new(views, direction) }
 }
 
-/// Where a ray through a point leaves a box behind it and ahead of it.
+/// Returns the distance along the ray from a point toward the light at which it leaves a box, or `None` if it misses.
 pub(crate) fn above(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<f64> {
     let (mut enter, mut leave) = (f64::MIN, f64::MAX);
     for axis in 0..3 {
@@ -57,17 +57,17 @@ pub(crate) fn above(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<f64> {
     (enter <= leave && leave > 0.0).then_some(leave)
 }
 
-/// Share of a map's depth range before the near plane at which a caster counts as behind it: the rounding of f32.
+/// Distance before the near plane, as a share of the map's depth range, that counts as rounding of f32.
 const TOLERANCE: f64 = 1e-5;
 
-/// How far a point lies before the map's near plane, as a share of the depth range.
+/// Returns the distance of a point before the map's near plane, as a share of the depth range.
 fn before_near(fit: &LightProjection, point: DVec3) -> f64 {
     let local = (point - fit.origin).as_vec3();
     let p = fit.light_from_world.as_dmat4().transform_point3(local.as_dvec3());
     (p.z - f64::from(fit.box_max.z)) / f64::from(fit.depth_range)
 }
 
-/// Checks one frame; gives the number of casters that were found above points that read a map.
+/// Checks one frame. Returns the number of casters above points that read a map.
 pub(crate) fn check(
     maps: &FittedMaps,
     input: &FitInput,
@@ -156,8 +156,8 @@ proptest! {
     }
 }
 
-/// A tower beside the view that stands over a part of the first map: it is lost where the near plane serves the map's
-/// slice alone, and the proof says so.
+/// A tower beside the view, over a part of the first map. If the near plane is fitted only to the map's
+/// slice, the tower is lost, and the proof finds it.
 #[test]
 fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
     let camera = PerspectiveCamera {
@@ -179,7 +179,7 @@ fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
     let mut scratch = Scratch::new(&mut storage);
     let manual = SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
     let mut proof = |selection| {
-        // Spheres serve all of their map anyway, rectangles do not.
+        // Spheres already cover all casters of their map, rectangles do not.
         let stable = Technique::preset("stable-4").unwrap().maps.with_kind(FitKind::FrustumAabb).as_cascades();
         let cascades = stable.with_count(3).with_splits(manual).with_selection(selection);
         let technique = Technique::default().with_maps(cascades);

@@ -1,4 +1,4 @@
-//! One technique is recommended, and everything that a newcomer reads first uses it.
+//! A single technique is recommended, and all introductory documents use it.
 
 use shadowfit::Preset;
 use shadowfit::settings::{
@@ -26,7 +26,7 @@ fn the_defaults_of_its_parts_are_those_of_the_technique() {
 #[test]
 fn the_kinds_of_maps_have_the_same_defaults() {
     let (windows, cascades, one) = (Windows::default(), Cascades::default(), SingleMap::default());
-    // A single map, which has no frame before, is no window.
+    // A single map is fitted without earlier frames, so it is not a window.
     let single = FitSettings::default();
     assert_eq!((single.shape.kind, single.map), (FitKind::Focused, MapSettings::default()));
     assert_eq!([single.shape, cascades.shape, one.shape], [Shape::default(); 3]);

@@ -1,4 +1,4 @@
-//! What is held from frame to frame stays although every input is rounded otherwise in each.
+//! Values that are held from frame to frame stay constant, although the rounding of every input varies.
 
 use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
@@ -11,10 +11,10 @@ use shadowfit::{
     ViewFrustum,
 };
 
-/// Frames of a camera that stands still.
+/// Number of frames with an unmoving camera.
 const FRAMES: u32 = 60;
 
-/// Moves numbers by one step of f32, or not at all, by a linear congruence.
+/// Moves numbers randomly by at most one step of f32, with a linear congruential generator.
 struct Waver(u64);
 
 impl Waver {
@@ -37,7 +37,7 @@ impl Waver {
     }
 }
 
-/// How a camera comes in.
+/// The form of a camera's input.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     Camera,
@@ -84,7 +84,7 @@ fn view(way: Way, waver: &mut Waver) -> ViewFrustum {
     }
 }
 
-/// A ground with houses on it.
+/// Returns a ground with houses on it.
 fn boxes(waver: &mut Waver) -> Vec<Aabb> {
     let mut boxes = vec![Aabb::new(Vec3::new(-200.0, -0.2, -200.0), Vec3::new(200.0, 0.0, 200.0))];
     for i in 0..20_u8 {
@@ -94,7 +94,7 @@ fn boxes(waver: &mut Waver) -> Vec<Aabb> {
     boxes.into_iter().map(|aabb| Aabb::new(waver.vec3(aabb.min), waver.vec3(aabb.max))).collect()
 }
 
-/// Fits frame by frame, everything wavering; proves each map.
+/// Fits frame by frame with varying rounding, and proves each map.
 fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut(&FittedMaps)) {
     let mut waver = Waver(7);
     let mut fitter = FitState::new();

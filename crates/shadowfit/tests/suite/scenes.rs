@@ -1,7 +1,7 @@
-//! Whole scenes at random: views through any lens, boxes in view, and points that a camera sees.
+//! Random whole scenes: views through any lens, boxes in view, and visible points.
 //!
-//! A view is built twice, on ways that share nothing: as a [`ViewFrustum`], through a matrix or a
-//! camera, and as a [`Lens`] with the camera's axes, from which visible points are sampled.
+//! Each view is built in two independent ways: as a [`ViewFrustum`], through a matrix or a camera, and as a
+//! [`Lens`] with the camera's axes, from which visible points are sampled.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
@@ -12,10 +12,10 @@ use shadowfit::{Aabb, Cascades, DepthConvention, PerspectiveCamera, Technique, V
 
 use crate::support::{any_direction, double, every_stabilise, float, sliced};
 
-/// Every fit that promises coverage: all but the XNA sample's.
+/// Every fit that guarantees coverage: all except the XNA sample's.
 pub(crate) const COVERING: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-/// What the picture spans, in metres for each metre of view depth, or in metres if orthographic.
+/// Extent of the picture, in metres per metre of view depth (perspective) or in metres (orthographic).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     pub(crate) is_perspective: bool,
@@ -25,13 +25,13 @@ pub(crate) struct Lens {
     pub(crate) top: f64,
     pub(crate) near: f64,
     pub(crate) far: f64,
-    /// Whether the projection's far plane is at infinity; `far` is the maximum shadow distance then.
+    /// Whether the projection's far plane is at infinity. If so, `far` is the maximum shadow distance.
     pub(crate) is_infinite: bool,
     pub(crate) is_mirrored: bool,
     pub(crate) depth: DepthConvention,
 }
 
-/// A lens somewhere in the world.
+/// A lens with a position and orientation in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SceneView {
     pub(crate) lens: Lens,
@@ -41,7 +41,7 @@ pub(crate) struct SceneView {
 }
 
 impl Lens {
-    /// Clip space from view space (x right, y up, looking along -z).
+    /// Returns the clip-from-view matrix (x right, y up, looking along -z).
     fn clip_from_view(&self) -> DMat4 {
         let Self { left: l, right: r, bottom: b, top: t, near: n, far: f, .. } = *self;
         let sign = if self.is_mirrored { -1.0 } else { 1.0 };
@@ -78,14 +78,14 @@ impl Lens {
 }
 
 impl SceneView {
-    /// Right, up, forward, of unit length.
+    /// Returns the unit vectors right, up and forward.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
         let forward = self.forward.as_dvec3().normalize();
         let right = forward.cross(self.up.as_dvec3()).normalize();
         [right, right.cross(forward), forward]
     }
 
-    /// Clip space from world axes relative to the eye.
+    /// Returns the matrix from world axes, relative to the eye, to clip space.
     pub(crate) fn clip_from_eye(&self) -> DMat4 {
         let [right, up, forward] = self.axes();
         let world = DMat4::from_cols(right.extend(0.0), up.extend(0.0), (-forward).extend(0.0), DVec4::W);
@@ -98,7 +98,7 @@ impl SceneView {
         ViewFrustum::from_world_from_clip_f64(&matrix, self.eye, self.lens.depth, far).unwrap()
     }
 
-    /// A point of the view relative to the eye: position in the picture, 0..1 from the left and from
+    /// Returns a point of the view relative to the eye: position in the picture, 0..1 from the left and from
     /// the bottom, and view depth in metres.
     pub(crate) fn point(&self, x: f64, y: f64, depth: f64) -> DVec3 {
         let [right, up, forward] = self.axes();
@@ -108,7 +108,7 @@ impl SceneView {
         right * (across * size) + up * (above * size) + forward * depth
     }
 
-    /// Whether a point relative to the eye is seen, up to a view depth.
+    /// Returns whether a point relative to the eye is visible, up to a view depth.
     pub(crate) fn sees(&self, p: DVec3, last: f64) -> bool {
         let [right, up, forward] = self.axes();
         let depth = p.dot(forward);
@@ -123,7 +123,7 @@ impl SceneView {
     }
 }
 
-/// A share, its ends and middle more often than by chance.
+/// A share. Its ends and middle are more frequent.
 pub(crate) fn share() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 1 => Just(1.0), 6 => double(0.0, 1.0)]
 }
@@ -136,8 +136,8 @@ pub(crate) fn any_depth() -> impl Strategy<Value = DepthConvention> {
     ]
 }
 
-/// Perspective (symmetric or off-axis) and orthographic lenses, mirrored or not, of all depth
-/// conventions; 5 to 1,000 m of depth with near planes down to a thousandth of it.
+/// Perspective (symmetric or off-axis) and orthographic lenses, mirrored or not, of all depth conventions,
+/// with 5 to 1,000 m of depth and near planes down to a thousandth of it.
 pub(crate) fn any_lens() -> impl Strategy<Value = Lens> {
     let spans = (double(-0.9, 0.2), double(0.3, 1.2), double(-0.7, 0.1), double(0.2, 0.9));
     let planes = (double(0.7, 3.0), double(-3.0, -0.5));
@@ -164,7 +164,7 @@ pub(crate) fn any_lens() -> impl Strategy<Value = Lens> {
     )
 }
 
-/// Positions 0, 1, 10 and 100 km from the world's origin, give or take a few metres.
+/// Positions 0, 1, 10 and 100 km from the world's origin, varied by a few metres.
 pub(crate) fn any_eye() -> impl Strategy<Value = DVec3> {
     let distance = prop_oneof![Just(0.0), Just(1e3), Just(1e4), Just(1e5)];
     (distance, any_direction(), (double(-9.0, 9.0), double(-9.0, 9.0), double(-9.0, 9.0)))
@@ -177,12 +177,12 @@ pub(crate) fn any_view() -> impl Strategy<Value = SceneView> {
         .prop_map(|(lens, eye, forward, up)| SceneView { lens, eye, forward, up })
 }
 
-/// Lights from anywhere, vertical and level ones more often than by chance.
+/// Lights from any direction. Vertical and level ones are more frequent.
 pub(crate) fn any_light() -> impl Strategy<Value = Vec3> {
     prop_oneof![8 => any_direction(), 1 => Just(Vec3::NEG_Y), 1 => Just(Vec3::Y), 1 => Just(Vec3::new(0.6, 0.0, -0.8))]
 }
 
-/// A box by its position in a view and its half extents as shares of the view's depth.
+/// A box by its position in a view and its half extents, as shares of the view's depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoxPlan {
     place: [f64; 3],
@@ -197,7 +197,7 @@ pub(crate) fn any_box() -> impl Strategy<Value = BoxPlan> {
 }
 
 impl BoxPlan {
-    /// The box relative to an origin.
+    /// Returns the box relative to an origin.
     pub(crate) fn aabb(&self, view: &SceneView, origin: DVec3) -> Aabb {
         let [x, y, z] = self.place;
         let (near, far) = (view.lens.near, view.lens.far);
@@ -207,7 +207,7 @@ impl BoxPlan {
     }
 }
 
-/// Settings of a fit that covers, casters left aside.
+/// Settings of a fit that guarantees coverage, without a caster policy.
 pub(crate) fn any_covering_fit() -> impl Strategy<Value = FitSettings> {
     let kind = prop::sample::select(COVERING.to_vec());
     let rectangle = prop::sample::select(vec![
@@ -242,7 +242,7 @@ pub(crate) fn any_splits() -> impl Strategy<Value = SplitScheme> {
         Just(SplitScheme::Uniform),
         Just(SplitScheme::Logarithmic),
         float(0.0, 1.0).prop_map(SplitScheme::Practical),
-        // Ascending, and for most views in part beyond their end.
+        // Ascending. For most views, some are beyond their end.
         float(0.5, 20.0)
             .prop_map(|a| SplitScheme::Manual([0.0_f32, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|i| a * 1.7_f32.powf(i)))),
         Just(SplitScheme::FromBoxes),
@@ -266,7 +266,7 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     )
 }
 
-/// A symmetric camera as a view of a scene.
+/// Returns a symmetric camera as a view of a scene.
 pub(crate) fn of_camera(camera: &PerspectiveCamera) -> SceneView {
     let top = (f64::from(camera.fov_y) * 0.5).tan();
     let right = top * f64::from(camera.aspect);
@@ -288,10 +288,10 @@ pub(crate) fn of_camera(camera: &PerspectiveCamera) -> SceneView {
 /// A step of a view from one frame to the next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walk {
-    /// Of the eye, as a share of the view's depth.
+    /// Movement of the eye, as a share of the view's depth.
     pub(crate) step: DVec3,
     pub(crate) axis: DVec3,
-    /// About the axis, in radians.
+    /// Rotation about the axis, in radians.
     pub(crate) turn: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Maps on the world's grid: what is kept from frame to frame, and tiles that never change.
+//! Maps on the world grid: the texels that are kept from frame to frame, and tiles that never change.
 
 use std::collections::HashMap;
 
@@ -23,7 +23,7 @@ fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> Technique {
     sliced(&fit, Cascades { count: 3, splits, stabilise, ..Cascades::default() })
 }
 
-/// Houses on a square of ground around the tests' camera, relative to the world's origin.
+/// Returns houses on a square of ground around the tests' camera, relative to the world's origin.
 fn town() -> Vec<Aabb> {
     let ground = Aabb::new(Vec3::new(-200.0, -1.0, -240.0), Vec3::new(200.0, 0.0, 160.0));
     let house = |i: u16| {
@@ -48,7 +48,7 @@ fn frame(
     fitter.fit(&input, settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
-/// A map of 2 m texels straight below the light, whose left bottom corner is at a grid line.
+/// Returns a map of 2 m texels straight below the light, with its left bottom corner on a grid line.
 fn plain_map(first: [i64; 2], resolution: UVec2) -> FittedMap {
     let grid_position = GridPosition { first, texel: DVec2::splat(2.0), depth: [-10.0, 30.0] };
     FittedMap {
@@ -58,7 +58,7 @@ fn plain_map(first: [i64; 2], resolution: UVec2) -> FittedMap {
     }
 }
 
-/// World column and row, counted upward, of a texel of a map.
+/// Returns world column and row, counted upward, of a texel of a map.
 fn world_texel(grid_position: &GridPosition, resolution: UVec2, x: u32, y: u32) -> (i64, i64) {
     (grid_position.first[0] + i64::from(x), grid_position.first[1] + i64::from(resolution.y - 1 - y))
 }
@@ -68,8 +68,8 @@ fn is_in(rect: &TexelRect, x: u32, y: u32) -> bool {
 }
 
 proptest! {
-    /// By brute force: each texel is either kept, and then the shift leads to the one that held the
-    /// same point of the world, or in exactly one strip.
+    /// By brute force: each texel is either in exactly one strip, or it is kept, and the shift leads to the
+    /// texel that had the same point of the world.
     #[test]
     fn shift_and_strips_are_exactly_what_moved_and_what_is_new(
         (x, y) in (-40_i64..40, -40_i64..40), (dx, dy) in (-14_i64..14, -14_i64..14), (w, h) in (1_u32..12, 1_u32..12),
@@ -166,7 +166,7 @@ proptest! {
     }
 }
 
-/// Texture coordinates and depth of a world position, in f64.
+/// Returns texture coordinates and depth of a world position, in f64.
 fn place(fit: &LightProjection, point: DVec3) -> DVec3 {
     let m = fit.uv_from_world.as_dmat4();
     let p = point - fit.origin;
@@ -201,7 +201,7 @@ fn tiles_have_the_same_bits_wherever_the_camera_is() {
     assert!(again > 10 * tiles, "{again} uses of {tiles} tiles");
 }
 
-/// How often maps must be drawn whole while a camera walks at a jogger's pace and looks around.
+/// Counts how often maps must be drawn completely while a camera moves at a jogger's pace and looks around.
 #[test]
 fn depth_ranges_hold_while_a_camera_walks() {
     let town = town();
@@ -265,7 +265,7 @@ fn what_changes_the_projection_makes_a_new_map() {
         let all: Vec<TexelRect> = Scroll::between(&before, &other).exposed().collect();
         assert_eq!(all, [TexelRect { min: UVec2::ZERO, size: other.projection.resolution }]);
     }
-    // Nothing was drawn into an empty map.
+    // An empty map has no drawn content.
     assert!(Scroll::between(&with_fit(LightProjection { is_empty: true, ..before.projection }), &before).is_new);
     assert!(!Scroll::between(&before, &with_fit(LightProjection { is_empty: true, ..before.projection })).is_new);
 }
@@ -296,8 +296,8 @@ fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
 }
 
 proptest! {
-    /// By brute force: a part of a map is stored texel by texel at (t + texel_offset) modulo the size, each once, in
-    /// pieces whose viewport leads from the one to the other.
+    /// By brute force: a part of a map is stored texel by texel at (t + texel_offset) modulo the size, each
+    /// texel once. The viewport of each piece maps the one position to the other.
     #[test]
     fn a_part_of_a_map_is_stored_wrapped_around_texel_by_texel(
         (w, h) in (1_u32..12, 1_u32..12), (x, y) in (0_u32..12, 0_u32..12), (dx, dy) in (0_u32..14, 0_u32..14),
@@ -327,7 +327,7 @@ proptest! {
         }
     }
 
-    /// Frame after frame, what both maps hold stays where it is stored.
+    /// In successive frames, texels that both maps contain keep their storage position.
     #[test]
     fn kept_texels_stay_where_they_are_stored(
         shifts in prop::collection::vec((-9_i64..9, -9_i64..9), 1..20), (w, h) in (1_u32..12, 1_u32..12),
@@ -357,7 +357,8 @@ proptest! {
         }
     }
 
-    /// The texels of a box hold its corners and all between them; casters over a part of a map are those of its texels.
+    /// The texels of a box contain its corners and all points between them. The casters over a part of a map
+    /// are the casters of its texels.
     #[test]
     fn the_texels_of_a_box_hold_it_and_parts_of_a_map_keep_the_casters_over_them(
         direction in any_direction(), centre in prop::array::uniform3(-30.0_f32..30.0),
@@ -379,7 +380,7 @@ proptest! {
             if is_over {
                 let texel = uv.as_uvec2().min(fit.resolution - 1);
                 prop_assert!(is_in(&rect, texel.x, texel.y), "{rect:?} {texel}");
-                // Beyond the far plane nothing casts a shadow into the map.
+                // Casters beyond the far plane cast no shadow into the map.
                 prop_assert!(volume.intersects_sphere(corner, 0.0) || at.z > 1.0);
             }
         }

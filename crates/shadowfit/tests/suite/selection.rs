@@ -1,4 +1,4 @@
-//! Which of several maps a point reads.
+//! Selection of the map that a point reads.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec2};
@@ -17,7 +17,8 @@ fn blended(map: usize, other: usize, weight: f64) -> MapRead {
     MapRead { map, blend: Some(MapBlend { map: other, weight }) }
 }
 
-/// The maps read, finest first, where so many texels are free; reach 3, blend 8.
+/// Returns the maps that are read, given the free texels around the point in each map, finest first. Reach 3,
+/// blend 8.
 fn read(free: &[Option<f64>]) -> Option<MapRead> {
     by_coverage(0..free.len(), 3.0, 8.0, |map| free[map])
 }
@@ -35,7 +36,7 @@ fn toward_its_border_a_map_gives_way_to_the_next_one_that_holds_the_point() {
     assert_eq!(read(&[Some(11.0), Some(50.0)]), Some(alone(0)));
     assert_eq!(read(&[Some(9.0), Some(50.0)]), Some(blended(0, 1, 0.25)));
     assert_eq!(read(&[Some(3.0), Some(50.0)]), Some(blended(0, 1, 1.0)));
-    // What cannot be read with the filter is passed over, and the second map is not blended again.
+    // Maps without room for the filter are skipped, and the second map is not blended again.
     assert_eq!(read(&[Some(5.0), Some(2.0), None, Some(4.0), Some(50.0)]), Some(blended(0, 3, 0.75)));
     assert_eq!(read(&[Some(5.0), Some(2.0), None]), Some(alone(0)));
     assert_eq!(by_coverage(0..2, 3.0, 0.0, |_| Some(3.0)), Some(alone(0)));
@@ -154,8 +155,8 @@ fn no_map_is_read_beyond_the_shadow_distance() {
 proptest! {
     #![proptest_config(cases(500))]
 
-    /// The definition, in words of its own: maps sorted by area, those that hold the point with the
-    /// filter, else those that hold it.
+    /// Checks against an independent implementation of the definition: maps sorted by area, first all that
+    /// contain the point with the filter's footprint, then all that contain the point.
     #[test]
     fn fitted_maps_are_read_by_the_definition(
         view in any_view(), direction in any_light(), technique in any_technique(), blend in float(0.0, 64.0),

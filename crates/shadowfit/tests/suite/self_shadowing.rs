@@ -1,7 +1,7 @@
-//! Planes do not shadow themselves under the automatic biases, and under half of them they do.
+//! Under the automatic biases planes do not shadow themselves, and under half of them they do.
 //!
-//! The map is simulated: a texel stores the depth that the plane has at its centre, the filter
-//! reads the texels that its definition says.
+//! The map is simulated: a texel stores the depth of the plane at its centre, and the filter reads the texels
+//! of its definition.
 
 use shadowfit::bias::{FilterRadius, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
@@ -11,20 +11,20 @@ use shadowfit::{DepthConvention, LightProjection};
 use crate::filters::{Filter, LookUp, filters};
 use crate::support::{DIRECTION, camera, exact, fitted};
 
-/// A plane through the light space's origin: its slopes by its normal there.
+/// A plane through the light space's origin, given by its normal.
 struct Plane {
     normal: DVec3,
     world_normal: Vec3,
 }
 
 impl Plane {
-    /// The plane with a slope of `theta` that falls toward `azimuth` in the map's axes.
+    /// Creates the plane with a slope of `theta` that falls toward `azimuth` in the map's axes.
     fn new(fit: &LightProjection, theta: f64, azimuth: f64) -> Self {
         let light = DVec3::new(theta.sin() * azimuth.cos(), theta.sin() * azimuth.sin(), theta.cos());
         let m = fit.light_from_world.as_dmat4();
         let axes = [m.x_axis, m.y_axis, m.z_axis].map(DVec4::truncate);
         let world_normal = DVec3::from_array(axes.map(|axis| axis.dot(light))).as_vec3();
-        // The plane is that of the rounded normal.
+        // The plane is defined by the rounded normal.
         let unit = world_normal.as_dvec3().normalize();
         Self { normal: axes[0] * unit.x + axes[1] * unit.y + axes[2] * unit.z, world_normal }
     }
@@ -34,17 +34,17 @@ impl Plane {
     }
 }
 
-/// 200 slopes up to 89°, their azimuths spread by the golden angle.
+/// Returns 200 slopes up to 89°, with azimuths spread by the golden angle.
 fn slopes() -> impl Iterator<Item = (f64, f64)> {
     (0..200).map(|i| ((89.0 * f64::from(i) / 199.0).to_radians(), f64::from(i) * 2.399_963))
 }
 
-/// Positions spread over a texel, and some texels on, by the R2 sequence (M. Roberts, 2018).
+/// Returns positions spread over some texels by the R2 sequence (M. Roberts, 2018).
 fn positions() -> impl Iterator<Item = DVec2> {
     (1..=200).map(|i| DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(i))
 }
 
-/// Fits whose texels are square, uneven and very uneven.
+/// Returns fits with square, uneven and very uneven texels.
 fn fits() -> impl Iterator<Item = LightProjection> {
     let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
     [Vec2::splat(0.25), Vec2::new(0.4, 0.15), Vec2::new(0.01, 0.12)]
@@ -52,8 +52,8 @@ fn fits() -> impl Iterator<Item = LightProjection> {
         .map(move |texel_size| LightProjection { texel_size, ..fit })
 }
 
-/// Whether a point of the plane, seen at `lifted` in light space, finds a texel in the filter's
-/// reach that is nearer to the light than itself by more than rounding.
+/// Returns whether a point of the plane, moved to `lifted` in light space, finds a texel in the filter's
+/// footprint that is nearer to the light by more than rounding.
 fn is_shadowed(plane: &Plane, filter: &Filter, texel: DVec2, lifted: DVec3) -> bool {
     let heights = filter.texels(lifted.truncate() / texel).map(|centre| plane.height(centre * texel));
     // The offset itself is f32, and rounding along the light grows with the slope.
@@ -61,8 +61,8 @@ fn is_shadowed(plane: &Plane, filter: &Filter, texel: DVec2, lifted: DVec3) -> b
     heights.fold(f64::NEG_INFINITY, f64::max) > lifted.z + rounding
 }
 
-/// Share of the positions that shadow themselves when they are lifted by `offset` along the normal
-/// and by `depth` toward the light, both in metres.
+/// Returns the share of the positions that shadow themselves when they are lifted by `offset` along the
+/// normal and by `depth` toward the light, both in metres.
 fn acne(plane: &Plane, filter: &Filter, texel: DVec2, offset: f64, depth: f64) -> f64 {
     let shadowed = positions().filter(|position| {
         let at = *position * texel;
@@ -89,7 +89,7 @@ fn every_case(prove: impl Fn(&LightProjection, &Filter, &Plane, &str)) {
     }
 }
 
-/// Cosine of the slope from which on half of a bias must show acne.
+/// Cosine of the smallest slope at which half of a bias must show acne.
 const STEEP: f64 = 0.984_807_8;
 
 #[test]
@@ -118,8 +118,7 @@ fn the_receiver_plane_depth_clears_a_plane_and_half_of_it_does_not() {
     });
 }
 
-/// The reach is no larger than it must be: with nineteen twentieths some position of many shadows
-/// itself on some slope.
+/// The reach is at most 5% too large: with 95% of it, some position of many shadows itself on some slope.
 #[test]
 fn five_percent_less_than_the_reach_leaves_acne_for_every_filter() {
     for fit in fits() {

@@ -1,4 +1,5 @@
-//! Feature `serde`: what was saved is read back bit by bit, and a fitter goes on as if it had never been away.
+//! Feature `serde`: saved values read back bit by bit, and a restored fitter continues as if it had not been
+//! saved.
 
 use std::fmt::Debug;
 
@@ -24,7 +25,7 @@ fn read_back<T: Serialize + DeserializeOwned>(value: &T) -> T {
     serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
 }
 
-/// Checks by what a value prints as, which tells all bits apart.
+/// Compares the `Debug` texts, which distinguish all bits.
 fn survives<T: Serialize + DeserializeOwned + Debug>(value: &T) {
     assert_eq!(format!("{value:?}"), format!("{:?}", read_back(value)));
 }

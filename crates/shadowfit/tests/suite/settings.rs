@@ -1,4 +1,4 @@
-//! What follows from a technique's settings.
+//! Values derived from a technique's settings.
 
 use shadowfit::glam::DVec2;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, MapSelection, MapSettings, SoftRadius, Softness};
@@ -44,7 +44,7 @@ fn the_lengths_of_another_technique_are_the_shadow_distance_and_the_caster_exten
     }
 }
 
-/// The maps of three frames of a camera that flies on.
+/// Returns the maps of three frames of a flying camera.
 fn fitted(technique: &Technique) -> Vec<FittedMaps> {
     let mut storage = [DVec2::ZERO; Scratch::required(0, 3)];
     let (mut fitter, mut camera) = (FitState::new(), camera());

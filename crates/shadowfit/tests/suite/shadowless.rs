@@ -1,5 +1,5 @@
-//! Views that begin beyond the shadow distance: frames without shadows, which are no errors, and after which held maps
-//! go on.
+//! Views that begin beyond the shadow distance: such frames have no shadows and no errors, and held maps
+//! continue after them.
 
 use shadowfit::demand::VisibleDemandSpace;
 use shadowfit::glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
@@ -12,7 +12,7 @@ use shadowfit::{
 
 use crate::support::{DIRECTION, KINDS, camera, exact};
 
-/// A distance before the near plane of [`beyond`].
+/// A shadow distance before the near plane of [`beyond`].
 const DISTANCE: f32 = 50.0;
 
 fn beyond() -> PerspectiveCamera {
@@ -46,7 +46,7 @@ fn matrices_of_views_beyond_the_distance_give_empty_views() {
         let matrix = beyond().clip_from_world(depth).as_dmat4().inverse();
         let orthographic =
             DMat4::from_cols(DVec4::X * 4.0, DVec4::Y * 3.0, DVec4::Z * -2.0, DVec4::new(0.0, 0.0, -90.0, 1.0));
-        // With reversed depth that one looks the other way.
+        // With reversed depth, the orthographic matrix looks the other way.
         let is_reversed = depth == DepthConvention::Reversed;
         for matrix in [matrix, if is_reversed { matrix } else { orthographic }] {
             let view = ViewFrustum::from_eye_from_clip(&matrix.as_mat4(), camera().eye, depth, DISTANCE).unwrap();
@@ -102,7 +102,7 @@ fn a_single_map_of_such_a_view_is_marked_empty_and_proven() {
     }
 }
 
-/// Both halves of a split screen, one of which begins beyond the distance.
+/// Both halves of a split screen. One of them begins beyond the shadow distance.
 #[test]
 fn a_view_beyond_the_distance_adds_nothing_to_the_maps_of_others() {
     let boxes = ground();
@@ -140,7 +140,7 @@ fn a_view_beyond_the_distance_adds_nothing_to_the_maps_of_others() {
     }
 }
 
-/// The near plane moves across the distance and back, as in a cut-away view.
+/// The near plane moves across the shadow distance and back, as in a cut-away view.
 #[test]
 fn held_maps_are_the_same_after_frames_without_shadows() {
     let boxes = ground();
@@ -156,7 +156,7 @@ fn held_maps_are_the_same_after_frames_without_shadows() {
             let input = FitInput { receivers: boxes, casters: boxes, ..FitInput::new(&views, DIRECTION) };
             *fitter.fit(&input).unwrap()
         };
-        // Windows have found their places by then.
+        // The windows have settled by then.
         let before = (0..400).map(|_| at(shown)).last().unwrap();
         for gap in [beyond().frustum().unwrap(), empty] {
             assert!((0..5).all(|_| at(gap).is_empty()), "{name}");
@@ -186,11 +186,11 @@ fn distances_that_are_none_and_views_turned_inside_out_are_still_refused() {
     }
     let turned = ViewFrustum { near: view.far, far: view.near, ..view };
     assert!(ShadowFitter::default().fit(&FitInput::new(&[turned], DIRECTION)).is_err());
-    // There is nothing to count.
+    // The view has nothing to count.
     assert!(matches!(VisibleDemandSpace::new(&view, DIRECTION, Vec3::Y, 0.2), Err(FitError::NearNotBelowFar { .. })));
 }
 
-/// Orthographic views may lie behind the eye as a whole.
+/// Orthographic views may be completely behind the eye.
 #[test]
 fn a_view_behind_the_eye_has_windows() {
     let corners = [-2.0_f32, -8.0]

@@ -1,4 +1,4 @@
-//! Soft filters: how wide they are in texels, how far they reach, and how fine maps may be for them.
+//! Soft filters: their radius in texels, their reach, and the finest map that they allow.
 
 use proptest::prelude::*;
 use shadowfit::bias::FilterRadius;
@@ -17,7 +17,7 @@ fn metres(metres: f32) -> Softness {
     Softness::default().with_radius(SoftRadius::Metres(metres))
 }
 
-/// A fit with texels of a size, in metres.
+/// Returns a fit with texels of a size, in metres.
 fn with_texels(texel_size: Vec2) -> LightProjection {
     LightProjection { texel_size, ..fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb)) }
 }
@@ -39,20 +39,20 @@ fn a_sun_s_penumbra_is_its_tangent_times_the_distance() {
     }
 }
 
-/// Variance along an axis of an edge that is rasterised, compared bilinearly and spread over a disc of some texels'
-/// radius, in square metres: simulated at all positions of the edge in a texel.
+/// Returns the variance along an axis, in square metres, of an edge that is rasterised, compared bilinearly
+/// and blurred by a disc with a radius in texels. It is simulated for all positions of the edge in a texel.
 fn variance(radius: f64, texel: f64) -> f64 {
     let steps = 400;
     let (mut sum, mut weight) = (0.0, 0.0);
     for i in 0..steps {
-        // Where the edge lies in its texel; the first texel on its far side is lit.
+        // Position of the edge in its texel. The first texel on its far side is lit.
         let edge = (f64::from(i) + 0.5) / f64::from(steps);
         for j in 0..200 {
-            // Of a disc the strip at x has a share of √(1 - x²).
+            // The strip of a disc at x has a share of √(1 - x²).
             let x = (f64::from(j) + 0.5) / 100.0 - 1.0;
             let share = (1.0 - x * x).sqrt();
             for k in 0..20 {
-                // A look-up changes from dark to lit evenly over the texel between two centres.
+                // A look-up changes linearly from dark to lit over the texel between two centres.
                 let ramp = (f64::from(k) + 0.5) / 20.0 - 0.5;
                 let at = edge.round() - edge + ramp + x * radius;
                 sum += share * at * at;
@@ -68,11 +68,11 @@ fn penumbrae_are_as_wide_in_maps_of_other_texels() {
     let softness = metres(0.1).with_floor(0.0).with_ceiling(64.0);
     for texel in [0.002_f32, 0.01, 0.03, 0.05, 0.1, 0.12] {
         let radius = softness.texels(FilterKind::Vogel16, &with_texels(Vec2::splat(texel))).x;
-        // Radius of the disc that blurs as much, in metres.
+        // Radius of the disc with the same blur, in metres.
         let whole = 2.0 * variance(radius.into(), texel.into()).sqrt();
         assert!((whole / 0.1 - 1.0).abs() < 0.01, "{texel}: {whole}");
     }
-    // A look-up alone blurs as much as a disc of this radius.
+    // A single look-up blurs like a disc of this radius.
     assert!((4.0 * variance(0.0, 1.0) / f64::from(Softness::LOOK_UP_SQUARE) - 1.0).abs() < 0.01);
 }
 
@@ -87,7 +87,7 @@ fn discs_keep_within_the_floor_and_the_ceiling_on_either_axis() {
         assert!(at(4.0, 6.0).abs_diff_eq(expected, 1e-4), "{filter:?}");
         assert_eq!(softness.filter_radius(filter), 11.0);
     }
-    // A floor above its ceiling is refused by fits; on its own it is no reason to panic.
+    // Fits refuse a floor above its ceiling. This function must not panic on it.
     let broken = softness.with_floor(20.0);
     assert_eq!(broken.texels(FilterKind::Pcss, &with_texels(Vec2::ONE)), Vec2::splat(10.0));
     for value in [f32::NAN, f32::INFINITY, -1.0] {
@@ -115,7 +115,7 @@ fn no_limit_and_one_that_is_met_anyway_give_the_same_map() {
     for kind in [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused] {
         let plain = exact(kind);
         let free = shadowfit::fit(&frustum, DIRECTION, &plain).unwrap();
-        // The sphere's texels are up to an eighth of an octave wider than they must be.
+        // The sphere's texels are up to an eighth of an octave wider than necessary.
         let met = plain.with_least_texel(free.texel_size.min_element() * 0.9);
         assert_eq!(shadowfit::fit(&frustum, DIRECTION, &met).unwrap(), free, "{kind:?}");
         let limited = plain.with_least_texel(free.texel_size.max_element() * 3.0);
@@ -159,7 +159,7 @@ fn any_limited() -> impl Strategy<Value = Technique> {
     )
 }
 
-/// Whether windows are finer one by one, in eighths of an octave, and on the world's grid.
+/// Returns whether the windows' texel sizes are whole eighths of an octave on the world grid.
 fn are_windows(maps: &FittedMaps) -> bool {
     let step = |map: &shadowfit::FittedMap| map.grid_position.map(|grid_position| grid_position.texel.x.log2() * 8.0);
     let on_ladder = |step: Option<f64>| step.is_some_and(|step| (step - step.round()).abs() < 1e-6);
@@ -190,7 +190,7 @@ proptest! {
                 prop_assert!(reach.per_axis() <= technique.filter_radius(), "{reach:?}");
                 let query = CoverageQuery::of_map(map, &technique, reach);
                 let proof = prove(&input, &map.projection, &query, &mut Scratch::new(&mut storage)).unwrap();
-                // Only the last of windows holds all that it is asked for.
+                // Only the last window must cover all visible points.
                 prop_assert!(proof.is_proven(), "{proof:?}");
             }
             prop_assert!(!matches!(technique.maps, Maps::Windows(_)) || are_windows(&maps), "{maps:?}");

@@ -1,4 +1,4 @@
-//! Spot lights: conventions, one table each, and what their matrices promise.
+//! Spot lights: conventions, one table each, and the properties of their matrices.
 
 use proptest::prelude::*;
 use shadowfit::DepthConvention::{self, NegativeOneToOne, Reversed, ZeroToOne};
@@ -13,7 +13,7 @@ pub(crate) const EPSILON: f64 = 1.0 / 16_777_216.0;
 
 pub(crate) const DEPTHS: [DepthConvention; 3] = [ZeroToOne, Reversed, NegativeOneToOne];
 
-/// A plain lamp some way from the world's origin.
+/// Returns a plain lamp away from the world's origin.
 pub(crate) fn lamp() -> SpotLight {
     SpotLight {
         position: DVec3::new(12.0, 6.0, -40.0),
@@ -26,7 +26,7 @@ pub(crate) fn lamp() -> SpotLight {
     }
 }
 
-/// Lamps of any attitude, from 6° to 140°, with near/far ratios from 2 to 1000, up to 1 km out.
+/// Lamps in any orientation, from 6° to 140°, with near/far ratios from 2 to 1000, up to 1 km out.
 pub(crate) fn any_lamp() -> impl Strategy<Value = SpotLight> {
     let position = (double(-1e3, 1e3), double(-1e3, 1e3), double(-1e3, 1e3));
     let lens = (float(0.1, 2.4), float(0.5, 2.0), float(-1.5, 1.0), float(0.3, 3.0));
@@ -46,7 +46,8 @@ fn fitted(lamp: &SpotLight, depth: DepthConvention) -> SpotFit {
     lamp.fit(UVec2::new(1024, 512), depth).unwrap()
 }
 
-/// World position of a point in the light's window: `x` and `y` are -1..1 across it, at a distance along the axis.
+/// Returns the world position of a point in the light's window: `x` and `y` are -1..1 across it, at a
+/// distance along the axis.
 pub(crate) fn in_window(lamp: &SpotLight, x: f64, y: f64, distance: f64) -> DVec3 {
     let forward = lamp.direction.as_dvec3().normalize();
     let right = forward.cross(lamp.up.as_dvec3()).normalize();
@@ -55,7 +56,7 @@ pub(crate) fn in_window(lamp: &SpotLight, x: f64, y: f64, distance: f64) -> DVec
     lamp.position + (forward + across) * distance
 }
 
-/// What a shader computes, in f32.
+/// Returns the homogeneous position that a shader computes, in f32.
 pub(crate) fn homogeneous(matrix: &Mat4, fit: &SpotFit, point: DVec3) -> Vec4 {
     *matrix * (point - fit.origin).as_vec3().extend(1.0)
 }
@@ -192,7 +193,7 @@ fn casters_are_kept_in_the_frustum_and_culled_before_behind_and_beside_it() {
 }
 
 proptest! {
-    /// Lens and axes are the camera's, each rounded from f64 by one step.
+    /// Lens and axes are equal to the camera's, each rounded from f64 by one step.
     #[test]
     fn a_camera_in_the_light_s_place_has_the_same_matrices(lamp in any_lamp(), depth in any_depth()) {
         let camera = PerspectiveCamera {
@@ -229,7 +230,8 @@ proptest! {
         let plain = far * (distance - near) / (distance * (far - near));
         let stored = if depth == Reversed { 1.0 - plain } else { plain };
         let expected = DVec3::new(0.5 + 0.5 * x, 0.5 - 0.5 * y, stored);
-        // Across, a turn of the axes by one step counts against the window; along, against the depth's own factor.
+        // Across the map, a turn of the axes by one step counts relative to the window; along it, relative to
+        // the depth's own factor.
         let tangent = (f64::from(lamp.fov_y) * 0.5).tan() * f64::from(lamp.aspect).min(1.0);
         let stretch = point.length() / distance;
         let factor = far / (far - near);
@@ -239,7 +241,8 @@ proptest! {
         prop_assert!((uv.w / distance - 1.0).abs() <= 4.0 * EPSILON * stretch, "{}", uv.w);
     }
 
-    /// Moving the origin rounds one translation to f32, 2⁻²⁴ of the distance, seen against the distance along the axis.
+    /// Moving the origin rounds one translation to f32: 2⁻²⁴ of the distance, relative to the distance along
+    /// the axis.
     #[test]
     fn another_origin_gives_the_same_position_in_the_map(
         lamp in any_lamp(), depth in any_depth(), (away, metres) in (any_direction(), double(0.0, 100.0)),
@@ -279,7 +282,7 @@ proptest! {
         prop_assert_eq!(here * scale, there);
     }
 
-    /// The axes of the moved light are rounded anew: a step of f32 in each, against the window.
+    /// The axes of the moved light are rounded again: by a step of f32 in each, relative to the window.
     #[test]
     fn a_rigid_motion_of_light_and_point_changes_no_place_in_the_map(
         lamp in any_lamp(), depth in any_depth(),

@@ -1,5 +1,5 @@
-//! Every float input of spot lights that is NaN, infinite, zero, subnormal or huge: an error with its value or a finite
-//! result, never a panic.
+//! NaN, infinity, zero, subnormal and huge values in every float input of spot lights: an error with the
+//! value or a finite result, never a panic.
 
 use proptest::prelude::*;
 use shadowfit::bias::FilterRadius;
@@ -18,7 +18,7 @@ const NOT_FINITE: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 const ODD: [f32; 12] =
     [0.0, -0.0, 1e-45, -1e-45, f32::MIN_POSITIVE, 1e-20, -1e-20, 1e20, -1e20, 1.0e18, f32::MAX, f32::MIN];
 
-/// Every input, with values that work.
+/// All inputs, with valid values.
 #[derive(Clone, Copy)]
 struct Inputs {
     lamp: SpotLight,
@@ -29,7 +29,7 @@ struct Inputs {
     fixed: f32,
 }
 
-/// A float input, by name.
+/// A float input with its name.
 type Setter = (&'static str, fn(&mut Inputs, f32));
 
 const SETTERS: [Setter; 29] = [
@@ -82,7 +82,7 @@ fn good() -> Inputs {
     }
 }
 
-/// Calls everything and gives all numbers that come back, as soon as none of them is an error.
+/// Calls all functions. Returns all resulting numbers, or the first error.
 fn figures(inputs: &Inputs) -> Result<Vec<f32>, FitError> {
     let fit = inputs.lamp.fit(UVec2::new(512, 300), DepthConvention::ZeroToOne)?;
     let frustum = inputs.lamp.frustum()?;
@@ -159,7 +159,7 @@ fn lights_without_meaning_are_refused_with_the_value_that_is_wrong() {
         (fit(|l| l.far = -1.0), "the spot light's far distance is -1"),
         (fit(|l| l.near = 80.0), "near 80 m is not below far 60 m"),
         (fit(|l| l.position.x = 1e20), "the spot light's position is 1e20"),
-        (fit(|l| (l.fov_y, l.aspect) = (1e-10, 1e-10)), "half an extent of the spot light's window at 1 m is 5e-21"),
+        (fit(|l| (l.fov_y, l.aspect) = (1e-10, 1e-10)), "half an extent of the spot light's frustum at 1 m is 5e-21"),
     ] {
         assert!(message.starts_with(part), "{message}");
     }

@@ -1,7 +1,8 @@
-//! A spot light's automatic biases hold in f32, on hardware that snaps, in every format of the map.
+//! A spot light's automatic biases are sufficient in f32, on hardware that snaps, in every format of the map.
 //!
-//! The chain is a GPU's: vertices in f32, depths stored at centres that are off by the rasteriser's snap, divided and
-//! rounded to the format; positions and biases of the receiver in f32, texture coordinates snapped by the sampler.
+//! The computation is a GPU's. Vertices are in f32, and depths are stored at centres that are off by the
+//! rasteriser's snap, divided and rounded to the format. Positions and biases of the receiver are in f32, and
+//! the sampler snaps texture coordinates.
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
@@ -36,8 +37,8 @@ impl Case {
         self.fit.depth == DepthConvention::Reversed
     }
 
-    /// World position on the plane, moved along its normal by `lift`, at a place in the map in texels, by the matrix
-    /// that casters are drawn with.
+    /// Returns a world position on the plane, moved along its normal by `lift`, at a position in the map in
+    /// texels. Uses the matrix for drawing casters.
     fn at(&self, texel: DVec2, lift: f64) -> DVec3 {
         let m = self.fit.clip_from_world.as_dmat4();
         let clip = texel / self.fit.resolution.as_dvec2() * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
@@ -48,7 +49,7 @@ impl Case {
         self.fit.origin + rows.inverse() * DVec3::new(-x.w, -y.w, along)
     }
 
-    /// Depth that a vertex at the texel's centre gets; `None` where the plane is not before the light.
+    /// Returns the depth of a vertex at the texel's centre, or `None` if the plane is not before the light.
     fn vertex_depth(&self, centre: DVec2) -> Option<f64> {
         let clip = homogeneous(&self.fit.clip_from_world, &self.fit, self.at(centre, 0.0));
         let depth = clip.z / clip.w;
@@ -56,7 +57,7 @@ impl Case {
         (clip.w > 0.0).then_some(f64::from(stored))
     }
 
-    /// Stored depth at a texel, with the centre off by half a snap to the worse side.
+    /// Returns the stored depth of a texel, with the centre off by half a snap to the worse side.
     fn stored(&self, storage: DepthStorage, centre: DVec2) -> Option<f64> {
         let snap = 0.5 / SNAPS;
         let mut worst: Option<f64> = None;
@@ -71,7 +72,7 @@ impl Case {
         Some((depth / step).round() * step)
     }
 
-    /// The lift and depth of a bias at a point of the plane, as the receiver's shader has them.
+    /// Returns lift and depth of a bias at a point of the plane, as the receiver's shader computes them.
     fn on_plane(&self, bias: &SpotBias, point: DVec3) -> (f32, f32) {
         let to_light = (self.fit.position - self.fit.origin).as_vec3() - (point - self.fit.origin).as_vec3();
         let sine = self.normal.cross(self.fit.direction).length();
@@ -87,7 +88,7 @@ impl Case {
         (offset, depth)
     }
 
-    /// Place in the map, in texels, w, and depth of a lifted point.
+    /// Returns position in the map (in texels), w, and depth of a lifted point.
     fn look_up(&self, point: DVec3, offset: f32) -> (DVec2, f32, f32) {
         let lifted = (point - self.fit.origin).as_vec3() + self.normal * offset;
         let at = self.fit.uv_from_world * lifted.extend(1.0);
@@ -95,7 +96,8 @@ impl Case {
         ((uv * self.fit.resolution.as_vec2()).as_dvec2(), at.w, at.z / at.w)
     }
 
-    /// Depth by which the nearest texel in reach lies before the compared depth; positive is acne.
+    /// Returns by how much the nearest texel of the footprint lies before the compared depth. Positive values
+    /// are acne.
     fn acne(&self, storage: DepthStorage, filter: &Filter, point: DVec3, (offset, bias): (f32, f32)) -> f64 {
         let (at, _, depth) = self.look_up(point, offset);
         let compared = f64::from(if self.is_reversed() { depth + bias } else { depth - bias });
@@ -105,8 +107,8 @@ impl Case {
         stored.map(before).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Points of the plane whose look-ups, lifted as a function says, come near the borders and centres of texels,
-    /// where filters change the texels that they read: nearer than rounding may move them.
+    /// Returns points of the plane whose look-ups, lifted by `lift`, are within rounding of a texel border or
+    /// centre, where the footprint of a filter changes.
     fn worst_points(&self, lift: impl Fn(DVec3) -> f32) -> Vec<DVec3> {
         let near = 1.0 / SNAPS;
         let (middle, _, _) = self.look_up(self.point, 0.0);
@@ -116,7 +118,8 @@ impl Case {
             let spread = (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(i)).fract() * 2.0 - 1.0;
             let at = middle.floor() + edge + spread * near;
             let mut point = self.point;
-            // The lift depends on where the point is; it changes little. A plane that ends there has no such point.
+            // The lift depends slightly on the position, so iterate. Near the end of the plane there may be
+            // no such point.
             for _ in 0..6 {
                 let offset = f64::from(lift(point));
                 point = self.at(at, offset) - self.normal.as_dvec3() * offset;
@@ -130,7 +133,8 @@ impl Case {
     }
 }
 
-/// Maps of any lamp, of 128 to 8192 texels, relative to the light or to points up to four times the far distance away.
+/// Maps of any lamp, of 128 to 8192 texels, relative to the light or to points up to four times the far
+/// distance away.
 fn any_fit() -> impl Strategy<Value = (shadowfit::spot::SpotLight, SpotFit)> {
     let side = || prop_oneof![Just(128_u32), Just(500), Just(2048), Just(8192)];
     let origin = (any_direction(), prop_oneof![Just(0.0), Just(0.5), Just(4.0)]);
@@ -141,7 +145,7 @@ fn any_fit() -> impl Strategy<Value = (shadowfit::spot::SpotLight, SpotFit)> {
     })
 }
 
-/// Points within the map, on planes from square to the ray from the light to 88.7° from it.
+/// Points within the map, on planes from 0° to 88.7° to the ray from the light.
 fn any_case() -> impl Strategy<Value = Case> {
     let tangent = [0.0, 3e-4, 0.1, 1.0, 10.0, 45.0].map(Just);
     let place = (double(-0.7, 0.7), double(-0.7, 0.7), double(0.02, 0.9));
@@ -149,7 +153,7 @@ fn any_case() -> impl Strategy<Value = Case> {
         |((lamp, fit), (x, y, share), azimuth, tangent, from_axis)| {
             let (near, far) = (f64::from(lamp.near), f64::from(lamp.far));
             let point = in_window(&lamp, x, y, near + (far - near) * share * share);
-            // Around the ray, or around the axis, square to which a plane has one depth.
+            // Around the ray, or around the axis: a plane perpendicular to the axis has constant depth.
             let toward = (fit.position - point).normalize().as_vec3();
             let around = if from_axis && tangent < 1.0 { -fit.direction } else { toward };
             let (u, v) = around.any_orthonormal_pair();
@@ -180,8 +184,8 @@ proptest! {
         }
     }
 
-    /// The offset that follows the azimuth is no larger than it must be, so hardware's snap and the rounding of f32 are
-    /// put to the test where they are worst.
+    /// The offset that depends on the azimuth is not larger than necessary. So test the hardware's snap and
+    /// the rounding of f32 at the worst points.
     #[test]
     fn the_offset_of_the_plane_itself_clears_it_at_the_worst_points(case in any_case()) {
         for filter in filters() {
@@ -201,7 +205,6 @@ proptest! {
         }
     }
 
-    /// What is predicted to be free of acne is free of it, however small the margin.
     /// The formula of the docs is the one that the crate computes.
     #[test]
     fn a_bias_on_a_plane_is_what_the_shader_s_formula_gives(case in any_case()) {
@@ -221,7 +224,8 @@ proptest! {
     }
 }
 
-/// Whether any of 2000 points on planes square to the axis shadows itself with a share of the precision.
+/// Returns whether any of 2000 points on planes square to the axis shadows itself with a share of the
+/// precision.
 fn has_bands(depth: DepthConvention, storage: DepthStorage, away: f64, share: f32) -> bool {
     let fit = lamp().fit(UVec2::splat(1024), depth).unwrap();
     let fit = fit.relative_to(fit.position + DVec3::new(0.6, 0.64, 0.48) * away);
@@ -248,9 +252,10 @@ fn the_precision_clears_planes_without_slope_and_a_part_of_it_does_not() {
         for away in [0.0, 100.0] {
             for storage in STORAGES {
                 assert!(!has_bands(depth, storage, away, 1.0), "{depth:?} {storage:?} {away}");
-                // Of a coarse step, rounding to the nearest needs half, and hardware that rounds the compared depth as
-                // well the other half. What f32 adds is a bound on roundings that seldom agree, so that of these points
-                // none needs more than a 24th of it, and relative to an origin 100 m away with reversed depth a 128th.
+                // For a coarse step, rounding to the nearest needs half of it, and hardware that also rounds
+                // the compared depth needs the other half. The f32 part bounds roundings that seldom agree,
+                // so that none of these points needs more than a 24th of it, or a 128th relative to an origin
+                // 100 m away with reversed depth.
                 let share = match storage {
                     DepthStorage::Unorm8 | DepthStorage::Float16 => 1.0 / 4.0,
                     DepthStorage::Unorm16 => 1.0 / 6.0,
@@ -273,7 +278,8 @@ fn texels_become_depth_and_metres_by_the_longer_side_at_the_distance() {
     let bias = SpotBias::from_texels(&settings, MapFormat::Depth16Unorm, &fit);
     assert_eq!((bias.constant_depth, bias.constant_offset), (0.0, 0.0));
     assert_eq!((bias.normal_offset, bias.receiver_plane), (3.0 * texel, 0.7));
-    // Half a texel at 7 m is as much depth as lies between 7 m and half a texel before it, to a texel's share of 7 m.
+    // Half a texel at 7 m corresponds to the depth between 7 m and half a texel before it, up to a texel's
+    // share of 7 m.
     let depth = fit.depth_at(7.0) - fit.depth_at(7.0 - 3.5 * f64::from(texel));
     assert!((f64::from(bias.distance_depth) / 7.0 / depth - 1.0).abs() < f64::from(texel), "{bias:?} for {depth}");
     assert!((bias.slope_depth / bias.distance_depth - 4.0).abs() < 1e-5);

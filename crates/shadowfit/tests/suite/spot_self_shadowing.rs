@@ -1,7 +1,8 @@
-//! Planes do not shadow themselves under a spot light's least biases, and under a little less they do.
+//! Under a spot light's least biases planes do not shadow themselves, and under slightly smaller biases they
+//! do.
 //!
-//! The map is simulated in f64: a texel stores the depth that the plane has at its centre, the filter reads the texels
-//! that its definition says. [`crate::spot_bias`] adds what f32 and hardware do.
+//! The map is simulated in f64: a texel stores the depth of the plane at its centre, and the filter reads the
+//! texels of its definition. [`crate::spot_bias`] adds the effects of f32 and hardware.
 
 use proptest::prelude::*;
 use shadowfit::DepthConvention;
@@ -19,14 +20,14 @@ use crate::support::{cases, double};
 struct Plane<'a> {
     fit: &'a SpotFit,
     world_normal: Vec3,
-    /// Unit normal toward the light, and the light's distance.
+    /// Unit normal toward the light. `height` is the light's distance from the plane.
     normal: DVec3,
     height: f64,
-    /// Where its middle is, in texels from the axis.
+    /// Position of its middle, in texels from the axis.
     middle: DVec2,
 }
 
-/// A world position, f64.
+/// Returns a world position in f64.
 fn world(fit: &SpotFit, light: DVec3) -> DVec3 {
     let rows = fit.light_from_world.as_dmat4().transpose();
     fit.position
@@ -36,8 +37,8 @@ fn world(fit: &SpotFit, light: DVec3) -> DVec3 {
 }
 
 impl<'a> Plane<'a> {
-    /// The plane through a place in the map (-1..1 across it) at a distance, whose normal leans by `theta` from the
-    /// direction to the light toward an azimuth.
+    /// Creates the plane through a position in the map (-1..1 across it) at a distance. Its normal is tilted
+    /// by `theta` from the direction to the light toward an azimuth.
     fn new(fit: &'a SpotFit, place: DVec2, distance: f64, theta: f64, azimuth: f64) -> Self {
         let middle = place * fit.resolution.as_dvec2() * 0.5;
         let through = (middle * fit.texel_size.as_dvec2()).extend(-1.0) * distance;
@@ -45,37 +46,38 @@ impl<'a> Plane<'a> {
         let across = to_light.any_orthonormal_vector();
         let lean = across * azimuth.cos() + to_light.cross(across) * azimuth.sin();
         let world_normal = (world(fit, to_light * theta.cos() + lean * theta.sin()) - fit.position).as_vec3();
-        // The plane is that of the rounded normal.
+        // The plane is defined by the rounded normal.
         let normal = fit.light_from_world.as_dmat4().transform_vector3(world_normal.as_dvec3()).normalize();
         Self { fit, world_normal, normal, height: -normal.dot(through), middle }
     }
 
-    /// 1 / d along a ray through the map, at a place in texels from the axis; 0 or less where the ray never meets it.
+    /// Returns 1 / d along a ray through the map, at a position in texels from the axis; 0 or less if the ray
+    /// misses the plane.
     fn nearness(&self, at: DVec2) -> f64 {
         let ray = (at * self.fit.texel_size.as_dvec2()).extend(-1.0);
         -self.normal.dot(ray) / self.height
     }
 
-    /// The plane's point in light space at a place in the map, where there is one within a thousand metres.
+    /// Returns the plane's point in light space at a position in the map, if there is one within 1000 m.
     fn point(&self, at: DVec2) -> Option<DVec3> {
         let nearness = self.nearness(at);
         (nearness > 1e-3).then(|| (at * self.fit.texel_size.as_dvec2()).extend(-1.0) / nearness)
     }
 
-    /// Whether a point in light space, moved toward the light by a stored depth, finds a texel in the filter's reach
-    /// that is nearer to the light than itself by more than rounding.
+    /// Returns whether a point in light space, moved toward the light by a stored depth, finds a texel in the
+    /// filter's footprint that is nearer to the light by more than rounding.
     fn shadows(&self, filter: &Filter, lifted: DVec3, depth: f64) -> bool {
         let nearness = -1.0 / lifted.z;
         let at = lifted.truncate() * nearness / self.fit.texel_size.as_dvec2();
         let nearest = filter.texels(at).map(|centre| self.nearness(centre)).fold(f64::NEG_INFINITY, f64::max);
         let scale = scale(self.fit);
-        // Offsets and depths are f32: a step of theirs, which counts against the least of 1/d that is told apart.
+        // Offsets and depths are f32: one step of them, relative to the least distinguishable 1/d.
         let rounding = 1e-6 * (nearest - nearness).abs() + 1e-12 * nearness;
         scale * (nearest - nearness - rounding) > depth
     }
 
-    /// Share of positions that shadow themselves, with the lift (metres along the normal) and depth that a function
-    /// gives at world positions.
+    /// Returns the share of positions that shadow themselves. `bias` returns the lift (metres along the
+    /// normal) and the depth at a world position.
     fn acne(&self, filter: &Filter, bias: impl Fn(DVec3) -> (f64, f64)) -> f64 {
         let (mut count, mut shadowed) = (0, 0);
         for at in positions().map(|at| self.middle + at) {
@@ -87,24 +89,24 @@ impl<'a> Plane<'a> {
         f64::from(shadowed) / f64::from(count.max(1))
     }
 
-    /// Sine of the angle between the normal and the light's axis.
+    /// Returns the sine of the angle between the normal and the light's axis.
     fn sine(&self) -> f64 {
         self.normal.truncate().length()
     }
 }
 
-/// B, in metres: the stored depth changes by B / d² per metre.
+/// Returns B, in metres: the stored depth changes by B / d² per metre.
 fn scale(fit: &SpotFit) -> f64 {
     let (near, far) = (f64::from(fit.near), f64::from(fit.far));
     near * far / (far - near)
 }
 
-/// Positions spread over a texel, and some texels on, by the R2 sequence (M. Roberts, 2018).
+/// Returns positions spread over some texels by the R2 sequence (M. Roberts, 2018).
 fn positions() -> impl Iterator<Item = DVec2> {
     (1..=200).map(|i| (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(i)).fract() * 3.0 - 1.5)
 }
 
-/// Maps with texels that are fine, coarse, and uneven.
+/// Returns maps with fine, coarse, and uneven texels.
 fn maps() -> Vec<SpotFit> {
     [(0.9, UVec2::splat(1024)), (1.6, UVec2::splat(64)), (2.0, UVec2::new(512, 96))]
         .into_iter()
@@ -133,7 +135,7 @@ fn every_case(prove: impl Fn(&SpotFit, &Filter, &Plane, &str)) {
     }
 }
 
-/// Sine of the angle to the axis from which on half of a bias must show acne.
+/// Sine of the smallest angle to the axis at which half of a bias must show acne.
 const STEEP: f64 = 0.17;
 
 fn least(plane: &Plane, filter: &Filter, point: DVec3) -> f64 {
@@ -154,7 +156,7 @@ fn the_normal_offset_of_a_plane_clears_it_and_half_of_it_does_not() {
 #[test]
 fn the_receiver_plane_depth_clears_a_plane_and_half_of_it_does_not() {
     every_case(|fit, filter, plane, name| {
-        // Where the light grazes the plane at less than the least cosine, a depth bias promises nothing.
+        // If the cosine between light and plane is below the least cosine, a depth bias guarantees nothing.
         let depth = |p: DVec3| {
             let is_lit = plane.height >= f64::from(MIN_COSINE) * (p - fit.position).length();
             let needed = receiver_plane_depth(fit, filter.reach, p, plane.world_normal).unwrap();
@@ -168,8 +170,8 @@ fn the_receiver_plane_depth_clears_a_plane_and_half_of_it_does_not() {
     });
 }
 
-/// The bound is no more than a twentieth too large: with nineteen twentieths some position of many shadows itself on
-/// some slope, for every filter and map.
+/// The bound is at most 5% too large: with 95% of it, some position of many shadows itself on some slope, for
+/// every filter and map.
 #[test]
 fn five_percent_less_than_the_least_offset_leaves_acne_for_every_filter() {
     for fit in maps() {
@@ -239,9 +241,9 @@ fn a_plane_square_to_the_axis_needs_no_bias_however_obliquely_it_is_lit() {
 
 #[test]
 fn a_lift_by_hand_clears_a_wall_by_the_texel_at_its_distance() {
-    // A window of 2 m × 2 m at 1 m with 200 texels: 0.01 m a texel there, 0.05 m at 5 m. A plane at 60° to the axis
-    // that leans along u needs E · t · d · sin 60° / (1 + E t sin 60° cos 60°) for E = 2: 2 · 0.05 · 0.866 025 / (1 +
-    // 0.02 · 0.433 013) = 0.085 859 m.
+    // A window of 2 m × 2 m at 1 m with 200 texels: 0.01 m per texel there, 0.05 m at 5 m. A plane at 60° to
+    // the axis that leans along u needs E · t · d · sin 60° / (1 + E t sin 60° cos 60°) for E = 2: 2 · 0.05 ·
+    // 0.866 025 / (1 + 0.02 · 0.433 013) = 0.085 859 m.
     let lamp = SpotLight {
         direction: Vec3::NEG_Z,
         position: DVec3::ZERO,
@@ -261,8 +263,9 @@ fn a_lift_by_hand_clears_a_wall_by_the_texel_at_its_distance() {
 proptest! {
     #![proptest_config(cases(300))]
 
-    /// Any lens, plane and place: the least offset is enough, the automatic one is enough, and no more than √2 times
-    /// the least of its azimuth and what planes that face away from the axis take.
+    /// For any lens, plane and position, the least offset is enough and the automatic one is enough. The
+    /// automatic one is at most √2 times the least offset of its azimuth plus the need of planes that face
+    /// away from the axis.
     #[test]
     fn the_automatic_offset_clears_any_plane_and_is_little_more_than_the_least(
         (fov, aspect, texels) in (double(0.1, 2.4), double(0.5, 2.0), 5..12_u32),

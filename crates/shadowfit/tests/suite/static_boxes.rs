@@ -1,4 +1,4 @@
-//! Boxes that stand in a tree give the maps and the casters that the same boxes in lists give.
+//! Static boxes in a tree give the same maps and casters as the same boxes in lists.
 
 use shadowfit::culling::cull;
 use shadowfit::demand::VisibleDemandSpace;
@@ -11,10 +11,10 @@ use shadowfit::{
 
 use crate::support::DIRECTION;
 
-/// Where the tree and the lists have their origin: not where the eye is.
+/// Origin of the tree and the lists, away from the eye.
 const ORIGIN: DVec3 = DVec3::new(5000.0, 10.0, -300.0);
 
-/// Houses of different heights on a square of ground, 3 m apart.
+/// Returns houses of different heights on a square of ground, 3 m apart.
 fn town(side: u16) -> Vec<Aabb> {
     let house = |i: u16| {
         let (x, z) = (f32::from(i % side) * 3.0, f32::from(i / side) * 3.0);
@@ -24,7 +24,7 @@ fn town(side: u16) -> Vec<Aabb> {
     (0..side * side).map(house).collect()
 }
 
-/// A walk through the town that turns.
+/// Returns the view at a frame of a turning walk through the town.
 fn view(frame: u16) -> ViewFrustum {
     let angle = f32::from(frame) * 0.21;
     let camera = PerspectiveCamera {
@@ -39,7 +39,7 @@ fn view(frame: u16) -> ViewFrustum {
     camera.frustum().expect("a camera")
 }
 
-/// What the ground shows, without depth buffer.
+/// Returns the visible demand of the ground, without a depth buffer.
 fn seen(view: &ViewFrustum, technique: &Technique) -> VisibleDemand {
     let space =
         VisibleDemandSpace::new(view, DIRECTION, technique.fit.up, technique.fit.max_distance).expect("a space");
@@ -55,7 +55,7 @@ fn seen(view: &ViewFrustum, technique: &Technique) -> VisibleDemand {
     seen
 }
 
-/// The maps of a walk, from inputs that a function completes.
+/// Returns the maps of a walk. `of` adds the boxes to the inputs.
 fn walk<'a>(technique: &Technique, tells: bool, of: impl Fn(FitInput<'a>) -> FitInput<'a>) -> Vec<FittedMaps> {
     let mut fitter = ShadowFitter::new(technique);
     (0..12)
@@ -70,8 +70,8 @@ fn walk<'a>(technique: &Technique, tells: bool, of: impl Fn(FitInput<'a>) -> Fit
         .collect()
 }
 
-/// That maps of two walks are the same up to rounding: the order of the boxes may round the outline of what is in view
-/// otherwise.
+/// Asserts that the maps of two walks are equal up to rounding: the order of the boxes may change the
+/// rounding of the outline of visible receivers.
 fn assert_same(name: &str, one: &[FittedMaps], other: &[FittedMaps]) {
     for (frame, (one, other)) in one.iter().zip(other).enumerate() {
         for (one, other) in one.iter().zip(other.iter()) {
@@ -89,7 +89,8 @@ fn every_technique_has_the_same_maps_from_a_tree_as_from_lists() {
     let tree = StaticBoxes::from_boxes(list).expect("good boxes");
     for preset in PRESETS {
         for tells in [false, true] {
-            // Without an end nearer than the picture's, all that is in view counts, from lists and tree alike.
+            // Shadows do not end before the picture does, so that all visible boxes count, from lists and
+            // tree alike.
             let technique = preset.technique().with_fit(preset.technique().fit.with_max_distance(90.0));
             let of_lists = |input| FitInput { receivers: Some(list), casters: Some(list), ..input };
             let of_tree = |input| FitInput { static_boxes: Some(&tree), ..input };
@@ -107,7 +108,7 @@ fn a_part_in_a_tree_and_a_part_in_lists_are_together_what_both_are_in_one() {
     let boxes = town(30);
     let all = Boxes { origin: ORIGIN, boxes: &boxes };
     let (some, rest) = boxes.split_at(250);
-    // One by one, in another order, with some that are gone again and some that came elsewhere first.
+    // Insert one by one, in another order, with boxes that are removed again and boxes that are moved later.
     let mut tree = StaticBoxes::new(ORIGIN);
     for aabb in rest.iter().rev() {
         let gone = tree.insert(Aabb::new(aabb.min - 7.0, aabb.max + 50.0)).expect("a box");

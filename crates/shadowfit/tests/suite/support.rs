@@ -9,7 +9,7 @@ use shadowfit::{Cascades, FittedMap, LightProjection, Maps, PerspectiveCamera, T
 /// Both fits.
 pub(crate) const KINDS: [FitKind; 2] = [FitKind::XnaSample, FitKind::FrustumAabb];
 
-/// Settings that add nothing to the frustum's own box.
+/// Returns settings that add nothing to the frustum's own box.
 pub(crate) fn exact(kind: FitKind) -> FitSettings {
     FitSettings::default()
         .with_kind(kind)
@@ -19,21 +19,21 @@ pub(crate) fn exact(kind: FitKind) -> FitSettings {
         .with_border(0.0)
 }
 
-/// Snapped maps, kept as long as held ones are by default.
+/// Snapping with the default oversize limit of held maps.
 pub(crate) const SNAP: Stabilise = Stabilise::Snap { max_oversize: 1.8 };
 
-/// Every way to keep maps, with the defaults of the rest.
+/// Returns every kind of stabilisation, with default values.
 pub(crate) fn every_stabilise() -> [Stabilise; 3] {
     [Stabilise::Off, SNAP, Stabilise::default()]
 }
 
-/// So many cascades, or one map where the count is 1, each fitted by the settings.
+/// Returns a technique with `cascades.count` cascades, or a single map for a count of 1.
 pub(crate) fn sliced(fit: &FitSettings, cascades: Cascades) -> Technique {
     let maps = Maps::from(cascades.with_shape(fit.shape)).with_count(cascades.count);
     Technique::default().with_maps(maps).with_fit(fit.map)
 }
 
-/// The same with cascades that are read by another selection; of a single map there is none.
+/// Returns the technique with another selection of cascades. Other maps are unchanged.
 pub(crate) fn read_by(technique: &Technique, selection: MapSelection) -> Technique {
     match technique.maps {
         Maps::Cascades(cascades) => technique.with_maps(cascades.with_selection(selection)),
@@ -41,7 +41,7 @@ pub(crate) fn read_by(technique: &Technique, selection: MapSelection) -> Techniq
     }
 }
 
-/// A plain camera some way from the world's origin.
+/// Returns a plain camera away from the world's origin.
 pub(crate) fn camera() -> PerspectiveCamera {
     PerspectiveCamera {
         eye: DVec3::new(12.0, 3.0, -40.0),
@@ -57,7 +57,7 @@ pub(crate) fn camera() -> PerspectiveCamera {
 /// A plain light.
 pub(crate) const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
 
-/// So many cases for each property unless `PROPTEST_CASES` says otherwise; scenes to which a
+/// Returns a configuration with this number of cases, unless `PROPTEST_CASES` is set. Scenes to which a
 /// property does not apply are skipped without a limit.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(count) }
@@ -75,7 +75,7 @@ pub(crate) fn float(low: f64, high: f64) -> impl Strategy<Value = f32> {
     double(low, high).prop_map(|v| v as f32)
 }
 
-/// Any unit direction, as a function of two numbers in 0..1 (uniform on the sphere).
+/// Returns a unit direction for two numbers in 0..1. Uniform numbers give uniform directions.
 fn on_sphere(height: f64, turn: f64) -> Vec3 {
     let y = 2.0 * height - 1.0;
     let r = (1.0 - y * y).max(0.0).sqrt();
@@ -88,7 +88,7 @@ pub(crate) fn any_direction() -> impl Strategy<Value = Vec3> {
     (double(0.0, 1.0), double(0.0, 1.0)).prop_map(|(height, turn)| on_sphere(height, turn))
 }
 
-/// Cameras of any attitude: 11° to 115° of view, near/far ratios up to 10,000, up to 1 km out.
+/// Cameras in any orientation: 11° to 115° of view, near/far ratios up to 10,000, up to 1 km out.
 pub(crate) fn any_camera() -> impl Strategy<Value = PerspectiveCamera> {
     let eye = (double(-1e3, 1e3), double(-1e3, 1e3), double(-1e3, 1e3));
     let lens = (float(0.2, 2.0), float(0.5, 3.0), float(-2.0, 1.0), float(0.3, 4.0));
@@ -106,17 +106,17 @@ pub(crate) fn any_kind() -> impl Strategy<Value = FitKind> {
     prop_oneof![Just(FitKind::XnaSample), Just(FitKind::FrustumAabb)]
 }
 
-/// The fit of a camera by settings that must succeed.
+/// Returns the fit of a camera with these settings. It must succeed.
 pub(crate) fn fitted(camera: &PerspectiveCamera, direction: Vec3, settings: &FitSettings) -> LightProjection {
     shadowfit::fit(&camera.frustum().unwrap(), direction, settings).unwrap()
 }
 
-/// What a vertex shader computes: an affine matrix times a point, in f32.
+/// Transforms a point as a vertex shader does: an affine matrix times a point, in f32.
 pub(crate) fn apply(matrix: &Mat4, point: Vec3) -> Vec3 {
     (*matrix * point.extend(1.0)).truncate()
 }
 
-/// The numbers of a JSON array, nested ones flattened.
+/// Returns the numbers of a JSON array, with nested arrays flattened.
 pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(values) => values.iter().flat_map(numbers).collect(),
@@ -124,7 +124,7 @@ pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     }
 }
 
-/// Greatest difference as a share of the greatest expected element.
+/// Returns the greatest difference as a share of the greatest expected element.
 pub(crate) fn relative_error(actual: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(actual.len(), expected.len());
     let largest = expected.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -138,7 +138,7 @@ pub(crate) struct XnaCase {
     pub(crate) json: Value,
 }
 
-/// All cases of the published vectors.
+/// Returns all cases of the published vectors.
 pub(crate) fn xna_cases() -> Vec<XnaCase> {
     let text = include_str!("../data/xna_fit_cases.json");
     let file: Value = serde_json::from_str(text).unwrap();
@@ -163,11 +163,11 @@ fn xna_case(json: &Value) -> XnaCase {
 
 /// View depths of a map in f32, as shaders compare them.
 pub(crate) trait ShaderDepths {
-    /// Where it begins: at `f32::MAX` where it has no range.
+    /// Returns its beginning, or `f32::MAX` if it has no range.
     fn near(&self) -> f32;
-    /// Where it ends: at `f32::MAX` for no end, at `f32::MIN` where no point reads it.
+    /// Returns its end: `f32::MAX` if it has no end, `f32::MIN` if no point reads it.
     fn far(&self) -> f32;
-    /// From where it holds everything that is visible: at `f32::MAX` where it need not.
+    /// Returns the view depth from which it covers all visible points, or `f32::MAX` if it need not.
     fn covered_from(&self) -> f32;
 }
 

@@ -1,4 +1,4 @@
-//! The swept receiver volume culls no caster whose shadow is seen, and few others are kept.
+//! The swept receiver volume keeps every caster with a visible shadow, and few other casters.
 
 use proptest::prelude::*;
 use shadowfit::bias::FilterRadius;
@@ -15,8 +15,8 @@ use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fit
 const ALL_KINDS: [FitKind; 5] =
     [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-/// How a view's rectangles lie: from `low` to `high` in its own right and up, in units of the depth (perspective) or
-/// metres (orthographic).
+/// The rectangles of a view: from `low` to `high` along its right and up axes, in units of the depth
+/// (perspective) or metres (orthographic).
 #[derive(Clone, Copy, Debug)]
 struct Lens {
     forward: Vec3,
@@ -50,7 +50,7 @@ impl Lens {
     }
 }
 
-/// Perspective, orthographic, off-axis and mirrored views of any attitude.
+/// Perspective, orthographic, off-axis and mirrored views in any orientation.
 fn any_lens() -> impl Strategy<Value = Lens> {
     let sides = (float(-1.5, 0.9), float(-1.5, 0.9), float(0.1, 2.0), float(0.1, 2.0));
     let depths = (float(-2.0, 1.0), float(0.3, 4.0));
@@ -64,7 +64,7 @@ fn any_lens() -> impl Strategy<Value = Lens> {
         })
 }
 
-/// One view, the eyes of a headset, or two views that look elsewhere.
+/// One view, the eyes of a headset, or two views with different directions.
 fn any_views() -> impl Strategy<Value = Vec<ViewFrustum>> {
     let eye = prop_oneof![
         Just(DVec3::ZERO),
@@ -77,7 +77,7 @@ fn any_views() -> impl Strategy<Value = Vec<ViewFrustum>> {
     })
 }
 
-/// The point of a view at shares of its picture and of a range of depths.
+/// Returns the point of a view at shares of its picture and of a depth range.
 fn point_in(view: &ViewFrustum, near: f64, far: f64, share: DVec3) -> DVec3 {
     let depth = near + (far - near) * share.z;
     let t = (depth - f64::from(view.near)) / f64::from(view.far - view.near);
@@ -93,7 +93,7 @@ fn fit_of(views: &[ViewFrustum], direction: Vec3, settings: &FitSettings, receiv
     fit_scene(&input, settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
-/// A box in f32 that holds a point given in f64.
+/// Returns an f32 box that contains an f64 point.
 fn box_around(point: DVec3, half: f32, share: Vec3) -> (Vec3, Vec3) {
     let (low, high) = (point.as_vec3() - share * half, point.as_vec3() + (Vec3::ONE - share) * half);
     let down = |v: f32, p: f64| if f64::from(v) > p { v.next_down() } else { v };
@@ -104,14 +104,14 @@ fn box_around(point: DVec3, half: f32, share: Vec3) -> (Vec3, Vec3) {
     )
 }
 
-/// Texture coordinates of a world position, in f64.
+/// Returns the texture coordinates of a world position, in f64.
 fn uv(fit: &LightProjection, p: DVec3) -> DVec2 {
     let m = fit.uv_from_world.as_dmat4();
     let p = p - fit.origin;
     (m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis).truncate().truncate()
 }
 
-/// Where a sampled caster and its receiver lie.
+/// Positions of a sampled caster and its receiver.
 #[derive(Clone, Debug)]
 struct Sample {
     view: usize,
@@ -125,7 +125,7 @@ struct Sample {
 }
 
 fn any_sample() -> impl Strategy<Value = Sample> {
-    // Corners and edges of the picture and of the range of depths come up as often as what lies between.
+    // Corners and edges of the picture and of the depth range are as frequent as inner points.
     let share = || prop_oneof![double(0.0, 1.0), Just(0.0), Just(1.0)];
     let signed = || prop_oneof![float(-1.0, 1.0), Just(-1.0), Just(1.0)];
     (
@@ -152,7 +152,8 @@ fn any_sample() -> impl Strategy<Value = Sample> {
 proptest! {
     #![proptest_config(cases(2000))]
 
-    /// Every receiver, moved by the normal offset, read by the filter: the caster over what is read is kept.
+    /// Checks receivers anywhere in the view, moved by the normal offset, with the filter's footprint around
+    /// them: a caster over the footprint is kept.
     #[test]
     fn a_caster_that_casts_a_shadow_into_view_is_kept(
         views in any_views(), direction in any_direction(), kind in prop::sample::select(&ALL_KINDS[..]),
@@ -161,7 +162,7 @@ proptest! {
     ) {
         let near = views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
         let far = views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
-        // In f32, and the receiver's depths from it.
+        // The depths are f32 numbers, and the receiver's depths derive from them.
         let at = |share: f64| near + ((far - near) as f64 * share * share * share) as f32;
         let (near, far) = (at(cut_a.min(cut_b)), at(cut_a.max(cut_b)));
         prop_assume!(near < far);
@@ -170,7 +171,7 @@ proptest! {
         prop_assume!(from < to);
         let receiver = point_in(view, from.into(), to.into(), sample.at);
 
-        // Focused on the nearer half of the view, which is where receivers are then.
+        // Focused on the nearer half of the view, which then contains the receivers.
         let middle = point_in(view, from.into(), to.into(), DVec3::splat(0.5)) - view.origin;
         let size = Vec3::splat((to - from) * 2.0);
         let receivers = [Aabb::new(middle.as_vec3() - size, middle.as_vec3() + size)];
@@ -192,7 +193,7 @@ proptest! {
 
         let sweep = Sweep { near, far, filter_radius: reach, normal_offset, ..Sweep::new(&views) };
         let volume = CasterVolume::swept(&fit, &sweep).unwrap();
-        // Relative to the fit's origin, and to the world's own from up to 170 km away.
+        // Relative to the fit's origin, and to the world's origin, which is up to 170 km away.
         let elsewhere = CasterVolume::swept(&fit.relative_to(DVec3::ZERO), &sweep).unwrap();
         for volume in [volume, volume.relative_to(DVec3::ZERO), elsewhere] {
             let (min, max) = box_around(caster - volume.origin, sample.half, sample.share);
@@ -200,7 +201,7 @@ proptest! {
         }
     }
 
-    /// By both selections, and of two maps that are blended.
+    /// For both selections, and for two blended maps.
     #[test]
     fn no_map_of_several_loses_a_caster_by_its_own_volume(
         lens in any_lens(), direction in any_direction(), kind in 0..5_usize,
@@ -257,8 +258,8 @@ proptest! {
 /// A half space: a point p is inside where n·p + d >= 0.
 type HalfSpace = (DVec3, f64);
 
-/// Whether half spaces that bound a volume have a point in common, with a `margin` in metres: then three of their
-/// planes meet in a point of all.
+/// Returns whether the intersection of half spaces, which bound a volume, is not empty, with a `margin` in
+/// metres. If so, three of their planes meet in a point of it.
 fn meet(planes: &[HalfSpace], margin: f64) -> bool {
     let inside = |p: DVec3| planes.iter().all(|(n, d)| n.dot(p) + d >= margin - 1e-9);
     let shifted = |i: usize| (planes[i].0, planes[i].1 - margin);
@@ -276,7 +277,7 @@ fn meet(planes: &[HalfSpace], margin: f64) -> bool {
     false
 }
 
-/// The planes of a view.
+/// Returns the planes of a view.
 fn planes_of(view: &ViewFrustum) -> Vec<HalfSpace> {
     let c = view.corners.map(Vec3::as_dvec3);
     let centre = c.into_iter().sum::<DVec3>() / 8.0;
@@ -289,7 +290,7 @@ fn planes_of(view: &ViewFrustum) -> Vec<HalfSpace> {
         .to_vec()
 }
 
-/// The planes of a box and of everything that it shadows.
+/// Returns the planes of a box together with the volume that it shadows.
 fn shadow_of(min: Vec3, max: Vec3, direction: Vec3) -> Vec<HalfSpace> {
     let (min, max, direction) = (min.as_dvec3(), max.as_dvec3(), direction.as_dvec3());
     let mut planes = Vec::new();
@@ -305,7 +306,8 @@ fn shadow_of(min: Vec3, max: Vec3, direction: Vec3) -> Vec<HalfSpace> {
     planes
 }
 
-/// Boxes over and around a view, as a scene has them: some share of its size, at most a few times as far away.
+/// Returns boxes over and around a view with realistic sizes: up to a share of the view's size, and not much
+/// farther away.
 fn boxes_around(view: &ViewFrustum, half: f64, count: usize) -> impl Iterator<Item = (Vec3, Vec3)> {
     let (low, high) = view.corners.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), c| (low.min(*c), high.max(*c)));
     let (middle, size) = ((low + high) * 0.5, high - low);
@@ -320,7 +322,7 @@ fn boxes_around(view: &ViewFrustum, half: f64, count: usize) -> impl Iterator<It
     })
 }
 
-/// How many boxes cast a shadow into view, and how many others are kept.
+/// Number of boxes that cast a shadow into view, and number of other boxes that are kept.
 #[derive(Debug, Default)]
 struct Counts {
     shadowing: usize,
@@ -330,18 +332,18 @@ struct Counts {
 }
 
 impl Counts {
-    /// Boxes drawn without need for each one that casts a shadow into view.
+    /// Returns the number of unnecessary boxes per box that casts a shadow into view.
     fn waste(&self) -> f64 {
         self.kept_in_vain as f64 / self.shadowing as f64
     }
 }
 
-/// Counts, having made sure that no box which casts a shadow into view is culled.
+/// Counts boxes. Panics if a box that casts a shadow into view is culled.
 fn count(fit: &LightProjection, view: &ViewFrustum, half: f64) -> Counts {
     let sweep = Sweep { filter_radius: FilterRadius::taps(0.0), ..Sweep::new(std::slice::from_ref(view)) };
     let volume = CasterVolume::swept(fit, &sweep).unwrap();
     let slice = planes_of(view);
-    // What the reach of one texel adds, and rounding.
+    // The footprint of one texel, and rounding.
     let margin = f64::from(fit.texel_size.max_element()) * 2.0 + 1e-4;
     let mut counts = Counts::default();
     for (min, max) in boxes_around(view, half, 4000) {
@@ -359,7 +361,7 @@ fn count(fit: &LightProjection, view: &ViewFrustum, half: f64) -> Counts {
     counts
 }
 
-/// The figures that the documentation of `CasterVolume` gives.
+/// Reproduces the figures in the documentation of `CasterVolume`.
 #[test]
 fn few_boxes_without_a_shadow_in_view_are_kept() {
     let view = camera().frustum().unwrap();
@@ -389,7 +391,7 @@ fn from_every_side_no_caster_is_lost_and_few_others_are_kept() {
 
 #[test]
 fn a_long_box_past_a_corner_of_the_outline_is_the_known_false_positive() {
-    // Seen by a light from above, the view is a square that stands on its corner.
+    // For a light from above, the view is a square on its corner.
     let lens = Lens {
         forward: Vec3::new(1.0, 0.0, -1.0),
         up: Vec3::Y,
@@ -408,13 +410,13 @@ fn a_long_box_past_a_corner_of_the_outline_is_the_known_false_positive() {
         let centre = Vec3::new(corner + x, 5.0, z);
         volume.intersects_aabb(centre - Vec3::new(0.1, 0.1, half), centre + Vec3::new(0.1, 0.1, half))
     };
-    // No part of it is over the view, and it is behind none of the sides; a short one is.
+    // No part of the box is over the view, but it is not behind any side plane. A short box is.
     let middle = -std::f32::consts::FRAC_1_SQRT_2;
     assert!(beyond(0.2, 5.0, middle));
     assert!(!beyond(0.2, 0.05, middle));
 }
 
-/// An orthographic view from above, 2 m wide and high, around a point of the ground.
+/// Returns an orthographic view from above, 2 m wide and high, around a point of the ground.
 fn from_above(x: f64, z: f64) -> ViewFrustum {
     let lens = Lens {
         forward: Vec3::NEG_Y,
@@ -431,22 +433,22 @@ fn from_above(x: f64, z: f64) -> ViewFrustum {
 
 #[test]
 fn several_views_share_the_outline_around_them_all() {
-    // Two squares, one 10 m to the right and 10 m down the picture: a hexagon holds them.
+    // Two squares, the second one 10 m to the right and 10 m down in the picture: their hull is a hexagon.
     let views = [from_above(0.0, 0.0), from_above(10.0, 10.0)];
     let fit = fit_of(&views, Vec3::NEG_Y, &exact(FitKind::FrustumAabb), None);
     let volume = CasterVolume::swept(&fit, &Sweep::new(&views)).unwrap();
     let touches = |x: f32, z: f32| volume.intersects_sphere(Vec3::new(x, 4.0, z), 0.1);
     assert!(touches(0.0, 0.0) && touches(10.0, 10.0) && touches(5.0, 5.0) && touches(-1.05, -1.05));
-    // Beside the band between them, but in the box around both: 2 √2 m wide, and 0.1 m more.
+    // Outside the band between them, but inside the box around both: the band is 2 √2 m wide, plus 0.1 m.
     assert!(touches(6.0, 4.0) && !touches(6.2, 4.0 - 0.2) && !touches(0.0, 10.0) && !touches(10.0, 0.0));
-    // Below the views nothing casts a shadow into them.
+    // Casters below the views cast no shadow into them.
     assert!(!volume.intersects_sphere(Vec3::new(0.0, -3.2, 0.0), 0.1));
     assert!(volume.intersects_sphere(Vec3::new(0.0, -2.9, 0.0), 0.1));
 }
 
 #[test]
 fn an_outline_of_many_edges_is_simplified_outward() {
-    // Views around a circle, more and more of them; the last ones have more corners than there is storage.
+    // More and more views around a circle. The last ones have more corners than the storage.
     for count in [3, 8, 30, 400] {
         let turn = std::f64::consts::TAU / f64::from(count);
         let views: Vec<_> =
@@ -459,7 +461,7 @@ fn an_outline_of_many_edges_is_simplified_outward() {
                 assert!(volume.intersects_sphere(point, 0.0), "{count} views");
             }
         }
-        // Six edges around a circle: the hexagon's area is 1.10 times the circle's, and the square's 1.27.
+        // Six edges around a circle: the hexagon has 1.10 times the circle's area, and the square 1.27 times.
         let (mut inside, samples) = (0, 10_000);
         for i in 0..samples {
             let (x, z) = ((f64::from(i) * 0.618_034).fract() - 0.5, (f64::from(i) / f64::from(samples)) - 0.5);

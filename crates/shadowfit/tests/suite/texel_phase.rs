@@ -1,8 +1,7 @@
-//! Shadow edges that stand still: where in its texel a fixed point of the world lies.
+//! Stable shadow edges: the texel phase of fixed world points.
 //!
-//! Each look-up is made in f32, as a shader makes it, and compared with the frame before (0.005
-//! texel) and with a chain in f64 from the world's own origin (0.02 texel), 0, 1, 10 and 100 km
-//! from there.
+//! Each look-up is computed in f32 as in a shader. It is compared with the previous frame (0.005 texel) and
+//! with an f64 computation from the world's own origin (0.02 texel), at 0, 1, 10 and 100 km from there.
 
 use proptest::prelude::*;
 use shadowfit::BoundSource;
@@ -15,10 +14,10 @@ use shadowfit::{
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
 use crate::support::{SNAP, ShaderDepths, apply, cases, double, sliced};
 
-/// Room above each step of extents, as a share of it.
+/// Margin above each step of extents, as a share of it.
 const STEP_ROOM: f64 = 1e-5;
 
-/// The exact texel size: extents are eighths of an octave over the texels that the grid leaves.
+/// Returns the exact texel size: extents are eighths of an octave over the texels that the grid leaves.
 pub(crate) fn exact_texel(fit: &LightProjection, border: f32) -> DVec2 {
     let usable = fit.resolution.as_dvec2() - (2.0 * f64::from(border) + 1.0);
     let exact = |rounded: f32, usable: f64| {
@@ -30,20 +29,20 @@ pub(crate) fn exact_texel(fit: &LightProjection, border: f32) -> DVec2 {
     DVec2::new(exact(fit.texel_size.x, usable.x), exact(fit.texel_size.y, usable.y))
 }
 
-/// Position of a world point on the map's grid, in texels right and down from the world's origin,
-/// all in f64 but for the light's axes, which are f32 by definition.
+/// Returns the position of a world point on the map's grid, in texels right and down from the world's origin.
+/// All values are f64 except the light's axes, which are f32 by definition.
 pub(crate) fn grid_position(fit: &LightProjection, texel: DVec2, point: DVec3) -> DVec2 {
     let [x, y] = [fit.light_from_world.row(0), fit.light_from_world.row(1)].map(|row| row.truncate().as_dvec3());
     DVec2::new(x.dot(point) / texel.x, -y.dot(point) / texel.y)
 }
 
-/// Position in the map, in texels, as a shader finds it.
+/// Returns the position in the map, in texels, as a shader computes it.
 pub(crate) fn shader_position(fit: &LightProjection, point: DVec3) -> DVec2 {
     let uv = apply(&fit.uv_from_world, (point - fit.origin).as_vec3());
     (uv.truncate() * fit.resolution.as_vec2()).as_dvec2()
 }
 
-/// Difference of two positions within their texels, in texels.
+/// Returns the difference of two texel phases, in texels.
 pub(crate) fn apart(a: DVec2, b: DVec2) -> f64 {
     let d = a - b;
     (d - d.round()).abs().max_element()
@@ -65,14 +64,14 @@ fn frame(fitter: &mut FitState, view: &SceneView, direction: Vec3, settings: &Te
     fitter.fit(&FitInput::new(&views, direction), settings, &mut Scratch::new(&mut storage)).unwrap()
 }
 
-/// Points that the first frame sees in one of its maps.
+/// Returns visible points of the first frame in one of its maps.
 fn points_in(map: &FittedMap, view: &SceneView, places: &[[f64; 3]]) -> Vec<DVec3> {
     let (near, far) = (f64::from(map.near()), f64::from(map.far()).min(view.lens.far));
     places.iter().map(|[x, y, z]| view.eye + view.point(*x, *y, near + (far - near) * z)).collect()
 }
 
-/// Walks on and compares each frame's maps with those before; `is_kept` says which of them
-/// promise to stand still, given the frame before. Gives how many of them did.
+/// Moves the camera on and compares the maps of successive frames. `is_kept` tells from the previous frame
+/// which maps must stay still. Returns the number of these.
 fn walk(
     view: SceneView,
     step: Walk,
@@ -98,7 +97,7 @@ fn walk(
                 old.projection.texel_size
             );
             let texel = exact_texel(&map.projection, settings.border());
-            // Leaps take the camera to where the points are in no map, which rounds them the more.
+            // Leaps move the camera so that points are outside all maps, where their rounding is larger.
             for point in points.iter().filter(|point| map.projection.covers(**point) && old.projection.covers(**point))
             {
                 let place = shader_position(&map.projection, *point);
@@ -113,8 +112,8 @@ fn walk(
     kept
 }
 
-/// Whether a frustum's sphere is so near to a step of extents that the 1e-7 by which its corners
-/// are rounded, other ones in each frame, may choose between two steps.
+/// Returns whether a frustum's sphere is so near to a step of extents that the rounding of its corners (1e-7,
+/// different in each frame) may select either step.
 fn is_on_a_step(view: &SceneView, maps: &FittedMaps, radius: impl Fn(&FittedMap) -> f64) -> bool {
     let far = view.lens.far;
     maps.iter().filter(|map| f64::from(map.near()) < far).any(|map| {
@@ -151,8 +150,8 @@ proptest! {
         walk(view, step, direction, &settings, &places, |_| true);
     }
 
-    /// The corners relative to the eye are the same bits while the camera does not turn, so all
-    /// snapped maps stand still.
+    /// While the camera does not turn, the corners relative to the eye keep all their bits, so all snapped
+    /// maps stay still.
     #[test]
     fn snapped_boxes_stand_still_while_the_camera_moves(
         view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
@@ -160,13 +159,13 @@ proptest! {
     ) {
         let settings = settings(kind, SNAP, count, size, border);
         let step = Walk { turn: 0.0, ..step };
-        // An f64 matrix is rounded by 2e-16 of the eye's distance, which may turn a corner's last bit.
+        // An f64 matrix is rounded by 2e-16 of the eye's distance, which may change a corner's last bit.
         let same = std::iter::successors(Some(view), |view| Some(step.moved(view))).take(7);
         prop_assume!(same.into_iter().all(|later| later.frustum().corners == view.frustum().corners));
         walk(view, step, direction, &settings, &places, |_| true);
     }
 
-    /// Held maps stand still while they are held, however the camera moves.
+    /// Held maps stay still while they are held, for any camera movement.
     #[test]
     fn held_maps_stand_still_while_the_camera_moves_and_turns(
         view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
@@ -177,8 +176,7 @@ proptest! {
     }
 }
 
-/// A walk and a slow look around hold every map most of the time, so that the proof above is of
-/// something.
+/// During a walk with slow turns every map is held most of the time, so the test above is not vacuous.
 #[test]
 fn maps_are_held_on_a_walk() {
     let view = crate::scenes::of_camera(&crate::support::camera());

@@ -1,4 +1,4 @@
-//! A limit to how much longer than wide texels may be.
+//! The limit of the ratio of a texel's length to its width.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
@@ -62,7 +62,7 @@ fn what_is_no_limit_is_refused() {
 proptest! {
     #![proptest_config(cases(200))]
 
-    /// Snapped and held maps too, whose texels are on a ladder of their own.
+    /// This includes snapped and held maps, whose texels are quantised separately.
     #[test]
     fn no_map_has_longer_texels_than_the_limit(
         camera in any_camera(), direction in any_direction(), limit in float(1.0, 4.0), turn in float(-0.05, 0.05),

@@ -1,4 +1,4 @@
-//! How closely the fits hold the frustum, as a shader sees it: f32 matrix times f32 corner.
+//! How closely the fits enclose the frustum, computed as in a shader: f32 matrix times f32 corner.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
@@ -7,14 +7,14 @@ use shadowfit::{DepthConvention, LightProjection, PerspectiveCamera, ViewFrustum
 
 use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
 
-/// A corner lies up to about six box sizes from the eye (the narrowest lens has 0.2 of its length
-/// across), and a matrix times a point in f32 rounds by about eight times 2⁻²⁴ of its terms: 3e-6,
-/// and 6e-6 in clip space, which is two wide.
+/// A corner is up to about six box sizes from the eye (the narrowest lens is 0.2 of its length wide), and a
+/// matrix times a point in f32 rounds by about eight times 2⁻²⁴ of its terms: 3e-6, and 6e-6 in clip space,
+/// which has width two.
 const TOLERANCE: f32 = 1e-5;
 
-/// The fits that promise no holes leave room for the worst rounding: 28 times 2⁻²⁴ of the distance
-/// and the extent, which with twelve short sides to the farthest corner is 2.2e-5 of a side, and
-/// 4.4e-5 in clip space.
+/// Fits that guarantee no holes include a margin for the worst rounding: 28 times 2⁻²⁴ of the distance and
+/// the extent. With twelve short sides to the farthest corner, this is 2.2e-5 of a side, and 4.4e-5 in clip
+/// space.
 const ROOM: f32 = 6e-5;
 
 fn clip_bounds(fit: &LightProjection, frustum: &ViewFrustum) -> (Vec3, Vec3) {

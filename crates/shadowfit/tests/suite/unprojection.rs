@@ -10,7 +10,8 @@ use crate::support::{DIRECTION, any_camera, camera, exact, fitted, xna_cases};
 const DEPTHS: [DepthConvention; 3] =
     [DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne];
 
-/// Clip space from world axes relative to the eye, in f64; an infinite far plane is allowed.
+/// Returns the matrix from world axes, relative to the eye, to clip space, in f64. The far plane may be
+/// infinite.
 fn clip_from_eye(camera: &PerspectiveCamera, depth: DepthConvention) -> DMat4 {
     let (n, f) = (f64::from(camera.near), f64::from(camera.far));
     let (scale, offset) = match depth {
@@ -39,14 +40,14 @@ fn world_from_clip(camera: &PerspectiveCamera, depth: DepthConvention) -> DMat4 
     DMat4::from_translation(camera.eye) * clip_from_eye(camera, depth).inverse()
 }
 
-/// The documented bound: 4 · 2⁻²⁴ · r · (|corner| + |eye|).
+/// Returns the documented bound: 4 · 2⁻²⁴ · r · (|corner| + |eye|).
 fn bound(camera: &PerspectiveCamera, depth: DepthConvention, corner: usize, length: f64, eye: f64) -> f64 {
     let far_and_cancelling = corner >= 4 && depth != DepthConvention::Reversed;
     let ratio = if far_and_cancelling { f64::from(camera.far / camera.near) } else { 1.0 };
     4.0 / 16_777_216.0 * ratio * (length + eye)
 }
 
-/// Worst error of all corners as a share of its bound; asserts that none is above 1.
+/// Returns the worst error of all corners as a share of its bound. Asserts that it is at most 1.
 fn worst_share(camera: &PerspectiveCamera, depth: DepthConvention, frustum: &ViewFrustum, eye: f64) -> f64 {
     let expected = camera.frustum().unwrap();
     let mut worst: f64 = 0.0;
@@ -69,7 +70,7 @@ fn corners_of_an_f32_world_matrix_stay_within_the_stated_bound() {
             worst = worst.max(worst_share(&case.camera, depth, &frustum, case.camera.eye.length()));
         }
     }
-    // The bound is no empty promise: some corner uses at least a twentieth of it.
+    // The bound is tight within a factor of 20: some corner uses at least a twentieth of it.
     assert!(worst > 0.05, "{worst}");
 }
 
@@ -142,7 +143,7 @@ fn an_infinite_far_plane_is_brought_to_the_maximum_distance() {
         }
         let endless = ViewFrustum::from_eye_from_clip(&matrix, camera().eye, depth, f32::MAX);
         assert_eq!(endless, Err(FitError::Endless));
-        assert!(FitError::Endless.to_string().contains("name a maximum shadow distance"));
+        assert!(FitError::Endless.to_string().contains("set a maximum shadow distance"));
     }
 }
 
@@ -204,7 +205,7 @@ fn off_axis_and_mirrored_matrices_are_fitted_tightly() {
     }
 }
 
-/// A perspective in three ways: as it is, off-axis, and mirrored.
+/// Returns three variants of a perspective: unchanged, off-axis, and mirrored.
 fn lenses(clip_from_eye: DMat4) -> [DMat4; 3] {
     let off_axis = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, DVec4::W) + {
         let shift = |row: DVec4| DVec4::new(0.3 * row.w, -0.4 * row.w, 0.0, 0.0);
@@ -231,7 +232,7 @@ fn a_perspective_that_is_named_with_the_other_end_of_its_depth_is_refused() {
                         if is_reversed == (named == DepthConvention::Reversed) {
                             let frustum = result.unwrap();
                             assert!(frustum.forward.dot(camera.forward) > 0.0, "{has:?} named {named:?}: {frustum:?}");
-                            // Whether a plain range is 0..1 or -1..1 no matrix tells.
+                            // A matrix does not tell whether a plain range is 0..1 or -1..1.
                             let near = if has == named { 1.0..=1.0 } else { 0.49..=2.01 };
                             let ratio = frustum.near / camera.near;
                             assert!(
@@ -257,7 +258,8 @@ fn what_is_said_of_the_other_depth_names_the_one_that_the_matrix_has() {
     let text = |named, is_reversed| FitError::OtherDepth { named, is_reversed }.to_string();
     assert_eq!(
         text(DepthConvention::ZeroToOne, true),
-        "the camera's matrix has reversed depth (near 1, far 0), not near 0, far 1 as named; name DepthConvention::Reversed"
+        "the camera's matrix has reversed depth (near 1, far 0), not near 0, far 1 as stated; use \
+         DepthConvention::Reversed"
     );
     assert!(text(DepthConvention::Reversed, false).contains("DepthConvention::ZeroToOne, or NegativeOneToOne"));
 }

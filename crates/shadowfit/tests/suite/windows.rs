@@ -1,4 +1,4 @@
-//! Windows: what they promise whatever camera, light and demand grid are, by what comes out of a [`FitState`].
+//! Windows: their guarantees for any camera, light and demand grid, tested on the output of a [`FitState`].
 
 mod content;
 mod coverage;
@@ -22,21 +22,21 @@ use shadowfit::{
 use crate::scenes::{SceneView, any_depth, of_camera};
 use crate::support::{any_direction, float};
 
-/// Rays across and down the picture, as those of the frame before.
+/// Number of rays across and down the picture.
 const COLUMNS: u16 = 64;
 const ROWS: u16 = 36;
 
-/// A visible point, and how far it moves on its surface for a pixel of a picture that is [`PIXELS`] high.
+/// A visible point, and its movement on its surface per pixel of a picture that is [`PIXELS`] high.
 #[derive(Clone, Copy, Debug)]
 struct Hit {
-    /// Relative to the eye, as the rest in world axes.
+    /// Position relative to the eye. All vectors are in world axes.
     point: DVec3,
     normal: DVec3,
     right: DVec3,
     down: DVec3,
 }
 
-/// A ray that boxes are tested against.
+/// A ray for tests against boxes.
 #[derive(Clone, Copy)]
 struct Ray {
     start: DVec3,
@@ -49,9 +49,11 @@ impl Ray {
         Self { start, inverse: along.recip() }
     }
 
-    /// Where the ray enters a box, as a multiple of its direction, and the normal there; `None` from inside.
+    /// Returns where the ray enters a box, as a multiple of its direction, and the normal there; `None` from
+    /// inside.
     fn entry(self, (min, max): (DVec3, DVec3)) -> Option<(f64, DVec3)> {
-        // Along an axis that the ray does not follow these are infinite: both of one sign if it starts beside the box.
+        // Along an axis that the ray does not follow, these are infinite: both have the same sign if it
+        // starts beside the box.
         let (a, b) = ((min - self.start) * self.inverse, (max - self.start) * self.inverse);
         let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
         (enter <= leave && enter > 0.0).then(|| {
@@ -63,7 +65,7 @@ impl Ray {
     }
 }
 
-/// What a view sees of boxes by 64 × 36 rays, up to a view depth in metres.
+/// Returns the visible points of boxes in a view by 64 × 36 rays, up to a view depth in metres.
 fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<Hit> {
     let lens = &view.lens;
     let boxes: Vec<(DVec3, DVec3)> =
@@ -96,8 +98,8 @@ fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<H
     all.filter_map(hit).collect()
 }
 
-/// Pixels of a picture that is 1080 high for a texel along the worse axis: one over the least singular value of how
-/// far a point moves in the map for a pixel.
+/// Returns the pixels per texel along the worse axis, for a picture 1080 pixels high: one over the least
+/// singular value of the point's movement in the map per pixel.
 fn pixels_per_texel(maps: &FittedMaps, technique: &Technique, view: &SceneView, hit: &Hit) -> Option<f64> {
     let read = maps.read(technique, view.eye + hit.point, hit.point.dot(view.axes()[2]))?;
     let fit = &maps[read.main()].projection;
@@ -113,7 +115,7 @@ fn pixels_per_texel(maps: &FittedMaps, technique: &Technique, view: &SceneView, 
     Some(greatest / a.perp_dot(b).abs())
 }
 
-/// The 95% quantile over all visible points that face the light; `None` without such points.
+/// Returns the 95% quantile over all visible points that face the light, or `None` without such points.
 fn quantile(maps: &FittedMaps, technique: &Technique, world: &World, view: &SceneView, light: Vec3) -> Option<f64> {
     let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::demand::MIN_FACING);
     let seen = hits(view, world.origin, &world.boxes, f64::from(technique.fit.max_distance));
@@ -134,7 +136,7 @@ struct Demand {
 }
 
 impl Demand {
-    /// What a frame asks for, by [`hits`].
+    /// Counts the visible demand of a frame, from [`hits`].
     fn of(view: &SceneView, hits: &[Hit], direction: Vec3, technique: &Technique) -> Self {
         let fit = &technique.fit;
         let space = DemandSpace::new(&view.frustum(), direction, fit.up, fit.max_distance).unwrap();
@@ -167,7 +169,7 @@ impl World {
     }
 }
 
-/// One camera in a world, fitted frame by frame with what the frame before showed.
+/// One camera in a world, fitted frame by frame with the visible demand of the previous frame.
 struct Run {
     world: World,
     technique: Technique,
@@ -175,7 +177,7 @@ struct Run {
     /// Whether there is a depth buffer to read.
     is_seen: bool,
     demand: Option<Demand>,
-    /// The view and the light that the demand grid is of.
+    /// The view and the light of the demand grid.
     seen: Option<(ViewFrustum, Vec3)>,
     storage: Vec<DVec2>,
 }
@@ -186,7 +188,7 @@ impl Run {
         Self { world, technique: *technique, fitter: FitState::new(), is_seen: true, demand: None, seen: None, storage }
     }
 
-    /// The same, without a depth buffer to read unless it is seen.
+    /// Sets whether there is a depth buffer to read.
     fn seen_if(self, is_seen: bool) -> Self {
         Self { is_seen, ..self }
     }
@@ -205,7 +207,7 @@ impl Run {
     }
 }
 
-/// Houses on a square of ground around the world's origin.
+/// Returns houses on a square of ground around the world's origin.
 fn town() -> World {
     let ground = Aabb::new(Vec3::new(-150.0, -1.0, -150.0), Vec3::new(150.0, 0.0, 150.0));
     let house = |i: u16| {
@@ -215,13 +217,13 @@ fn town() -> World {
     World { origin: DVec3::ZERO, boxes: std::iter::once(ground).chain((0..100).map(house)).collect() }
 }
 
-/// A camera at eye height that looks along a direction.
+/// Returns a camera at eye height that looks along a direction.
 fn street_view(eye: DVec3, forward: Vec3) -> SceneView {
     let (fov_y, aspect) = (0.9, 16.0 / 9.0);
     of_camera(&PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y, aspect, near: 0.1, far: 300.0 })
 }
 
-/// The preset's technique with maps of this many texels across.
+/// Returns the preset's technique with this number of maps, of this side in texels.
 fn windows(count: u32, side: u32) -> Technique {
     Technique::preset("windows-4").unwrap().with_count(count).with_max_distance(f32::MAX).with_resolution(side, side)
 }
@@ -247,7 +249,7 @@ fn any_windows() -> impl Strategy<Value = Technique> {
     )
 }
 
-/// Whether there is a depth buffer to read: two times of three.
+/// Whether there is a depth buffer to read: in two of three cases.
 fn any_seen() -> impl Strategy<Value = bool> {
     prop::sample::select(vec![true, true, false])
 }

@@ -6,7 +6,7 @@ use shadowfit::settings::FitKind;
 
 use crate::support::{XnaCase, exact, fitted, numbers, relative_error, xna_cases};
 
-/// The vectors' own precision: 1e-5 of each quantity's largest element.
+/// Precision of the vectors: 1e-5 of each quantity's largest element.
 const TOLERANCE: f64 = 1e-5;
 
 fn elements(matrix: &Mat4) -> Vec<f64> {
@@ -74,13 +74,13 @@ fn xna_depth_range_is_twice_the_published_box_depth() {
 fn xna_margin_enlarges_the_box_on_all_six_sides() {
     for case in &xna_cases() {
         let plain = fit_of(case);
-        // A margin of the box's own order, so that rounding of the difference stays small.
+        // A margin of the order of the box, so that rounding of the difference stays small.
         let margin = plain.depth_range;
         let settings = exact(FitKind::XnaSample).with_margin(margin);
         let wide = fitted(&case.camera, case.direction, &settings);
         let grown = (wide.box_max - wide.box_min) - (plain.box_max - plain.box_min);
         assert!((grown / (2.0 * margin) - Vec3::ONE).abs().max_element() < 1e-5, "{grown} for {margin}");
-        // The light moves away from where it comes from by the margin and keeps its x and y.
+        // The light moves back by the margin and keeps its x and y.
         let moved = wide.light_position() - plain.light_position();
         let expected: DVec3 = case.direction.as_dvec3() * f64::from(margin);
         assert!((moved - expected).length() < 1e-5 * f64::from(margin), "{moved} for {expected}");

@@ -1,5 +1,5 @@
-//! Millions of random fits: no panic, nothing but finite numbers, and one hash, which a debug build and a release build
-//! have in common, with any number of threads.
+//! Millions of random fits: without panics, with only finite numbers, and with one hash that is equal in
+//! debug and release builds and for any number of threads.
 //!
 //! ```text
 //! cargo run --release -p shadowfit-determinism --bin random_fits -- FITS WINDOWS [SEED]
@@ -27,7 +27,7 @@ fn main() -> ExitCode {
     if results.into_iter().all(|is_right| is_right) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs the chunks of a kind on all cores; says whether all were right.
+/// Runs the chunks of a kind on all cores. Returns whether all were right.
 fn run(kind: Kind, fits: u64, seed: u64) -> bool {
     let (chunks, start, next) = (fits.div_ceil(u64::from(chunk::FITS)), Instant::now(), AtomicU64::new(0));
     let work = || {
@@ -50,7 +50,7 @@ fn run(kind: Kind, fits: u64, seed: u64) -> bool {
     wrong == 0
 }
 
-/// The hash of a chunk; `None`, and a line that says which, for one that is wrong.
+/// Returns the hash of a chunk. Prints a line and returns `None` for a wrong one.
 fn checked(kind: Kind, seed: u64, index: u64) -> Option<u64> {
     let result = catch_unwind(AssertUnwindSafe(|| chunk::run(kind, seed, index)));
     let result = result.unwrap_or_else(|_| Err("a panic".to_owned()));

@@ -1,4 +1,4 @@
-//! The chess board and the pieces on it, of a size to play on foot.
+//! The chess board and its pieces, large enough to walk on.
 
 use glam::Vec3;
 use shadowfit_scene::Primitive;
@@ -17,7 +17,7 @@ const TOP: f32 = 0.12;
 const HALF: f32 = SQUARE * 3.0;
 /// Middle of the board, in metres, and its turn.
 const BOARD: (Vec3, f32) = (Vec3::new(-1.85, 0.0, 1.55), 0.18);
-/// Crease angle of turned wood, in radians: edges of more are sharp.
+/// Crease angle of turned wood, in radians. Sharper edges are hard.
 const TURNED: f32 = 0.7;
 
 /// Adds board and pieces.
@@ -42,12 +42,12 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
     piece("black pawn", pawn.primitive(ebony, TURNED), [5.0, 3.0], 0.0);
 }
 
-/// Six by six squares: a part of a board.
+/// Builds six by six squares, a part of a board.
 fn squares() -> Solid {
     block([-HALF, -SUNK, -HALF], [HALF, TOP, HALF], 0.005)
 }
 
-/// The rim around the squares.
+/// Builds the rim around the squares.
 fn frame() -> Solid {
     let (inner, outer, high) = (HALF - 0.01, HALF + 0.13, TOP + 0.03);
     let long = |sign: f32| {
@@ -61,7 +61,7 @@ fn frame() -> Solid {
     long(1.0).with(long(-1.0)).with(short(1.0)).with(short(-1.0))
 }
 
-/// The turned foot of a piece, upwards to its neck, scaled.
+/// Returns the profile of a piece's turned foot, upwards to its neck, scaled.
 fn foot(size: f32) -> Vec<(f32, f32)> {
     let profile = [
         (0.205, 0.0),
@@ -77,7 +77,7 @@ fn foot(size: f32) -> Vec<(f32, f32)> {
     profile.map(|(radius, height)| (radius * size, height * size)).to_vec()
 }
 
-/// A king, with a cross on his crown.
+/// Builds a king, with a cross on his crown.
 fn king() -> Solid {
     let stem = [(0.112, 0.28), (0.094, 0.42), (0.082, 0.58), (0.08, 0.72), (0.088, 0.80)];
     let collar =
@@ -90,7 +90,7 @@ fn king() -> Solid {
     turned.with(bar(Vec3::new(0.026, 0.10, 0.022), 1.40)).with(bar(Vec3::new(0.075, 0.025, 0.0215), 1.425))
 }
 
-/// A rook with six merlons.
+/// Builds a rook with six merlons.
 fn rook() -> Solid {
     let tower = [(0.12, 0.26), (0.108, 0.42), (0.108, 0.56), (0.12, 0.62)];
     let top = [
@@ -107,7 +107,7 @@ fn rook() -> Solid {
     lathe(&[&foot(0.98)[..], &tower, &top].concat(), 40).with(merlon.around(6))
 }
 
-/// A pawn.
+/// Builds a pawn.
 fn pawn() -> Solid {
     let stem = [
         (0.085, 0.24),

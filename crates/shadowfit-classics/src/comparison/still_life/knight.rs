@@ -1,20 +1,20 @@
-//! The knight of the chess pieces: a horse's head that looks along +z, on a turned foot.
+//! The knight of the chess pieces: a horse's head that faces +z, on a turned foot.
 
 use glam::{Affine3A, Quat, Vec3};
 use shadowfit_scene::parts::{Solid, Stop, capsule, ellipsoid, lathe, smooth, sweep};
 
-/// The whole piece. `foot` is the profile of its turned foot: radii and heights, upwards.
+/// Builds the whole piece. `foot` is the profile of its turned foot: radii and heights, upwards.
 pub(super) fn solid(foot: &[(f32, f32)]) -> Solid {
     let stand = lathe(&[foot, &[(0.15, 0.20), (0.155, 0.215), (0.14, 0.235)]].concat(), 36);
     stand.with(neck_and_head()).with(mane()).with(sides().and_mirrored())
 }
 
-/// A stop of the head, whose width is across x: height and z of its middle, half width and half depth.
+/// Returns a stop of the head with its width across x: height and z of its middle, half width and half depth.
 fn section(y: f32, z: f32, wide: f32, deep: f32) -> Stop {
     Stop { at: Vec3::new(0.0, y, z), half: [wide, deep] }
 }
 
-/// From the chest over the crest to the muzzle.
+/// Builds the part from the chest over the crest to the muzzle.
 fn neck_and_head() -> Solid {
     let stops = [
         section(0.18, 0.0, 0.10, 0.12),
@@ -34,7 +34,7 @@ fn neck_and_head() -> Solid {
     sweep(&smooth(&stops, 4), Vec3::X, 28)
 }
 
-/// The mane: a ridge along the back of the neck.
+/// Builds the mane: a ridge along the back of the neck.
 fn mane() -> Solid {
     let stops = [
         section(0.27, -0.13, 0.02, 0.02),
@@ -50,7 +50,7 @@ fn mane() -> Solid {
     sweep(&smooth(&stops, 3), Vec3::X, 12)
 }
 
-/// What the head has on the side of +x: an ear, an eye, a nostril, the edge of the jaw.
+/// Builds the details on the +x side of the head: an ear, an eye, a nostril, the edge of the jaw.
 fn sides() -> Solid {
     let ear = lathe(&[(0.012, 0.0), (0.034, 0.03), (0.036, 0.06), (0.026, 0.10), (0.0, 0.15)], 14)
         .transformed(Affine3A::from_scale(Vec3::new(1.0, 1.0, 0.7)))

@@ -6,7 +6,7 @@ use shadowfit_scene::{Material, Wrap};
 use super::textures::{FLOOR_METRES, PLASTER_METRES, Picture, SQUARES_METRES, STONE_METRES};
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too.
+    /// A material, by its index in the scene. The first is also the default material.
     Paint: Material {
         Plaster = mirrored(tiled(matt("plaster", WHITE, 0.95), Picture::Plaster.into(), [PLASTER_METRES; 2])),
         Floor = mirrored(tiled(matt("floor", WHITE, 0.55), Picture::Floor.into(), [FLOOR_METRES; 2])),
@@ -23,7 +23,7 @@ numbered! {
     }
 }
 
-/// `material` with an image that repeats mirrored, so that it need not join at its edges.
+/// Returns `material` with an image that repeats mirrored, so that its opposite edges need not match.
 fn mirrored(mut material: Material) -> Material {
     if let Some(texture) = &mut material.base_color_texture {
         texture.wrap = [Wrap::Mirror; 2];

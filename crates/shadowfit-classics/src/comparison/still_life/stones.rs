@@ -15,7 +15,7 @@ use super::palette::Paint;
 /// Flutes of the column.
 const FLUTES: f32 = 20.0;
 
-/// Adds them.
+/// Adds the stones.
 pub(super) fn build(builder: &mut Builder, group: usize) {
     let mut add = |name: &str, primitives: Vec<Primitive>, x: f32, z: f32, yaw: f32| {
         let mesh = builder.mesh(name, primitives);
@@ -30,13 +30,13 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
     add("vase", vec![vase().primitive(Paint::Terracotta.into(), 0.9)], 3.3, -0.4, 0.0);
 }
 
-/// A column with flutes between a round base and a round capital, each with a square slab.
+/// Builds a column with flutes between a round base and a round capital, each with a square slab.
 fn column() -> Solid {
     let flutes = |turn: f32, _: f32| 1.0 - 0.06 * (turn * FLUTES / 2.0).sin().abs();
     let shaft: Vec<(f32, f32)> = (0..=12)
         .map(|step| {
             let t = step as f32 / 12.0;
-            // A little fuller in its lower half than a cone.
+            // The lower half is slightly wider than a cone.
             (0.40 - 0.06 * t.powf(1.6), 0.44 + 2.98 * t)
         })
         .collect();
@@ -69,7 +69,7 @@ fn column() -> Solid {
     round.with(stand).with(slab)
 }
 
-/// An arch with imposts at its springing and a keystone.
+/// Builds an arch with imposts at its springing and a keystone.
 fn arch() -> Solid {
     let (radius, spring, depth) = (0.95, 1.75, 0.75);
     let wall = Arch { width: 3.1, height: 3.25, depth, radius, spring }.solid(28).moved(Vec3::Y * -SUNK);
@@ -87,21 +87,21 @@ fn arch() -> Solid {
     wall.with(side(1.0)).with(side(-1.0)).with(key).with(cornice)
 }
 
-/// A pedestal with a foot and a slab, and the cup that holds the ball.
+/// Builds a pedestal with a foot and a slab, and the cup that holds the ball.
 fn pedestal() -> Solid {
     let part = |half: f32, low: f32, high: f32| block([-half, low, -half], [half, high, half], 0.02);
     let cup = lathe(&[(0.30, 1.28), (0.31, 1.33), (0.25, 1.37), (0.29, 1.42), (0.27, 1.44)], 32);
     part(0.60, -SUNK, 0.20).with(part(0.47, 0.18, 1.16)).with(part(0.58, 1.14, 1.30)).with(cup)
 }
 
-/// A ring that stands on its edge.
+/// Builds an upright ring.
 fn ring() -> Solid {
     let (radius, thick) = (0.72, 0.20);
     let upright = Affine3A::from_rotation_x(FRAC_PI_2);
     torus(radius, thick, thick, 96, 36).transformed(upright).moved(Vec3::Y * (radius + thick - SUNK))
 }
 
-/// A vase that is hollow down to its foot.
+/// Builds a vase that is hollow down to its foot.
 fn vase() -> Solid {
     let outside = [
         (0.30, -SUNK),
@@ -140,7 +140,7 @@ fn vase() -> Solid {
     body.with(handle()).with(handle().transformed(Affine3A::from_rotation_y(TAU / 2.0)))
 }
 
-/// A smooth outline through `points`, in twice as many.
+/// Returns a smooth outline through `points`, with twice as many points.
 fn curved(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
     let last = points.len() - 1;
     let mut curve = Vec::new();
@@ -153,7 +153,7 @@ fn curved(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
     curve
 }
 
-/// A handle on the side of +x, from the neck to the shoulder.
+/// Builds a handle on the side of +x, from the neck to the shoulder.
 fn handle() -> Solid {
     let point = |x: f32, y: f32, radius: f32| stop(Vec3::new(x, y, 0.0), radius);
     let stops = [

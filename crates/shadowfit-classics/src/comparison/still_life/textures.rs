@@ -13,13 +13,13 @@ numbered! {
     }
 }
 
-/// Metres that the image of the floor spans.
+/// Size of the floor's image in the scene, in metres.
 pub(super) const FLOOR_METRES: f32 = 4.0;
-/// Metres that the image of the wall spans.
+/// Size of the wall's image in the scene, in metres.
 pub(super) const PLASTER_METRES: f32 = 3.3;
-/// Metres that the image of the stone spans.
+/// Size of the stone's image in the scene, in metres.
 pub(super) const STONE_METRES: f32 = 1.6;
-/// Metres that the image of the squares spans, which shows two by two.
+/// Size of the squares' image in the scene, in metres. It shows two by two squares.
 pub(super) const SQUARES_METRES: f32 = 1.0;
 /// Boards across the floor's image.
 const BOARDS: f32 = 10.0;
@@ -28,7 +28,8 @@ const FLOOR_SIZE: u32 = 512;
 /// Pixels along a side of the other images.
 const SIZE: u32 = 256;
 
-/// Boards along u, mirrored where the image ends, two to a row, which end at another place in each row; grain runs along them.
+/// Draws boards along u, two in a row. Each row's joint is at another place. The image is mirrored at its
+/// ends, and grain runs along the boards.
 fn floor() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / FLOOR_SIZE as f32;
@@ -38,7 +39,7 @@ fn floor() -> Image {
         let py = y as f32 + 0.5;
         let row = (py / width) as u32;
         let from_edge = (py % width).min(width - py % width);
-        // Each row has its own grain: noise squeezed across the board.
+        // Each row has its own grain: noise compressed across the board.
         let (veins, fine) = (noise.row(py * cell * 3.0 + 7.0 * row as f32), noise.row(py * cell * 8.0));
         let start = hash(row, 3);
         move |x| {
@@ -55,14 +56,14 @@ fn floor() -> Image {
     })
 }
 
-/// Lime plaster in a warm grey.
+/// Draws lime plaster in a warm grey.
 fn plaster() -> Image {
     draw_noisy("plaster", SIZE, [0.125, 0.5, 4.0], |_, _, [patches, clouds, grains]| {
         shade([206.0, 196.0, 178.0], 7.0 * patches + 5.0 * clouds + 4.0 * grains)
     })
 }
 
-/// Limestone: soft clouds, fine grain and pits.
+/// Draws limestone: soft clouds, fine grain and pits.
 fn stone() -> Image {
     draw_noisy("stone", SIZE, [0.25, 4.0], |_, _, [cloud, grain]| {
         let pit = if grain > 0.8 { -18.0 } else { 0.0 };
@@ -70,7 +71,7 @@ fn stone() -> Image {
     })
 }
 
-/// Two by two squares of maple and walnut.
+/// Draws two by two squares of maple and walnut.
 fn squares() -> Image {
     draw_noisy("squares", SIZE, [1.0, 4.0], |x, y, [cloud, grain]| {
         let color = if x / (SIZE / 2) == y / (SIZE / 2) { [206.0, 176.0, 128.0] } else { [92.0, 56.0, 34.0] };

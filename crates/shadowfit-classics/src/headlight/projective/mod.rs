@@ -1,6 +1,7 @@
 //! Headlight street, first stage: the depths that a lamp sees, projected back on the street as greys.
 //!
-//! Numbers of the source: camera, lamp, and a map as large as its window. Cars and lamp posts are our own models.
+//! Camera, lamp and map size are the source's numbers. The map is as large as the window. Cars and lamp posts
+//! are our own models.
 
 use glam::{DVec3, Vec3};
 use shadowfit::{FitError, PerspectiveCamera};
@@ -13,19 +14,19 @@ use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, Sample
 
 const TARGET: DVec3 = DVec3::new(-2.0, 3.0, -10.0);
 const NEAR: f32 = 5.0;
-/// Power and ambient light of the lit scene that the source starts from.
+/// Power and ambient light of the source's lit scene.
 const LIT: [f32; 2] = [1.0, 0.2];
-/// The greys, which the shading itself reads: no test is asked.
+/// Shading with greys. It reads the map itself and needs no shadow test.
 const GREYS: Shading =
     Shading { reads_map: true, ..Shading::new("projective", &[include_str!("shade.wgsl")], [0.0; 2]) };
 
 pub(crate) const SAMPLE: Sample = Sample {
     id: "headlight-projective",
     title: "Headlight: projective texturing",
-    teaches: "How a lamp's picture is projected on a scene: every point is taken through the lamp's own view and projection, \
-              and shows what the lamp's map holds there, which is the depth of what the lamp sees first.",
-    flaw: "Nothing asks whether a point lies in the map at all: its borders smear over everything beside it, and behind the \
-           lamp it is thrown once more, mirrored.",
+    teaches: "How a lamp's picture is projected on a scene: the lamp's view and projection transform every point to a \
+        position in the lamp's map. The point shows the depth stored there, which is the nearest surface's.",
+    flaw: "There is no test whether a point lies in the map. Its borders smear over everything beside it, and a \
+        mirrored copy appears behind the lamp.",
     page: "samples/headlight-projective.md",
     size: SIZE,
     view: SampleView {
@@ -52,7 +53,8 @@ pub(crate) const SAMPLE: Sample = Sample {
 const OPTIONS: [SampleOption; 4] = [
     lamp::SHADOWS,
     SampleOption {
-        help: "Of the lit scene, without shadows or with ours: as the source, or modern. The greys are not lit.",
+        help: "Lighting of the scene without shadows or with our shadows: as the source, or modern. The greys are not \
+            lit.",
         ..SampleOption::LIGHTING
     },
     FORMAT,
@@ -68,24 +70,24 @@ const VARIANTS: [SampleVariant; 3] = [
     SampleVariant {
         id: "close",
         label: "The post on the wall",
-        text: "Behind the lamp post the wall shows the post's own grey: darker than the wall's, since the post is nearer to \
-               the lamp.",
+        text: "Behind the lamp post the wall shows the post's grey, which is darker than the wall's since the post is \
+            nearer to the lamp.",
         options: &[],
         view: Some((DVec3::new(-6.0, 9.0, 6.0), Vec3::new(19.0, -2.0, -12.0))),
     },
     SampleVariant {
         id: "smear",
         label: "Borders smear",
-        text: "The lamp's image ends at a line that runs over the road to the near end of the wall. What lies before it shows \
-               the outermost column of the map, drawn out to the edge of the street.",
+        text: "The lamp's image ends at a line across the road to the near end of the wall. The area in front of it \
+            shows the outermost column of the map, stretched to the edge of the street.",
         options: &[],
         view: Some((DVec3::new(-8.0, 16.0, 26.0), Vec3::new(14.0, -16.0, -24.0))),
     },
     SampleVariant {
         id: "behind",
         label: "Behind the lamp",
-        text: "The car behind the lamp has the map on its back, upside down: w is negative there, and the division turns it \
-               over.",
+        text: "The car behind the lamp shows the map on its back, upside down: w is negative there, so the division \
+            by w flips it.",
         options: &[],
         view: Some((DVec3::new(-44.0, 12.0, 4.0), Vec3::new(26.0, -8.0, -7.0))),
     },

@@ -1,6 +1,6 @@
-//! Headlight street, second stage: the lamp lights what it sees, by a map of 8 bits or of 32.
+//! Headlight street, second stage: the lamp lights visible surfaces, with a map of 8 or 32 bits.
 //!
-//! Numbers of the source, as in the first stage. The light images are our own.
+//! The numbers are the source's, as in the first stage. The light images are our own.
 
 pub mod shade;
 pub mod test;
@@ -16,7 +16,7 @@ use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, Sample
 
 const TARGET: DVec3 = DVec3::new(-2.0, -3.0, -10.0);
 const NEAR: f32 = 1.0;
-/// 1/100, explained by the step of 1/256 that 8 bits have.
+/// The source's bias, which it derives from the step of 1/256 of an 8-bit map.
 const BIAS: f32 = 0.01;
 const POWER: f32 = 2.0;
 const AMBIENT: f32 = 0.5;
@@ -24,10 +24,10 @@ const AMBIENT: f32 = 0.5;
 pub(crate) const SAMPLE: Sample = Sample {
     id: "headlight-real-shadow",
     title: "Headlight: real shadow",
-    teaches: "A lamp's shadow map: a point is lit where it lies in the lamp's image and is no farther than what the map \
-              holds there, by a bias that the map's format asks for.",
-    flaw: "The lamp's image is a square with corners, and 256 depths over a perspective leave hardly any for what is far \
-           from the lamp: close up the shadow is coarse.",
+    teaches: "A lamp's shadow map: a point is lit if it lies in the lamp's image and is no farther than the stored \
+        depth plus a bias. The bias depends on the map's format.",
+    flaw: "The lamp's image is a square with corners. In perspective, few of the 256 depths are left far from the \
+        lamp, so the shadow is coarse close up.",
     page: "samples/headlight-real-shadow.md",
     size: SIZE,
     view: SampleView {
@@ -57,8 +57,8 @@ const OPTIONS: [SampleOption; 8] = [
     SampleOption {
         id: "bias",
         label: "Bias",
-        help: "Depth that is taken from a point before it is compared, in units of the stored depth. The source's 1/100 is two \
-               and a half steps of 8 bits.",
+        help: "Depth subtracted from a point's depth before the comparison, in units of the stored depth. The \
+            source's 1/100 is two and a half steps of 8 bits.",
         kind: OptionKind::Number { min: 0.0, max: 0.05, default: BIAS, unit: "" },
     },
     SampleOption {
@@ -70,13 +70,13 @@ const OPTIONS: [SampleOption; 8] = [
     SampleOption {
         id: "ambient",
         label: "Ambient light",
-        help: "Light that reaches every point.",
+        help: "Light that every point receives.",
         kind: OptionKind::Number { min: 0.0, max: 1.0, default: AMBIENT, unit: "" },
     },
     SampleOption {
         id: "image",
         label: "Light image",
-        help: "What the lamp throws: all of its square, a round beam, or the two beams of headlights.",
+        help: "Image that the lamp projects: its whole square, a round beam, or the two beams of headlights.",
         kind: OptionKind::Choice(&[("square", "square"), ("round", "round"), ("headlights", "headlights")]),
     },
     SampleOption::beside(&[
@@ -89,48 +89,48 @@ const OPTIONS: [SampleOption; 8] = [
     ]),
 ];
 
-/// Before the shadow of the farther lamp post on the wall.
+/// In front of the shadow of the farther lamp post on the wall.
 const CLOSE: (DVec3, Vec3) = (DVec3::new(1.0, 8.5, -40.0), Vec3::new(12.0, -1.5, -8.5));
-/// Over the road, with all that the lamp lights.
+/// Above the road, with the whole lit area in view.
 const ABOVE: (DVec3, Vec3) = (DVec3::new(-34.0, 26.0, 14.0), Vec3::new(34.0, -20.0, -22.0));
 
 const VARIANTS: [SampleVariant; 8] = [
     SampleVariant {
         id: "formats",
         label: "8 bits beside 32",
-        text: "From where the source looks, the map of 256 depths (left) and that of floats (right) hardly differ.",
+        text: "From the source's view, the map of 256 depths (left) and the map of floats (right) hardly differ.",
         options: &[("beside", "format=r32f")],
         view: None,
     },
     SampleVariant {
         id: "close-formats",
         label: "Close: 8 bits beside 32",
-        text: "Close to the farther lamp post's shadow: of 256 depths (left) it is a block with a jagged outline, of floats \
-               (right) it ends in a point.",
+        text: "Close to the farther lamp post's shadow: with 256 depths (left) it is a block with a jagged outline, \
+            with floats (right) it ends in a point.",
         options: &[("beside", "format=r32f")],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "close-8-bit",
         label: "Close: 8 bits",
-        text: "Post and wall are 13 units apart, which are two and a half steps of 256, as much as the bias: rounding decides \
-               where there is shadow, and the outline is that of whole texels.",
+        text: "Post and wall are 13 units apart, which is two and a half of 256 steps and equals the bias. Rounding \
+            decides which points are in shadow, so the outline follows whole texels.",
         options: &[],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "close-32-bit",
         label: "Close: 32 bits",
-        text: "The same with floats: depths between texels are smooth, and the shadow ends in a point, where the bias is as \
-               long as the way from the post to the wall.",
+        text: "The same view with floats: depths between texels are smooth. The shadow ends in a point where the bias \
+            equals the distance from the post to the wall.",
         options: &[("format", "r32f")],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "acne",
         label: "Why 1/100",
-        text: "With a bias of 1/1000, which is a quarter of the 8-bit map's step, rounding puts stripes of shadow on \
-               everything. 1/100 is two and a half steps.",
+        text: "With a bias of 1/1000, a quarter of the 8-bit map's step, rounding causes stripes of shadow \
+            everywhere. 1/100 is two and a half steps.",
         options: &[("bias", "0.001")],
         view: None,
     },
@@ -151,18 +151,18 @@ const VARIANTS: [SampleVariant; 8] = [
     SampleVariant {
         id: "headlights",
         label: "Cure: headlights",
-        text: "Two beams side by side, as a car throws them.",
+        text: "Two beams side by side, like a car's.",
         options: &[("image", "headlights")],
         view: Some(ABOVE),
     },
 ];
 
-/// Its test, by a bias in units of the stored depth: linear, lit inside the light's image.
+/// Returns the test for a bias in units of the stored depth: linear, lit inside the light's image.
 fn test(bias: f32) -> ShadowTest {
     ShadowTest { reach: 1.0, ..ShadowTest::nearest("real shadow", include_str!("test.wgsl"), [bias, 0.0, 0.0, 0.0]) }
 }
 
-/// Its shading, by the factors of the diffuse and of the ambient light.
+/// Returns the shading for the factors of the diffuse and the ambient light.
 pub(crate) const fn shading(power_and_ambient: [f32; 2]) -> Shading {
     Shading::new("headlight", &[include_str!("shade.wgsl")], power_and_ambient)
 }

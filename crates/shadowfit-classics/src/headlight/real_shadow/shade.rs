@@ -1,10 +1,11 @@
-//! The shading of the street's second stage in Rust, as `shade.wgsl` has it; a test compares the two.
+//! The shading of the street's second stage in Rust. A test compares it with `shade.wgsl`.
 //!
-//! Colours are display values; `n_l` is a cosine between unit vectors, `share` that of the light, 0 in shadow to 1.
+//! Colours are display values. `n_l` is a cosine between unit vectors. `share` is the share of light, from 0
+//! in shadow to 1.
 
 use glam::Vec3;
 
-/// Base times diffuse of a power, and ambient.
+/// Returns `base` times the sum of diffuse light of a power and ambient light.
 pub fn colour(base: Vec3, n_l: f32, share: f32, power: f32, ambient: f32) -> Vec3 {
     base * (n_l.clamp(0.0, 1.0) * power * share + ambient)
 }

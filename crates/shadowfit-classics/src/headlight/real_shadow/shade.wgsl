@@ -1,4 +1,4 @@
-// The headlight street's shading. shading.x: power of the lamp, shading.y: ambient.
+// Shading of the headlight street. shading.x: power of the lamp, shading.y: ambient.
 
 fn headlight_colour(base: vec3<f32>, n_l: f32, share: f32, power: f32, ambient: f32) -> vec3<f32> {
     return base * (saturate(n_l) * power * share + ambient);

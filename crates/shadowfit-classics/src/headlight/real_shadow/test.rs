@@ -1,7 +1,7 @@
-//! The test of the street's second stage in Rust, as `test.wgsl` has it; a test compares the two.
+//! The shadow test of the street's second stage in Rust. A test compares it with `test.wgsl`.
 
-/// 1 inside the light's image where `depth - bias <= stored`; depths are those after the division by w. `inside` is 1
-/// inside and 0 outside.
+/// Returns 1 inside the light's image where `depth - bias <= stored`, else 0. Depths are after the division
+/// by w. `inside` is 1 inside the image and 0 outside.
 pub fn share(inside: f32, stored: f32, depth: f32, bias: f32) -> f32 {
     if depth - bias <= stored { inside } else { 0.0 }
 }

@@ -1,6 +1,6 @@
-// The test of the headlight street's second stage. test.x: bias.
+// Shadow test of the headlight street's second stage. test.x: bias.
 
-// 1 inside the light's image and where depth - bias <= stored.
+// Returns 1 inside the light's image where depth - bias <= stored, else 0.
 fn real_shadow_share(inside: f32, stored: f32, depth: f32, bias: f32) -> f32 {
     return select(0.0, inside, depth - bias <= stored);
 }

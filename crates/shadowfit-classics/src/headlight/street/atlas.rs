@@ -1,24 +1,25 @@
 //! The image of the strip: asphalt, kerb, paving and bricks side by side along u.
 //!
-//! It repeats mirrored. Along v it spans 4.4 units and its pattern joins at both ends: what an end cuts goes on as its
-//! own mirror image. Along u the mirror at 0 is the middle of the road, and that at 1 half the height of the wall.
+//! It repeats mirrored. Along v it spans 4.4 units, and mirroring continues the pattern at both ends. Along u
+//! it is mirrored at 0, the middle of the road, and at 1, half the height of the wall.
 
 use shadowfit_scene::Image;
 use shadowfit_scene::parts::{NOISE_CELLS, Noise, draw_oblong, hash, shade};
 
-/// Width and height in pixels: about as many to a unit along the strip as across road, pavement and wall.
+/// Width and height in pixels, with similar pixels per unit along the strip and across road, pavement and
+/// wall.
 const SIZE: [u32; 2] = [1024, 128];
-/// Units that the image spans along v: 110 units of the strip, on which it repeats 25 times.
+/// Units that the image spans along v. It repeats 25 times on the strip of 110 units.
 const LENGTH: f32 = 4.4;
 
-/// Noise at a pixel: clouds of a unit or two, and grains.
+/// Noise at a pixel: clouds of one or two units, and grains.
 #[derive(Clone, Copy)]
 struct Grit {
     cloud: f32,
     grain: f32,
 }
 
-/// The image.
+/// Draws the image.
 pub(super) fn image() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / SIZE[0] as f32;
@@ -30,7 +31,7 @@ pub(super) fn image() -> Image {
             let px = x as f32 + 0.5;
             let u = px / SIZE[0] as f32;
             let grit = Grit { cloud: clouds.at(px * cell), grain: grains.at(px * cell * 9.0) };
-            // Across each face in units, from its beginning.
+            // Position across each face in units, from its start.
             match u {
                 ..0.25 => asphalt(u * 44.0, along, grit),
                 ..0.375 => kerb_face((u - 0.25) * 8.0, along, grit),
@@ -42,7 +43,8 @@ pub(super) fn image() -> Image {
     })
 }
 
-/// Half of the road from its middle: a broken white line, worn tracks, and a gutter of stone at the kerb.
+/// Returns the colour of half of the road, from its middle: a broken white line, worn tracks, and a gutter of
+/// stone at the kerb.
 fn asphalt(across: f32, along: f32, grit: Grit) -> [f32; 4] {
     if across < 0.32 && along < LENGTH / 2.0 {
         return shade([196.0, 194.0, 184.0], 9.0 * grit.grain + 8.0 * grit.cloud);
@@ -56,20 +58,20 @@ fn asphalt(across: f32, along: f32, grit: Grit) -> [f32; 4] {
     shade([82.0, 82.0, 85.0], 11.0 * grit.grain + 4.0 * grit.cloud + 9.0 * track[0].max(track[1]))
 }
 
-/// Upright face of the kerb, darker toward the gutter.
+/// Returns the colour of the kerb's upright face, darker toward the gutter.
 fn kerb_face(up: f32, along: f32, grit: Grit) -> [f32; 4] {
     let joint = if along < 0.04 { -50.0 } else { 0.0 };
     shade([142.0, 138.0, 130.0], 9.0 * grit.grain + 5.0 * grit.cloud + joint - 30.0 * (1.0 - up).powi(2))
 }
 
-/// Top of the kerb, with a pale edge toward the road.
+/// Returns the colour of the kerb's top, with a pale edge toward the road.
 fn kerb_top(across: f32, along: f32, grit: Grit) -> [f32; 4] {
     let joint = if along < 0.04 || across > 0.95 { -50.0 } else { 0.0 };
     let edge = if across < 0.08 { 14.0 } else { 0.0 };
     shade([166.0, 161.0, 151.0], 8.0 * grit.grain + 5.0 * grit.cloud + joint + edge)
 }
 
-/// Six rows of slabs in half bond.
+/// Returns the colour of six rows of slabs in half bond.
 fn paving(across: f32, along: f32, grit: Grit) -> [f32; 4] {
     let (row, from_row) = cell(across, 10.0 / 6.0, 0.0);
     let bond = if row % 2 == 0 { 0.0 } else { 0.5 };
@@ -81,8 +83,8 @@ fn paving(across: f32, along: f32, grit: Grit) -> [f32; 4] {
     shade([152.0, 146.0, 135.0], 16.0 * tint + 7.0 * grit.grain + 5.0 * grit.cloud)
 }
 
-/// The lower half of the wall: a course of stone at its foot, and bricks in half bond up to the middle of a course,
-/// where the mirror makes it whole.
+/// Returns the colour of the lower half of the wall: a course of stone at its foot, and bricks in half bond
+/// up to the middle of a course, which the mirrored half completes.
 fn wall(up: f32, along: f32, grit: Grit) -> [f32; 4] {
     const FOOT: f32 = 1.2;
     if up < FOOT {
@@ -101,7 +103,8 @@ fn wall(up: f32, along: f32, grit: Grit) -> [f32; 4] {
     shade(color, 26.0 * (tint - 0.5) + 7.0 * grit.grain + 5.0 * grit.cloud)
 }
 
-/// Which cell of a length a position is in, the cells being shifted by a share of it, and how far from its ends.
+/// Returns the cell of length `length` that contains a position, and the distance from its ends. The cells
+/// are shifted by a share of their length.
 fn cell(position: f32, length: f32, shift: f32) -> (u32, f32) {
     let cells = position / length + shift;
     let within = cells.fract() * length;

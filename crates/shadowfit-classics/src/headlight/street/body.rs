@@ -1,6 +1,6 @@
 //! The lower body of the car: bonnet, flanks and boot, with arches for the wheels.
 //!
-//! A cross-section wanders from the tail at -z to the nose at +z. Its width depends on z and on the height itself, so
+//! A cross-section moves from the tail at -z to the nose at +z. Its width depends on z and on the height, so
 //! that flanks stay smooth where the lower edge rises over a wheel.
 
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -10,17 +10,17 @@ use shadowfit_scene::parts::{Solid, tube};
 
 /// Half of the car's length.
 pub(super) const HALF_LENGTH: f32 = 1.6;
-/// Half of its width.
+/// Half of the car's width.
 pub(super) const HALF_WIDTH: f32 = 0.71;
-/// Where the axles are along z.
+/// Positions of the axles along z.
 pub(super) const AXLES: [f32; 2] = [-0.97, 1.0];
-/// Radius of the wheels, and so the height of the axles.
+/// Radius of the wheels, which is also the height of the axles.
 pub(super) const WHEEL: f32 = 0.255;
 /// Radius of the wheel arches.
 const ARCH: f32 = 0.30;
 /// Height of the lower edge.
 const SILL: f32 = 0.17;
-/// Height at which flanks begin to turn into bonnet and boot, below these.
+/// Height of the rounded transition from flanks to bonnet and boot.
 const SHOULDER: f32 = 0.11;
 /// Length over which nose and tail are rounded.
 const ROUND: f32 = 0.16;
@@ -32,7 +32,7 @@ const POINTS: [usize; 2] = [7, 9];
 const TOP: [(f32, f32); 7] =
     [(-1.6, 0.72), (-1.45, 0.765), (-1.0, 0.785), (0.2, 0.775), (0.8, 0.745), (1.3, 0.68), (1.6, 0.60)];
 
-/// The body.
+/// Builds the body.
 pub(super) fn solid() -> Solid {
     let stations = stations();
     let rings: Vec<Vec<Vec3>> = stations.iter().map(|&(z, low)| ring(z, low)).collect();
@@ -40,12 +40,12 @@ pub(super) fn solid() -> Solid {
     tube(&rings, end(-HALF_LENGTH), end(HALF_LENGTH))
 }
 
-/// A point of the flank on the side of +x at a height and z.
+/// Returns a point of the flank on the +x side, at a height and z.
 pub(super) fn flank(y: f32, z: f32) -> Vec3 {
     Vec3::new(half_width(y, z), y, z)
 }
 
-/// Where along z the cross-sections are, and how high their lower edge is there.
+/// Returns the positions of the cross-sections along z, with the height of their lower edge.
 fn stations() -> Vec<(f32, f32)> {
     let mut stations: Vec<(f32, f32)> = Vec::new();
     for axle in AXLES {
@@ -67,18 +67,19 @@ fn stations() -> Vec<(f32, f32)> {
     stations
 }
 
-/// How far a cross-section at the nose or the tail is from its full size, 0 to 1.
+/// Returns the size of a cross-section as a share of the full size, 0 to 1. It is less than 1 at nose and
+/// tail.
 fn fullness(z: f32) -> f32 {
     let share = ((HALF_LENGTH - z.abs()) / ROUND).clamp(0.0, 1.0);
     (1.0 - (1.0 - share).powi(2)).sqrt()
 }
 
-/// Height of the middle line.
+/// Returns the height of the middle line.
 fn top(z: f32) -> f32 {
     let next = TOP.iter().position(|point| point.0 >= z).unwrap_or(TOP.len() - 1).max(1);
     let (from, to) = (TOP[next - 1], TOP[next]);
     let t = ((z - from.0) / (to.0 - from.0)).clamp(0.0, 1.0);
-    // Level with its neighbours at both ends: no kink is left.
+    // Central differences as slopes keep the line smooth.
     let slope = |index: usize| {
         let (a, b) = (TOP[index.saturating_sub(1)], TOP[(index + 1).min(TOP.len() - 1)]);
         (b.1 - a.1) / (b.0 - a.0) * (to.0 - from.0)
@@ -87,14 +88,16 @@ fn top(z: f32) -> f32 {
     from.1 + t * (s0 + t * (3.0 * rise - 2.0 * s0 - s1 + t * (s0 + s1 - 2.0 * rise)))
 }
 
-/// Half width at a height and z: widest at the height of the bumpers, narrower toward nose and tail.
+/// Returns the half width at a height and z: widest at the height of the bumpers, narrower toward nose and
+/// tail.
 fn half_width(y: f32, z: f32) -> f32 {
     let plan = (1.0 - (z.abs() / (HALF_LENGTH + 0.08)).powi(8)).max(0.0).powf(0.25);
     let bulge = 1.0 - 0.45 * (y - 0.45).powi(2);
     HALF_WIDTH * plan * bulge * (0.95 + 0.05 * fullness(z))
 }
 
-/// The cross-section at z above a lower edge, counter-clockwise from the nose, from the middle of its underside.
+/// Returns the cross-section at z above a lower edge, counter-clockwise seen from the nose, starting in the
+/// middle of its underside.
 fn ring(z: f32, low: f32) -> Vec<Vec3> {
     let full = fullness(z);
     let low = low + 0.07 * (1.0 - full);

@@ -1,4 +1,4 @@
-//! The upper body of the car: roof and pillars, with windows that lie on it.
+//! The upper body of the car: roof and pillars, with windows on their surface.
 
 use std::f32::consts::{PI, TAU};
 
@@ -13,31 +13,33 @@ const POWER: f32 = 4.5;
 const AROUND: usize = 64;
 /// Steps from the belt up to the roof.
 const STEPS: usize = 6;
-/// Shrinking outline and height of the roof above the windows.
+/// Scale of the outline, and height, of the rings above the windows.
 const ROOF: [(f32, f32); 5] = [(0.975, 1.072), (0.92, 1.095), (0.80, 1.113), (0.55, 1.127), (0.25, 1.134)];
 /// Height of the roof's middle.
 const SUMMIT: f32 = 1.136;
 
 /// Lower and upper edge of the windows, as shares of the cabin's height below the roof.
 const WINDOWS: [f32; 2] = [0.27, 0.93];
-/// How far panes stand out.
+/// Distance of the panes from the cabin's surface.
 const PROUD: f32 = 0.004;
 
-/// Half width, middle along z, half length and height of the outline, at a share of the height below the roof.
+/// Returns half width, middle along z, half length and height of the outline, at a share of the height below
+/// the roof.
 fn outline(share: f32) -> (f32, f32, f32, f32) {
     let mix = |low: f32, high: f32| low + (high - low) * share;
     let (front, rear) = (mix(0.84, 0.17) + 0.05 * share * (1.0 - share), mix(-1.20, -0.66));
     (mix(0.645, 0.525), f32::midpoint(front, rear), (front - rear) / 2.0, mix(0.69, 1.04))
 }
 
-/// A point of the cabin at a turn (in radians from +z toward +x) and a share of its height below the roof.
+/// Returns a point of the cabin at a turn (in radians from +z toward +x) and a share of its height below the
+/// roof.
 fn surface(at: Vec2) -> Vec3 {
     let (rx, cz, rz, y) = outline(at.y);
     let (x, z) = superellipse(at.x, POWER);
     Vec3::new(x * rx, y, cz + z * rz)
 }
 
-/// The painted cabin.
+/// Builds the painted cabin.
 pub(super) fn solid() -> Solid {
     let ring = |point: &dyn Fn(f32) -> Vec3| -> Vec<Vec3> {
         (0..AROUND).map(|index| point(index as f32 / AROUND as f32 * TAU)).collect()
@@ -54,7 +56,7 @@ pub(super) fn solid() -> Solid {
     tube(&rings, Vec3::new(0.0, rings[0][0].y, cz), Vec3::new(0.0, SUMMIT, cz))
 }
 
-/// Windscreen, rear window, and two windows on each side.
+/// Builds windscreen, rear window, and two windows on each side.
 pub(super) fn windows() -> Solid {
     let pane = |from: f32, to: f32| {
         let [low, high] = [(from, WINDOWS[0]), (to, WINDOWS[1])].map(|(turn, share)| Vec2::new(turn, share));

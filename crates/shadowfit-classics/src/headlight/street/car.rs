@@ -1,4 +1,4 @@
-//! The car: a saloon that looks along +z and stands on y = 0, in units of four of the street's.
+//! The car: a saloon on y = 0 that faces +z. Its unit is four of the street's units.
 
 use glam::{Vec2, Vec3};
 use shadowfit_scene::Primitive;
@@ -9,10 +9,10 @@ use super::palette::Paint;
 use super::panel::Panel;
 use super::{body, cabin, wheel};
 
-/// Crease angle of pressed metal, in radians: only wheel arches are sharp.
+/// Crease angle of pressed metal, in radians. Only wheel arches are sharp.
 const PRESSED: f32 = 0.85;
 
-/// The parts of the car, one for each material.
+/// Returns the parts of the car, one for each material.
 pub(super) fn primitives() -> Vec<Primitive> {
     let painted = body::solid().with(cabin::solid()).with(mirrors());
     let dark = wheel::tyres().with(underbody()).with(bumper(1.0)).with(bumper(-1.0)).with(seams()).with(grille());
@@ -25,12 +25,12 @@ pub(super) fn primitives() -> Vec<Primitive> {
     ]
 }
 
-/// What fills the car between the wheels, so that nobody looks through the arches.
+/// Builds the block between the wheels, so that nobody looks through the wheel arches.
 fn underbody() -> Solid {
     block([-0.46, 0.14, -1.38], [0.46, 0.52, 1.38], 0.03)
 }
 
-/// A bumper around the nose (`end` 1) or the tail (-1).
+/// Builds a bumper around the nose (`end` 1) or the tail (-1).
 fn bumper(end: f32) -> Solid {
     const STEPS: usize = 28;
     let point = |step: usize, out: f32| {
@@ -45,16 +45,16 @@ fn bumper(end: f32) -> Solid {
     sweep(&stops.collect::<Vec<_>>(), Vec3::Y, 14)
 }
 
-/// Mirrors at the front of the side windows.
+/// Builds the mirrors at the front of the side windows.
 fn mirrors() -> Solid {
     let shell = rounded_box([0.07, 0.047, 0.034], 0.03, 4).moved([0.73, 0.83, 0.47]);
     let arm = block([0.56, 0.785, 0.45], [0.70, 0.815, 0.485], 0.01);
     shell.with(arm).and_mirrored()
 }
 
-/// Gaps around the doors and a strip of rubber along the flanks.
+/// Builds the gaps around the doors and a strip of rubber along the flanks.
 fn seams() -> Solid {
-    // First upwards, then toward the nose, so that the outer side is that of +x.
+    // The first parameter points up and the second toward the nose, so the outer side is +x.
     let surface = |at: Vec2| flank(at.x, at.y);
     let gap = |z: f32| {
         let (low, high) = (Vec2::new(0.20, z - 0.006), Vec2::new(0.665, z + 0.006));
@@ -64,22 +64,22 @@ fn seams() -> Solid {
     gap(0.60).with(gap(-0.10)).with(gap(-0.66)).with(strip).and_mirrored()
 }
 
-/// Openings for air between the headlights and below the bumper.
+/// Builds the air openings between the headlights and below the bumper.
 fn grille() -> Solid {
     rounded_box([0.27, 0.045, 0.05], 0.02, 2).moved([0.0, 0.475, HALF_LENGTH - 0.035])
 }
 
-/// Two round headlights.
+/// Builds two round headlights.
 fn headlights() -> Solid {
     ellipsoid([0.115, 0.075, 0.075], 26, 16).moved([0.45, 0.485, HALF_LENGTH - 0.06]).and_mirrored()
 }
 
-/// Two wide tail lights.
+/// Builds two wide tail lights.
 fn tail_lights() -> Solid {
     rounded_box([0.13, 0.06, 0.06], 0.03, 3).moved([0.44, 0.53, -HALF_LENGTH + 0.045]).and_mirrored()
 }
 
-/// Handles of four doors.
+/// Builds the handles of four doors.
 fn handles() -> Solid {
     let handle = |z: f32| {
         let at = flank(0.60, z);
@@ -88,7 +88,7 @@ fn handles() -> Solid {
     handle(0.0).with(handle(-0.56)).and_mirrored()
 }
 
-/// Number plates on both bumpers.
+/// Builds number plates on both bumpers.
 fn plates() -> Solid {
     let plate = |end: f32| {
         let half = Vec3::new(0.16, 0.045, 0.02);

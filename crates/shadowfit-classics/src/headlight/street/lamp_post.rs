@@ -1,6 +1,6 @@
 //! A lamp post: a foot, a slender shaft that bends over the road toward -x, and a lamp at its end.
 //!
-//! In its own units; one of the street's is 20 of them.
+//! 20 of its units are one of the street's.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -19,7 +19,7 @@ const STEPS: usize = 14;
 /// Radii of the shaft above its foot, and of the arm.
 const THICK: [f32; 2] = [7.0, 4.4];
 
-/// The whole post.
+/// Builds the whole post.
 pub(super) fn primitive() -> Primitive {
     let foot = [
         (18.0, -1.0),
@@ -37,7 +37,7 @@ pub(super) fn primitive() -> Primitive {
     post.primitive(Paint::LampPost.into(), SMOOTH)
 }
 
-/// Shaft and arm in one.
+/// Builds shaft and arm in one piece.
 fn shaft() -> Solid {
     let upright = |y: f32, share: f32| stop(Vec3::Y * y, THICK[0] + (THICK[1] - THICK[0]) * share);
     let mut stops = vec![upright(20.0, 0.0), upright(20.5, 0.0), upright(120.0, 0.3), upright(200.0, 0.6)];
@@ -50,7 +50,7 @@ fn shaft() -> Solid {
     sweep(&stops, Vec3::Z, 16)
 }
 
-/// The lamp: a flat drop that lies along the arm, and the lower bowl of its glass.
+/// Builds the lamp: a flat drop along the arm, and the lower bowl of its glass.
 fn lamp() -> Solid {
     let at = Vec3::new(-REACH[0] - REACH[1] - 2.0, BEND + REACH[0] - 1.5, 0.0);
     let hood = loft(
@@ -65,12 +65,12 @@ fn lamp() -> Solid {
         24,
     );
     let bowl = sweep(&bowl(), Vec3::Z, 24);
-    // The loft's y is along the arm, and its x across, upwards.
+    // The loft's y becomes the direction of the arm, and its x points up.
     let lying = Affine3A::from_rotation_translation(Quat::from_rotation_z(FRAC_PI_2), at);
     hood.transformed(lying).with(bowl.moved(at + Vec3::new(-26.0, -5.0, 0.0)))
 }
 
-/// Stops of the bowl below the hood, downwards.
+/// Returns the stops of the bowl below the hood, downwards.
 fn bowl() -> Vec<Stop> {
     let ring = |y: f32, size: f32| Stop { at: Vec3::Y * y, half: [9.5 * size, 17.0 * size] };
     vec![

@@ -1,8 +1,9 @@
-//! The street: a road with a kerb, a pavement and a wall on its right, two cars and two lamp posts, made for a headlight.
+//! The street: a road with a kerb, a pavement and a wall on its right, two cars and two lamp posts, for a
+//! headlight.
 //!
-//! The strip, the places and the sizes are those of a classic sample of shadow maps by a lamp with perspective; the
-//! models are our own. Lengths are in the sample's units: a car is about 13 long. Beyond the strip is nothing:
-//! one of the cars stands beside it.
+//! Strip, places and sizes are from a classic sample of shadow maps for a lamp with perspective. The models
+//! are our own. Lengths are in the sample's units: a car is about 13 long. There is no ground beyond the
+//! strip, so one of the cars hovers beside it.
 
 mod atlas;
 mod body;
@@ -20,26 +21,26 @@ use glam::{Quat, Vec3};
 use shadowfit_scene::parts::{Builder, sunlight};
 use shadowfit_scene::{Lens, Scene, Transform};
 
-/// Direction of the sun from +z toward +x, in radians: from the road's open side, so that what stands on the pavement
-/// throws its shadow on the wall.
+/// Direction of the sun from +z toward +x, in radians: from the road's open side, so that objects on the
+/// pavement cast shadows on the wall.
 const SUN_AZIMUTH: f32 = -0.9;
 /// Height of the sun above the horizon, in radians.
 const SUN_ELEVATION: f32 = 0.62;
 
-/// Where the cars stand, and their turn about y in radians. At 0 a car looks along +z: so the first drives ahead on the
-/// right of the road, and the second looks where the sample's headlight shines.
+/// Positions of the cars, and their turn about y in radians. At 0 a car faces +z. The first car drives ahead
+/// on the right of the road, and the second faces the direction of the sample's headlight.
 const CARS: [(Vec3, f32); 2] = [(Vec3::new(-3.0, 0.0, -15.0), PI), (Vec3::new(-28.0, 0.0, -1.9), 5.0 / 8.0 * PI)];
-/// How much larger than modelled the cars are.
+/// Scale of the cars.
 const CAR_SCALE: f32 = 4.0;
-/// Where the lamp posts stand: on the pavement.
+/// Positions of the lamp posts on the pavement.
 const LAMP_POSTS: [Vec3; 2] = [Vec3::new(4.0, 1.0, -35.0), Vec3::new(4.0, 1.0, -5.0)];
-/// How much larger than modelled the lamp posts are.
+/// Scale of the lamp posts.
 const LAMP_POST_SCALE: f32 = 0.05;
 
 /// Eye and target of the start view.
 const VIEW: (Vec3, Vec3) = (Vec3::new(-25.0, 13.0, 18.0), Vec3::new(0.0, 2.0, -12.0));
 
-/// The scene.
+/// Builds the scene.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("street", palette::Paint::all(), vec![atlas::image()]);
     let strip = builder.mesh("strip", vec![strip::primitive()]);
@@ -59,7 +60,7 @@ pub(super) fn build() -> Scene {
     scene
 }
 
-/// A place with a turn about y in radians and a scale.
+/// Returns a transform with a turn about y in radians and a scale.
 fn placed(translation: Vec3, turn: f32, scale: f32) -> Transform {
     Transform::new(translation, Quat::from_rotation_y(turn), Vec3::splat(scale))
 }

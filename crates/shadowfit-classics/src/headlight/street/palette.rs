@@ -4,11 +4,11 @@ use glam::Vec3;
 use shadowfit_scene::parts::{WHITE, matt, numbered};
 use shadowfit_scene::{Material, Texture, Wrap};
 
-/// Colour of the lamp posts, in values of the display.
+/// Colour of the lamp posts, in display values.
 const BROWN: [f32; 3] = [0.25, 0.21, 0.20];
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too.
+    /// A material, by its index in the scene. The first is also the default material.
     Paint: Material {
         Strip = strip(),
         LampPost = matt("lamp post", BROWN.map(linear), 0.6),
@@ -20,12 +20,12 @@ numbered! {
     }
 }
 
-/// Linear value of a value of the display, by the sRGB curve.
+/// Returns the linear value of a display value, by the sRGB curve.
 fn linear(value: f32) -> f32 {
     ((value + 0.055) / 1.055).powf(2.4)
 }
 
-/// The strip, whose image repeats mirrored.
+/// Returns the material of the strip, whose image repeats mirrored.
 fn strip() -> Material {
     let image = Texture { image: 0, wrap: [Wrap::Mirror; 2], nearest: false, uv_from_texcoord: [Vec3::X, Vec3::Y] };
     Material { base_color_texture: Some(image), ..matt("strip", WHITE, 0.9) }

@@ -1,9 +1,9 @@
-//! Thin slabs that lie on a curved surface: windows, seams.
+//! Thin slabs on a curved surface: windows, seams.
 
 use glam::{Vec2, Vec3};
 use shadowfit_scene::parts::Solid;
 
-/// Step of the parameters over which a surface's normal is taken.
+/// Step of the parameters for the finite differences of a surface's normal.
 const STEP: f32 = 1e-3;
 
 /// Part of a surface.
@@ -13,20 +13,20 @@ pub(super) struct Panel {
     pub(super) middle: Vec2,
     /// Half extent along each parameter.
     pub(super) half: Vec2,
-    /// How round the corners are: 0 has right angles, 1 is an ellipse.
+    /// Roundness of the corners: 0 is a rectangle, 1 an ellipse.
     pub(super) round: f32,
-    /// How far it stands out; it goes twice as deep into the surface.
+    /// Height above the surface. The slab extends twice this depth into the surface.
     pub(super) proud: f32,
 }
 
 impl Panel {
-    /// From one corner in the surface's parameters to the other.
+    /// Creates a panel between two corners in the surface's parameters.
     pub(super) fn between(low: Vec2, high: Vec2, round: f32, proud: f32) -> Self {
         Self { middle: (low + high) / 2.0, half: (high - low) / 2.0, round, proud }
     }
 
-    /// The slab on a surface, whose outer side is where its first parameter's direction × its second's points, in a
-    /// grid of `steps` cells along each.
+    /// Builds the slab on a surface, with a grid of `steps` cells along each parameter. The outer side points
+    /// along the cross product of the first parameter's direction and the second's.
     pub(super) fn solid(self, surface: impl Fn(Vec2) -> Vec3, steps: [u32; 2]) -> Solid {
         let [columns, rows] = steps.map(|count| count + 1);
         let mut solid = Solid::default();
@@ -62,7 +62,7 @@ impl Panel {
     }
 }
 
-/// Unit normal of a surface.
+/// Returns the unit normal of a surface.
 fn normal(surface: impl Fn(Vec2) -> Vec3, at: Vec2) -> Vec3 {
     let along = |step: Vec2| surface(at + step) - surface(at - step);
     along(Vec2::X * STEP).cross(along(Vec2::Y * STEP)).normalize_or(Vec3::Y)

@@ -32,7 +32,7 @@ pub(super) const PAIRS: [(f32, f32, f32, Vec3); 9] = [
 /// z and v of the two vertices of each pair.
 const ENDS: [(f32, f32); 2] = [(10.0, 25.0), (-100.0, 0.0)];
 
-/// The strip as a list of triangles, without those that have no area, where two pairs are in one place.
+/// Builds the strip as a list of triangles, without triangles of no area between coincident pairs.
 pub(super) fn primitive() -> Primitive {
     let mut primitive = Primitive { material: Paint::Strip.into(), ..Primitive::default() };
     for (x, y, u, normal) in PAIRS {

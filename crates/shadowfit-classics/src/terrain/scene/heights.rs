@@ -1,6 +1,6 @@
-//! The terrain's height map: 256 × 256 texels of 8 bits, as a source image's red channel would hold them.
+//! The terrain's height map: 256 × 256 texels of 8 bits, like the red channel of the source's image.
 //!
-//! Hills of smooth noise around a level valley floor, on which the vehicles stand.
+//! Hills of smooth noise around a level valley floor with the vehicles.
 
 use shadowfit_scene::parts::hash;
 
@@ -8,13 +8,13 @@ use super::vehicles::PLACES;
 
 /// Texels along a side.
 pub(super) const TEXELS: i32 = 256;
-/// Height of the greatest value, 255, in the terrain's units: five values are one unit.
+/// Height values per unit of the terrain.
 const PER_UNIT: f32 = 5.0;
-/// Distance around each vehicle to which the ground is level, in the terrain's units.
+/// Radius of the level ground around each vehicle, in the terrain's units.
 const LEVEL: f32 = 26.0;
-/// Distance from there over which hills rise to their whole height.
+/// Distance beyond that over which hills rise to their full height.
 const RISE: f32 = 60.0;
-/// Texels to each side over which a slope is taken: enough that the steps of 8-bit heights do not show in the shading.
+/// Texels to each side for computing a slope: enough to hide the steps of 8-bit heights in the shading.
 const REACH: i32 = 4;
 
 /// The height map, rows along z.
@@ -24,7 +24,7 @@ pub(crate) struct HeightMap {
 }
 
 impl HeightMap {
-    /// Draws it.
+    /// Generates the map.
     pub(crate) fn new() -> Self {
         let texel = |index: i32| {
             let height = hills((index % TEXELS) as f32, (index / TEXELS) as f32);
@@ -33,13 +33,14 @@ impl HeightMap {
         Self { red: (0..TEXELS * TEXELS).map(texel).collect() }
     }
 
-    /// Height at a texel, in the terrain's units; outside the map, that of its edge.
+    /// Returns the height at a texel, in the terrain's units. Outside the map, the height of its edge.
     pub(crate) fn height(&self, x: i32, z: i32) -> f32 {
         let [x, z] = [x, z].map(|texel| texel.clamp(0, TEXELS - 1));
         f32::from(self.red[(z * TEXELS + x) as usize]) / PER_UNIT
     }
 
-    /// Slope along x and z at a texel: that of the plane nearest to the heights around it (least squares).
+    /// Returns the slope along x and z at a texel, from the least-squares plane through the heights around
+    /// it.
     pub(super) fn slope(&self, x: i32, z: i32) -> [f32; 2] {
         let (mut along_x, mut along_z, mut squares) = (0.0, 0.0, 0.0);
         for dz in -REACH..=REACH {
@@ -60,7 +61,7 @@ pub(super) fn ease(x: f32, from: f32, to: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Smooth noise in -1..1 with a value at each whole number, which repeats every `period` of them.
+/// Returns smooth noise in -1..1 with a value at each whole number. It repeats after `period` numbers.
 pub(super) fn noise(x: f32, y: f32, period: u32, seed: u32) -> f32 {
     let (left, top) = (x.floor(), y.floor());
     let fade = |t: f32| t * t * t * (t * (6.0 * t - 15.0) + 10.0);
@@ -73,10 +74,10 @@ pub(super) fn noise(x: f32, y: f32, period: u32, seed: u32) -> f32 {
     mix(mix(value(0, 0), value(1, 0), u), mix(value(0, 1), value(1, 1), u), v)
 }
 
-/// Height before it is rounded to 8 bits.
+/// Returns the height before rounding to 8 bits.
 fn hills(x: f32, z: f32) -> f32 {
     let away = PLACES.iter().map(|place| place.at.distance(glam::Vec3::new(x, 0.0, z))).fold(f32::INFINITY, f32::min);
-    // The valley runs on from the level ground to the north edge and, narrower, to the south-west.
+    // The valley continues from the level ground to the north edge and, narrower, to the south-west.
     let north = (x - 138.0 - 10.0 * (z / 40.0).sin()).abs() + (z - 100.0).max(0.0) + 6.0;
     let south = 0.88 * (x - 118.0 + 0.55 * (z - 150.0)).abs() + (140.0 - z).max(0.0) + 10.0;
     let rise = ease(away.min(north).min(south), LEVEL, LEVEL + RISE);

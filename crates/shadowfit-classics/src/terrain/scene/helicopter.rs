@@ -1,6 +1,6 @@
 //! The helicopter: a bubble of dark glass, a boom with fin and tail rotor, four thin blades on a mast, skids.
 //!
-//! Modelled with the mast at z = 0, about which the blades turn.
+//! The mast is at z = 0, the axis of the blades.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -14,16 +14,16 @@ use super::parts::{Parts, rect, wedge};
 
 /// Height of the main rotor.
 const ROTOR: f32 = 5.8;
-/// Length of its blades from the mast: about that of the boom, as on light helicopters.
+/// Length of its blades from the mast: about the length of the boom, as on light helicopters.
 const BLADE: f32 = 7.1;
-/// Turn of the first blade from straight ahead, in radians: one blade's shadow falls on the jeep.
+/// Angle of the first blade from straight ahead, in radians, so that one blade's shadow falls on the jeep.
 const BLADE_TURN: f32 = 1.466;
 /// Distance from the mast to the middle between nose and tail.
 pub(super) const MIDDLE: f32 = 2.2;
 /// End of the tail boom.
 const TAIL: Vec3 = Vec3::new(0.0, 3.2, -6.9);
 
-/// All parts.
+/// Builds all parts.
 pub(super) fn parts() -> Parts {
     let mut parts = Parts::default();
     cabin(&mut parts);
@@ -34,13 +34,13 @@ pub(super) fn parts() -> Parts {
     parts
 }
 
-/// A loft along +z instead of +y: `section(z, half width, half height, height of the centre)`.
+/// Builds a loft along +z instead of +y: `section(z, half width, half height, height of the centre)`.
 fn along_z(sections: &[(f32, f32, f32, f32)], power: f32) -> Solid {
     let sections: Vec<_> = sections.iter().map(|&(z, rx, ry, y)| section(z, rx, ry, -y)).collect();
     loft(&sections, power, 4, 36).transformed(Affine3A::from_rotation_x(FRAC_PI_2))
 }
 
-/// The bubble, the belly that holds it, and the frame of its panes.
+/// Adds the bubble, the belly below it, and the frame of its panes.
 fn cabin(parts: &mut Parts) {
     let bubble = [(-0.2, 1.3, 1.35, 2.45), (0.9, 1.36, 1.36, 2.42), (2.0, 1.16, 1.1, 2.28), (2.7, 0.72, 0.68, 2.1)];
     parts.add(Paint::Glass, SMOOTH, along_z(&bubble, 2.2));
@@ -55,7 +55,7 @@ fn cabin(parts: &mut Parts) {
     parts.add(Paint::Blue, SMOOTH, along_z(&belly, 2.3));
     let rear = [(-1.9, 0.7, 0.75, 2.8), (-1.0, 1.18, 1.2, 2.55), (-0.1, 1.36, 1.42, 2.45)];
     parts.add(Paint::Blue, SMOOTH, along_z(&rear, 2.3));
-    // Ribs stand a little out of the glass.
+    // Ribs protrude slightly from the glass.
     let rib = |z: f32, rx: f32, ry: f32, y: f32| {
         let scale = Affine3A::from_scale(Vec3::new(rx, 1.0, ry));
         let ring = torus(1.0, 0.04, 0.07, 48, 8).transformed(scale);
@@ -71,7 +71,7 @@ fn cabin(parts: &mut Parts) {
     parts.add(Paint::Lamp, SMOOTH, lamp);
 }
 
-/// The engine's cowling behind and above the cabin, its exhausts, and the mast.
+/// Adds the engine's cowling behind and above the cabin, its exhausts, and the mast.
 fn engine(parts: &mut Parts) {
     let cowling =
         [(-1.9, 0.45, 0.42, 3.45), (-1.0, 0.68, 0.58, 3.72), (0.1, 0.62, 0.56, 3.82), (0.7, 0.34, 0.28, 3.82)];
@@ -84,14 +84,14 @@ fn engine(parts: &mut Parts) {
     parts.add(Paint::Steel, CRISP, mast.with(plate));
 }
 
-/// Boom, fin, stabiliser and tail rotor.
+/// Adds boom, fin, stabiliser and tail rotor.
 fn tail(parts: &mut Parts) {
     let boom = [(TAIL.z, 0.17, 0.19, TAIL.y), (-4.0, 0.28, 0.31, 3.02), (-1.6, 0.5, 0.56, 2.82)];
     parts.add(Paint::Blue, SMOOTH, along_z(&boom, 2.0));
     let band = lathe(&[(0.245, 0.0), (0.252, 0.02), (0.278, 0.5), (0.27, 0.52)], 28);
     let lie = Affine3A::from_rotation_translation(Quat::from_rotation_x(FRAC_PI_2 + 0.07), Vec3::new(0.0, 3.12, -5.2));
     parts.add(Paint::Pale, CRISP, band.transformed(lie));
-    // Modelled lying along z, then raised: z is up there, and y is behind.
+    // Modelled lying along z, then rotated up: z becomes up, and y points to the rear.
     let upright = Affine3A::from_rotation_x(-FRAC_PI_2);
     let fin = wedge(rect(0.09, [6.2, 7.35], 3.15), rect(0.05, [7.15, 7.85], 4.85));
     let lower = wedge(rect(0.05, [6.95, 7.5], 2.0), rect(0.08, [6.35, 7.3], 3.2));
@@ -108,7 +108,7 @@ fn tail(parts: &mut Parts) {
     parts.add(Paint::Dark, CRISP, rotor);
 }
 
-/// Four thin blades and their hub.
+/// Adds four thin blades and their hub.
 fn rotor(parts: &mut Parts) {
     // Modelled along +z.
     let blade = wedge(rect(0.2, [-0.03, 0.03], 0.55), rect(0.2, [-0.03, 0.01], BLADE));
@@ -125,7 +125,7 @@ fn rotor(parts: &mut Parts) {
     parts.add(Paint::Steel, CRISP, hub);
 }
 
-/// Two skids with turned-up ends, on bent legs.
+/// Adds two skids with turned-up ends, on bent legs.
 fn skids(parts: &mut Parts) {
     let tube = |a: [f32; 3], b: [f32; 3], radius: f32| capsule(Vec3::from(a), radius, Vec3::from(b), radius, 12);
     let mut skid = tube([1.45, 0.1, -2.1], [1.45, 0.1, 2.4], 0.1)

@@ -10,14 +10,14 @@ use shadowfit_scene::parts::{CRISP, SMOOTH, block, capsule, lathe, plank, rounde
 use super::palette::Paint;
 use super::parts::{Parts, Wheel, bent_sheet, rect, sideways, wedge};
 
-/// All wheels, with the spare one.
+/// All wheels, including the spare one.
 const WHEEL: Wheel = Wheel { radius: 0.92, rim: 0.5, half: 0.31, lugs: 16, lug: 0.06, slant: 0.45 };
-/// Distance of the wheels' middle from that of the body.
+/// Distance of the wheels' middle from the body's middle.
 const TRACK: f32 = 1.5;
 /// Front axle.
 const FRONT: f32 = 4.95;
 
-/// All parts.
+/// Builds all parts.
 pub(super) fn parts() -> Parts {
     let mut parts = Parts::default();
     for (side, z) in [(TRACK, 0.0), (-TRACK, 0.0), (TRACK, FRONT), (-TRACK, FRONT)] {
@@ -33,7 +33,7 @@ pub(super) fn parts() -> Parts {
     parts
 }
 
-/// Axles, rails and bumpers.
+/// Adds axles, rails and bumpers.
 fn frame(parts: &mut Parts) {
     let rail = |x: f32| block([x - 0.09, 0.86, -1.6], [x + 0.09, 1.08, 6.5], 0.03);
     let axle = |z: f32| {
@@ -46,9 +46,9 @@ fn frame(parts: &mut Parts) {
     parts.add(Paint::Dark, CRISP, solids.into_iter().collect());
 }
 
-/// Floor, sides with a low entry, tailboard, dashboard.
+/// Adds floor, sides with a low entry, tailboard and dashboard.
 fn tub(parts: &mut Parts) {
-    // Upper edge of a side, from behind: it is drawn upside down, and turned over.
+    // Upper edge of a side, from the rear. The wall is built upside down, then flipped.
     let edge = [(-1.5, 2.2), (0.85, 2.2), (1.05, 2.05), (1.2, 1.55), (2.35, 1.5), (2.6, 1.7), (2.8, 2.25), (3.3, 2.3)];
     let over: Vec<_> = edge.iter().map(|&(z, y)| (z, -y)).collect();
     let side = wall_over(&over, -0.98, 0.09).transformed(Affine3A::from_scale(Vec3::new(1.0, -1.0, 1.0)));
@@ -66,7 +66,7 @@ fn tub(parts: &mut Parts) {
     parts.add(Paint::Tan, CRISP, can);
 }
 
-/// Bonnet, grille and headlights.
+/// Adds bonnet, grille and headlights.
 fn front(parts: &mut Parts) {
     let hood = wedge(rect(1.06, [1.2, 2.28], 3.26), rect(0.92, [1.2, 2.12], 6.2));
     let ridge = wedge(rect(0.5, [2.2, 2.36], 3.28), rect(0.42, [2.05, 2.2], 6.1));
@@ -87,7 +87,7 @@ fn front(parts: &mut Parts) {
     parts.add(Paint::Steel, CRISP, catches);
 }
 
-/// Sheets over all wheels.
+/// Adds sheets over all wheels.
 fn mudguards(parts: &mut Parts) {
     let ahead = [(3.3, 1.15), (3.75, 1.95), (4.0, 2.02), (5.85, 2.02), (6.15, 1.9), (6.3, 1.6)];
     let behind = [(-1.3, 1.35), (-0.95, 1.9), (-0.75, 1.98), (0.75, 1.98), (0.95, 1.9), (1.3, 1.3)];
@@ -96,7 +96,7 @@ fn mudguards(parts: &mut Parts) {
     parts.add(Paint::Sand, CRISP, ahead.and_mirrored().with(behind.and_mirrored()));
 }
 
-/// Windscreen frame, roll bar and mirrors.
+/// Adds windscreen frame, roll bar and mirrors.
 fn above(parts: &mut Parts) {
     let bar = |low: Vec3, high: Vec3| block(low, high, 0.03);
     let posts = bar(Vec3::new(1.0, 0.0, -0.05), Vec3::new(1.12, 1.25, 0.05)).and_mirrored();
@@ -114,7 +114,7 @@ fn above(parts: &mut Parts) {
     parts.add(Paint::Dark, SMOOTH, arm.with(mirror).and_mirrored());
 }
 
-/// Two seats, a bench behind them, and the steering wheel.
+/// Adds two seats, a bench behind them, and the steering wheel.
 fn seats(parts: &mut Parts) {
     let seat = |x: f32, z: f32, half: f32| {
         let cushion = rounded_box([half, 0.13, 0.36], 0.08, 2).moved([x, 1.5, z]);

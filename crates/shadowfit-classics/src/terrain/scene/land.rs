@@ -16,7 +16,7 @@ pub(super) fn build(builder: &mut Builder) {
     builder.node("land", None, Transform::default(), Some(land));
 }
 
-/// The surface of a height map: texel (x, z) of red value r is the vertex (x, r/5, z).
+/// Builds the surface of a height map: texel (x, z) of red value r is the vertex (x, r/5, z).
 fn sheet(map: &HeightMap) -> Primitive {
     let mut sheet = Primitive { material: Paint::Land.into(), ..Primitive::default() };
     for z in 0..TEXELS {
@@ -40,15 +40,15 @@ fn sheet(map: &HeightMap) -> Primitive {
     sheet
 }
 
-/// Large patches of drier and greener land, over many tiles, so that the texture's repeats do not show; steep slopes
-/// are bare.
+/// Returns the colour at a place. Patches of drier and greener land, larger than the texture's tiles, hide
+/// its repetition. Steep slopes are bare.
 fn tint(x: f32, z: f32, up: f32) -> Vec4 {
     let patch = 0.5 + 0.3 * noise(x / 33.0, z / 33.0, 64, 604) + 0.2 * noise(x / 14.0, z / 14.0, 64, 705);
     let meadow = Vec3::new(0.86, 0.96, 0.80).lerp(Vec3::new(1.08, 1.0, 0.86), patch);
     meadow.lerp(Vec3::new(1.06, 0.95, 0.84), ease(0.9 - up, 0.0, 0.22)).extend(1.0)
 }
 
-/// Grass of short strokes in several greens, worn to earth in patches.
+/// Draws grass of short strokes in several greens, worn to earth in patches.
 pub(super) fn image() -> Image {
     let mix = |a: [f32; 3], b: [f32; 3], t: f32| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t);
     let unit = 1.0 / SIZE as f32;

@@ -7,8 +7,8 @@ use shadowfit_scene::parts::{matt, numbered, tiled};
 const TILE: f32 = 50.0;
 
 numbered! {
-    /// A material, by its index in the scene; the first is the default material too. The sample's light makes colours up to
-    /// 1.6 times as bright, in display values: they are dark enough to keep their hue under it.
+    /// A material, by its index in the scene. The first is also the default material. The sample's light
+    /// brightens colours by up to 1.6, in display values, so they are dark enough to keep their hue.
     Paint: Material {
         Land = tiled(matt("grass and earth", [1.0; 3], 1.0), 0, [TILE; 2]),
         Rubber = matt("rubber", [0.022, 0.022, 0.024], 0.95),

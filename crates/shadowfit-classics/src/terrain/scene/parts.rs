@@ -1,6 +1,7 @@
-//! What all vehicles are made of: wheels, wedges, bent sheets, and parts collected by what they are painted with.
+//! Building blocks of all vehicles: wheels, wedges, bent sheets, and parts grouped by paint.
 //!
-//! Vehicles are modelled in units of half the terrain's, front toward +z, left toward +x, standing on y = 0.
+//! Vehicles are modelled in units of half the terrain's, front toward +z, left toward +x, with the ground at
+//! y = 0.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::ops::Range;
@@ -16,7 +17,7 @@ use super::palette::Paint;
 pub(super) struct Parts(Vec<(Paint, f32, Solid)>);
 
 impl Parts {
-    /// Adds a solid; faces that meet at less than `crease` radians are smooth.
+    /// Adds a solid. Faces that meet at less than `crease` radians are smooth.
     pub(super) fn add(&mut self, paint: Paint, crease: f32, solid: Solid) {
         match self.0.iter_mut().find(|part| (part.0, part.1) == (paint, crease)) {
             Some(part) => part.2 = std::mem::take(&mut part.2).with(solid),
@@ -24,13 +25,13 @@ impl Parts {
         }
     }
 
-    /// Drawable form.
+    /// Converts all parts to primitives.
     pub(super) fn primitives(&self) -> Vec<Primitive> {
         self.0.iter().map(|(paint, crease, solid)| solid.primitive((*paint).into(), *crease)).collect()
     }
 }
 
-/// A rectangle across z: from `low` to `high` along x and y, at `z`.
+/// A rectangle perpendicular to z: from `low` to `high` along x and y, at `z`.
 #[derive(Clone, Copy)]
 pub(super) struct Rect {
     pub(super) low: Vec2,
@@ -38,12 +39,12 @@ pub(super) struct Rect {
     pub(super) z: f32,
 }
 
-/// A rectangle about x = 0.
+/// Returns a rectangle centred on x = 0.
 pub(super) const fn rect(half: f32, [low, high]: [f32; 2], z: f32) -> Rect {
     Rect { low: Vec2::new(-half, low), high: Vec2::new(half, high), z }
 }
 
-/// A body with flat faces from one rectangle to another of greater z.
+/// Builds a body with flat faces from one rectangle to another of greater z.
 pub(super) fn wedge(back: Rect, front: Rect) -> Solid {
     let corners = |r: Rect| {
         [(r.low.x, r.low.y), (r.high.x, r.low.y), (r.high.x, r.high.y), (r.low.x, r.high.y)]
@@ -58,16 +59,16 @@ pub(super) fn wedge(back: Rect, front: Rect) -> Solid {
     Solid { positions, triangles }
 }
 
-/// Turns a solid that was modelled across z so that it lies across x, and its x along z.
+/// Rotates a solid that was modelled across z so that it lies across x, with its x along z.
 pub(super) fn sideways(solid: Solid) -> Solid {
     solid.transformed(Affine3A::from_rotation_y(-FRAC_PI_2))
 }
 
-/// A sheet of a thickness, bent along `points` of (z, y) with ascending z, `width` across x.
+/// Builds a sheet of a thickness, bent along `points` of (z, y) with ascending z, `width` across x.
 pub(super) fn bent_sheet(points: &[(f32, f32)], thick: f32, width: f32) -> Solid {
     let at = |index: usize| Vec2::from(points[index]);
     let last = points.len() - 1;
-    // Outwards at a point: across the line from its neighbour before to the one after.
+    // Outward normal at a point: perpendicular to the line from its previous to its next neighbour.
     let out = |index: usize| (at((index + 1).min(last)) - at(index.saturating_sub(1))).normalize().perp() * thick;
     let mut outline = points.to_vec();
     outline.extend((0..=last).rev().map(|index| <(f32, f32)>::from(at(index) + out(index))));
@@ -77,8 +78,8 @@ pub(super) fn bent_sheet(points: &[(f32, f32)], thick: f32, width: f32) -> Solid
     sideways(extrude(&outline, &faces, width))
 }
 
-/// Returns points (z, y) of an arc about `center`, whose coordinates are z and y. `turns` are in radians from straight behind
-/// over the top.
+/// Returns points (z, y) of an arc about `center`, whose coordinates are z and y. `turns` are angles in
+/// radians, from the rear over the top.
 pub(super) fn arc(center: Vec2, radius: f32, turns: Range<f32>, steps: usize) -> Vec<(f32, f32)> {
     let at = |step: usize| {
         let (sin, cos) = (turns.start + (turns.end - turns.start) * step as f32 / steps as f32).sin_cos();
@@ -104,16 +105,16 @@ pub(super) struct Wheel {
 }
 
 impl Wheel {
-    /// Adds the wheel at a place; where `x` is negative its outer side is toward -x.
+    /// Adds the wheel at a place. If `x` is negative, its outer side is toward -x.
     pub(super) fn add(&self, parts: &mut Parts, rim: Paint, at: Vec3) {
         let side = if at.x < 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 };
         self.add_turned(parts, rim, at, Quat::from_rotation_y(side));
     }
 
-    /// Adds the wheel, modelled about z with its outer side toward +z, turned and moved.
+    /// Adds the wheel, modelled about z with its outer side toward +z, rotated and moved.
     pub(super) fn add_turned(&self, parts: &mut Parts, rim: Paint, at: Vec3, turn: Quat) {
         let place = Affine3A::from_rotation_translation(turn, at);
-        // Lathes are about y: their +y becomes +z.
+        // Lathes are about y. Their +y becomes +z.
         let upright = place * Affine3A::from_rotation_x(FRAC_PI_2);
         parts.add(Paint::Rubber, 0.6, self.tyre().transformed(upright).with(self.tread().transformed(place)));
         parts.add(rim, 0.6, self.disc().transformed(upright));
@@ -126,7 +127,7 @@ impl Wheel {
         let (h, tread) = (self.half, self.radius - self.lug);
         let shoulder = tread - 0.12 * self.radius;
         let profile = [
-            // Its sides are hollow as deep as the disc reaches.
+            // The sides are hollow to the depth of the disc.
             (self.rim * 0.9, -h * 0.05),
             (self.rim * 0.9, -h * 0.72),
             (self.rim * 1.06, -h * 0.86),
@@ -143,12 +144,12 @@ impl Wheel {
         lathe(&profile, 32)
     }
 
-    /// Lugs in two rows, slanted toward each other.
+    /// Builds lugs in two rows, slanted toward each other.
     fn tread(&self) -> Solid {
         let mut tread = Solid::default();
         let thick = self.radius * TAU / self.lugs as f32 * 0.2;
         let length = self.half * 0.48;
-        // Corners, not middles, are as far out as the radius says.
+        // The lugs' corners, not their middles, lie at the radius.
         let corner = thick * self.slant.cos() + length * self.slant.sin();
         let top = (self.radius * self.radius - corner * corner).sqrt();
         for index in 0..2 * self.lugs {
@@ -165,7 +166,7 @@ impl Wheel {
         tread
     }
 
-    /// A dished disc with a raised edge.
+    /// Builds a dished disc with a raised edge.
     fn disc(&self) -> Solid {
         let (h, r) = (self.half, self.rim);
         let profile = [

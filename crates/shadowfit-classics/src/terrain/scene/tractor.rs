@@ -1,4 +1,4 @@
-//! The tractor: large ribbed wheels behind, small ones ahead, a bonnet with its grille, an open cabin.
+//! The tractor: large ribbed rear wheels, small front wheels, a bonnet with its grille, an open cabin.
 
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use shadowfit_scene::parts::{CRISP, SMOOTH, block, capsule, lathe, plank, rounded_box, torus};
@@ -15,7 +15,7 @@ const REAR_AT: Vec3 = Vec3::new(1.52, REAR.radius, -1.65);
 /// Centre of the left front wheel.
 const FRONT_AT: Vec3 = Vec3::new(1.22, FRONT.radius, 2.62);
 
-/// All parts.
+/// Builds all parts.
 pub(super) fn parts() -> Parts {
     let mut parts = Parts::default();
     for side in [1.0, -1.0] {
@@ -30,7 +30,7 @@ pub(super) fn parts() -> Parts {
     parts
 }
 
-/// What carries the rest: gearbox, axles, weights ahead, a drawbar behind.
+/// Adds the frame: gearbox, axles, front weights, a drawbar at the rear.
 fn frame(parts: &mut Parts) {
     let gearbox = block([-0.5, 1.12, -2.25], [0.5, 1.95, 0.6], 0.08);
     let engine = block([-0.38, 1.02, 0.4], [0.38, 1.75, 3.1], 0.06);
@@ -52,7 +52,7 @@ fn frame(parts: &mut Parts) {
     parts.add(Paint::Dark, CRISP, tank.with(steps));
 }
 
-/// The bonnet, its grille and lamps, and the exhaust pipe.
+/// Adds the bonnet, its grille and lamps, and the exhaust pipe.
 fn bonnet(parts: &mut Parts) {
     let hood = wedge(rect(0.74, [1.74, 2.92], 0.35), rect(0.64, [1.68, 2.66], 3.42));
     let ridge = wedge(rect(0.40, [2.86, 3.04], 0.4), rect(0.34, [2.6, 2.77], 3.36));
@@ -90,7 +90,7 @@ fn bonnet(parts: &mut Parts) {
     parts.add(Paint::Dark, CRISP, cleaner.moved([0.4, 2.72, 1.2]));
 }
 
-/// Platform, mudguards, four posts and the roof.
+/// Adds platform, mudguards, four posts and the roof.
 fn cabin(parts: &mut Parts) {
     let platform = block([-1.0, 1.86, -2.3], [1.0, 2.02, 0.42], 0.04);
     let board = block([-0.82, 1.95, 0.12], [0.82, 3.05, 0.4], 0.08);
@@ -118,7 +118,7 @@ fn cabin(parts: &mut Parts) {
     parts.add(Paint::Yellow, CRISP, beacon);
 }
 
-/// Seat and steering wheel.
+/// Adds seat and steering wheel.
 fn driver(parts: &mut Parts) {
     let stand = block([-0.22, 1.95, -1.55], [0.22, 2.4, -1.05], 0.04);
     parts.add(Paint::Dark, CRISP, stand);

@@ -1,4 +1,4 @@
-//! The vehicles: where they stand, and the nodes that carry their meshes.
+//! The vehicles: their places, and the nodes of their meshes.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -8,10 +8,10 @@ use shadowfit_scene::parts::Builder;
 
 use super::{helicopter, jeep, tractor};
 
-/// Size of the vehicles in the terrain's units.
+/// Scale of the vehicles in the terrain's units.
 const SIZE: f32 = 2.0;
 
-/// Where a vehicle stands.
+/// Place of a vehicle.
 pub(crate) struct Place {
     /// Name of its node.
     pub(crate) name: &'static str,
@@ -28,10 +28,11 @@ pub(crate) const PLACES: [Place; 3] = [
     Place { name: "jeep", at: Vec3::new(140.0, 0.0, 170.0), yaw: 0.3 },
 ];
 
-/// Adds the vehicles and returns the node that they hang on.
+/// Adds the vehicles and returns their parent node.
 pub(super) fn build(builder: &mut Builder) -> usize {
     let all = builder.group("vehicles", Vec3::ZERO, 0.0);
-    // Models face +z; tractor and jeep face the light, the helicopter +x, its middle at its place.
+    // Models face +z. Tractor and jeep are turned to the light. The helicopter is turned to +x and centred on
+    // its place.
     let models = [
         (tractor::parts(), PI, Vec3::ZERO),
         (helicopter::parts(), FRAC_PI_2, Vec3::X * helicopter::MIDDLE),

@@ -1,4 +1,4 @@
-//! The passes of a frame, for the engine to draw.
+//! Passes of a frame, for the engine to draw.
 
 use shadowfit::cache::{FramePlan, PassKind, PassPlan, RegionVolumes};
 
@@ -6,51 +6,53 @@ use super::CachedMaps;
 use crate::CullingRegion;
 use crate::maps::static_layers::Opening;
 
-/// A pass into a map. A map that is kept unchanged has none.
+/// A pass into a map. A map that is kept unchanged has no pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowPass<'a> {
     pub(super) maps: &'a CachedMaps,
     pub(super) pass: &'a PassPlan,
-    /// Number of its plan's first region, among those of all sets of maps.
+    /// Number of the plan's first region in the numbering of both sets of maps.
     first_region: usize,
 }
 
-/// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
+/// A region of a pass: casters that are drawn with one viewport and one scissor rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawRegion<'a> {
-    /// Number of the region among those of all passes of the frame.
+    /// Number of the region, counted over all passes of the frame.
     pub number: usize,
-    /// Number of the map.
+    /// Index of the map.
     pub map: usize,
-    /// Left, top, width and height of the viewport, in texels. It may begin outside the texture: maps wrap around in
-    /// their layers.
+    /// Left, top, width and height of the viewport, in texels. It may begin outside the texture, because maps
+    /// wrap around in their layers.
     pub viewport: [f32; 4],
     /// Left, top, width and height of the scissor rectangle, in texels.
     pub scissor: [u32; 4],
-    /// The casters of the list to draw, by number, nearest to the light first, so that those behind others cost least.
+    /// Numbers of the casters to draw from the list ([`SunFrame::casters`](crate::SunFrame::casters)),
+    /// nearest to the light first, so that hidden casters cost least.
     pub casters: &'a [u32],
-    /// The static casters to draw ([`SunFrame::static_boxes`](crate::SunFrame::static_boxes)), by their numbers in the
-    /// tree, likewise.
+    /// Numbers of the static casters to draw from the hierarchy
+    /// ([`SunFrame::static_boxes`](crate::SunFrame::static_boxes)), also nearest first.
     pub static_boxes: &'a [u32],
 }
 
 impl<'a> ShadowPass<'a> {
-    /// Number of the map. While the sun [steps](crate::SunShadows::set_light_steps) two maps have the same number.
+    /// Returns the index of the map. During a [light step](crate::SunShadows::set_light_steps) two maps have
+    /// the same index.
     pub fn map(&self) -> usize {
         self.pass.map
     }
 
-    /// What it draws.
+    /// Returns the kind of casters that the pass draws.
     pub fn content(&self) -> PassKind {
         self.pass.content
     }
 
-    /// Whether the whole layer is cleared, because no part of it can be kept.
+    /// Returns whether the whole layer is cleared, because no part of it can be kept.
     pub fn is_cleared(&self) -> bool {
         self.pass.clears
     }
 
-    /// Its parts.
+    /// Returns the regions of the pass.
     pub fn regions(&self) -> impl ExactSizeIterator<Item = DrawRegion<'a>> + use<'a> {
         let (plan, pass) = (self.maps.cache.plan(), self.pass);
         let first = self.first_region;
@@ -59,7 +61,7 @@ impl<'a> ShadowPass<'a> {
 }
 
 impl<'a> ShadowPass<'a> {
-    /// The pass's regions for shaders that find their casters.
+    /// Returns the pass's regions for shaders that cull casters.
     pub(crate) fn culling_regions(&self) -> impl Iterator<Item = CullingRegion> + use<'a> {
         let (cache, pass) = (&self.maps.cache, self.pass);
         let parts = cache.plan().regions_of(pass).iter().map(|region| region.part.window);
@@ -80,7 +82,7 @@ impl<'a> ShadowPass<'a> {
 }
 
 impl ShadowPass<'_> {
-    /// Records the pass. `draw` is called for each part that has casters.
+    /// Records the pass. `draw` is called for each region that has casters.
     pub(crate) fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -94,7 +96,7 @@ impl ShadowPass<'_> {
         }
     }
 
-    /// Opens the pass: cleared or mended, with the map's matrix bound at `group`.
+    /// Opens the pass: clears or restores the layer, and binds the map's matrix at `group`.
     pub(crate) fn begin<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
@@ -120,7 +122,7 @@ fn draw_region<'a>(plan: &'a FramePlan, pass: &PassPlan, number: usize) -> DrawR
 }
 
 impl DrawRegion<'_> {
-    /// Sets viewport and scissor rectangle.
+    /// Sets the viewport and the scissor rectangle.
     pub fn set(&self, pass: &mut wgpu::RenderPass<'_>) {
         let [x, y, width, height] = self.viewport;
         pass.set_viewport(x, y, width, height, 0.0, 1.0);
@@ -130,22 +132,22 @@ impl DrawRegion<'_> {
 }
 
 impl CachedMaps {
-    /// Leaves the frame without passes.
+    /// Gives the frame no passes.
     pub(crate) fn skip(&mut self) {
         self.cache.skip();
     }
 
-    /// Number of passes of this frame.
+    /// Returns the number of passes of this frame.
     pub(crate) fn pass_count(&self) -> usize {
         self.cache.plan().passes.len()
     }
 
-    /// Number of the passes' regions.
+    /// Returns the number of regions of all passes.
     pub(crate) fn piece_count(&self) -> usize {
         self.cache.plan().regions.len()
     }
 
-    /// One of the passes, in the order in which they must be drawn. `first_region`: number of the first region of all.
+    /// Returns one of the passes in draw order. `first_region` is the number of this set's first region.
     pub(crate) fn pass(&self, index: usize, first_region: usize) -> ShadowPass<'_> {
         ShadowPass { maps: self, pass: &self.cache.plan().passes[index], first_region }
     }

@@ -1,21 +1,21 @@
 use super::*;
 
-/// Maps of this side step after 2 / SIDE rad.
+/// Maps of this width step after 2 / SIDE rad.
 const SIDE: u32 = 1000;
 const ANGLE: f32 = 0.002;
 const MAPS: usize = 3;
 
-/// A sun that has turned by an angle from the beginning.
+/// Returns the direction of a sun that has turned by an angle since the first frame.
 fn sun(angle: f32) -> Vec3 {
     Vec3::new(angle.sin(), -angle.cos(), 0.0) * 3.0
 }
 
-/// Whether a direction is that of a sun at an angle.
+/// Returns whether a direction is the sun's direction at an angle.
 fn is_at(direction: Vec3, angle: f32) -> bool {
     (direction - sun(angle) / 3.0).length() < 1e-6
 }
 
-/// A state that holds the sun at the angle 0.
+/// Returns a state that holds the sun at the angle 0.
 fn held(fade: u32) -> StepState {
     let mut state = StepState::new(LightSteps::default().with_fade(fade));
     let step = next(&mut state, 0.0);
@@ -45,7 +45,7 @@ fn a_sun_is_held_until_an_edge_would_be_a_texel_off() {
 fn the_next_maps_are_drawn_one_by_one_then_faded_in_then_alone() {
     let mut state = held(4);
     for drawn in 1..=MAPS {
-        // The sun moves on, and is not followed meanwhile.
+        // The sun moves on during the step, and the maps do not follow it.
         let step = next(&mut state, (1.0 + drawn as f32) * ANGLE);
         assert!(is_at(step.now, 0.0) && step.other.is_some_and(|other| is_at(other, 2.0 * ANGLE)), "{step:?}");
         assert_eq!((step.begins, step.swaps), (drawn == 1, false));
@@ -125,7 +125,7 @@ fn a_cut_ends_a_step_with_the_newest_direction_and_keeps_what_is_held() {
         state.cut();
         let step = next(&mut state, 2.0 * ANGLE);
         assert_eq!((is_at(step.now, 1.5 * ANGLE), step.other), (true, None), "after {frames} frames");
-        // What turned more than a step meanwhile is not faded either.
+        // A turn by more than a step is not faded either.
         state.cut();
         let step = next(&mut state, 3.0 * ANGLE);
         assert_eq!((is_at(step.now, 3.0 * ANGLE), step.other), (true, None));

@@ -1,14 +1,14 @@
-//! What a difference between two maps means to what is in view.
+//! Effect of a difference between two maps on the visible points.
 
 use shadowfit::glam::{DMat4, DVec2, DVec3, UVec2};
 use shadowfit::selection::{MapOrder, MapReading, by_coverage};
 use shadowfit::settings::MapSelection;
 use shadowfit::{DepthConvention, FittedMap, PerspectiveCamera};
 
-/// Metres between the points of a column that are looked at.
+/// Distance between the tested points of a column, in metres.
 const STEP: f64 = 0.5;
 
-/// Everything in view, and the maps that it reads by coverage.
+/// All points in view, and the maps that they read by coverage.
 pub(super) struct Readers<'a> {
     maps: &'a [FittedMap],
     reading: MapReading,
@@ -22,9 +22,9 @@ impl<'a> Readers<'a> {
         Self { maps, reading, eye: camera.eye, clip_from_world }
     }
 
-    /// Whether a point in view could be lit otherwise where a texel of a map holds one of two depths instead of the
-    /// other: one between them, or as far beside the texel as the filter reaches, that reads this map. Receivers may
-    /// lie anywhere in view.
+    /// Returns whether a point in view could be lit differently if a texel of a map held the other of two
+    /// depths. Such a point lies between the depths, within the filter's radius of the texel, and reads this
+    /// map. Receivers may lie anywhere in view.
     ///
     /// ```text
     ///        light
@@ -57,7 +57,7 @@ impl<'a> Readers<'a> {
         clip.truncate().truncate().abs().max_element() <= clip.w && (0.0..=clip.w).contains(&clip.z)
     }
 
-    /// Whether a point reads a map.
+    /// Returns whether a point reads a map.
     fn reads(&self, point: DVec3, index: usize) -> bool {
         let MapReading { selection, filter, softness } = self.reading;
         let MapSelection::Coverage { blend } = selection else { panic!("maps that are read by coverage") };

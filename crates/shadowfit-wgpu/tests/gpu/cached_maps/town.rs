@@ -1,5 +1,5 @@
-//! A town of blocks, a walk through it, and the same maps twice: of one set, the tests keep the static casters, and the other
-//! is drawn anew.
+//! A town of blocks, a walk through it, and two sets of the same maps: one keeps static casters, and the
+//! other is drawn from scratch.
 
 use shadowfit::cache::PassKind;
 use shadowfit::glam::{DVec3, Vec3};
@@ -9,26 +9,26 @@ use shadowfit_wgpu::{ShadowPass, SunFrame, SunShadows};
 use crate::engine::Engine;
 use crate::engine::casters::{CasterShader, Casters, Shape};
 
-/// Where the town lies, far from the world's origin.
+/// Position of the town, far from the world's origin.
 const PLACE: DVec3 = DVec3::new(12_000.0, 40.0, -7_000.0);
 
 /// A block of the town.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
-    /// World space, in metres.
+    /// Centre in world space, in metres.
     pub(super) centre: DVec3,
-    /// Half its size, in metres; negative for one that is not there.
+    /// Half the size, in metres; negative for a block that is absent.
     pub(super) half: Vec3,
-    /// Where it stands when it does not bob, in metres.
+    /// Height of the centre at rest, in metres.
     height: f64,
-    /// Its own number, which stays the same in any order of the list.
+    /// Identity of the block, independent of the order of the list.
     pub(super) id: u64,
-    /// How much of its box it fills, along each axis.
+    /// Share of its box that the block fills, along each axis.
     pub(super) fill: f32,
 }
 
 impl Block {
-    /// Stands for its shape, wherever it is.
+    /// Returns a key of the shape, independent of the position.
     fn key(&self) -> u64 {
         self.id << 32 | u64::from(self.fill.to_bits())
     }
@@ -44,14 +44,14 @@ pub(super) struct Town {
 }
 
 impl Town {
-    /// Every tenth block moves.
+    /// Returns a town in which every tenth block moves.
     pub(super) fn new() -> Self {
         let mut town = Self::still();
         town.moves = (0..town.blocks.len()).map(|number| number % 10 == 9).collect();
         town
     }
 
-    /// Nothing moves.
+    /// Returns a town without moving blocks.
     pub(super) fn still() -> Self {
         let block = |x: f64, y: f64, z: f64, half: Vec3| Block {
             centre: PLACE + DVec3::new(x, y, z),
@@ -62,7 +62,7 @@ impl Town {
         };
         let mut blocks = vec![block(0.0, -0.5, 0.0, Vec3::new(80.0, 0.5, 80.0))];
         for i in 0..240_u32 {
-            // Low-discrepancy places.
+            // Low-discrepancy positions.
             let place = |base: f64| (f64::from(i) * base).fract() * 120.0 - 60.0;
             let half = Vec3::new(0.3 + (i % 7) as f32 * 0.25, 0.4 + (i % 11) as f32 * 0.3, 0.3 + (i % 5) as f32 * 0.35);
             let block = block(place(0.754_877_67), f64::from(half.y), place(0.569_840_3), half);
@@ -71,7 +71,7 @@ impl Town {
         Self { blocks, moves: Vec::new(), has_keys: false }
     }
 
-    /// Moves what moves by half a metre, once a second.
+    /// Moves the moving blocks up and down by half a metre, once per second.
     pub(super) fn bob(&mut self, frame: u32) {
         for (number, (block, moves)) in self.blocks.iter_mut().zip(&self.moves).enumerate() {
             if *moves {
@@ -108,7 +108,8 @@ impl Walk {
         Self { eye: PLACE + DVec3::new(-20.0, 1.7, 25.0), forward: Vec3::NEG_Z, direction }
     }
 
-    /// 1.5 m and 10 degrees a second, 60 frames a second; every fourth second twice as fast.
+    /// Moves on by one frame: 1.5 m and 10 degrees per second at 60 frames per second, and twice as fast in
+    /// every fourth second.
     pub(super) fn go_on(&mut self, frame: u32) {
         let angle = (frame as f32 / 6.0).to_radians() + 0.4 * (frame as f32 * 0.05).sin();
         self.forward = Vec3::new(angle.sin(), -0.12, -angle.cos()).normalize();
@@ -129,7 +130,7 @@ impl Walk {
     }
 }
 
-/// What one way of drawing drew.
+/// Results of drawing one set of maps.
 #[derive(Debug, Default)]
 pub(super) struct Drawn {
     pub(super) passes: usize,
@@ -137,7 +138,7 @@ pub(super) struct Drawn {
     pub(super) texels: u64,
 }
 
-/// The maps that one way of drawing reads.
+/// Content of one set of maps.
 #[derive(Debug)]
 pub(super) struct Stored {
     /// Depths of each map, as the look-up reads them.
@@ -146,7 +147,8 @@ pub(super) struct Stored {
 }
 
 impl Stored {
-    /// Whether a point of the ground is lit, by one look-up in the finest map that holds it with a border.
+    /// Returns whether a point of the ground is lit, by one look-up in the finest map that contains it with a
+    /// border.
     fn is_lit(&self, point: DVec3) -> bool {
         let holds =
             |(_, map): &(usize, &FittedMap)| map.projection.texels_to_edge(point).is_some_and(|free| free > 4.0);
@@ -155,14 +157,14 @@ impl Stored {
         let Some((index, map)) = maps.min_by(|a, b| texel(a.1).total_cmp(&texel(b.1))) else { return true };
         let uvz = map.projection.uv_from_world.transform_point3((point - map.projection.origin).as_vec3());
         let at = (uvz.truncate() * map.projection.resolution.as_vec2()).as_uvec2();
-        // The ground is the deepest of all: half a metre above it is a block.
+        // The ground is the lowest surface. A texel more than half a metre above it belongs to a block.
         uvz.z - 0.5 / map.projection.depth_range
             < self.depths[index][(at.y * map.projection.resolution.x + at.x) as usize]
     }
 }
 
 impl Walk {
-    /// Points of the ground in view.
+    /// Returns points of the ground in view.
     pub(super) fn ground(&self) -> impl Iterator<Item = DVec3> {
         let forward = self.forward.with_y(0.0).normalize().as_dvec3();
         let right = forward.cross(DVec3::Y);
@@ -175,7 +177,7 @@ impl Walk {
     }
 }
 
-/// The share of points in view that one way of drawing lights and the other does not.
+/// Returns the share of points in view whose verdict differs between the two sets.
 pub(super) fn lit_otherwise([a, b]: &[Stored; 2], walk: &Walk) -> f64 {
     let [count, differ] = walk
         .ground()
@@ -200,10 +202,10 @@ impl Pair {
         Self { engine, kept, anew, pipeline }
     }
 
-    /// Draws a frame with both.
+    /// Draws a frame with both sets.
     pub(super) fn draw(&mut self, town: &Town, walk: &Walk) -> [Drawn; 2] {
         let views = [walk.camera().frustum().expect("a camera")];
-        // Boxes relative to the moving eye, as engines have them: they round anew in each frame.
+        // Boxes are relative to the moving eye, as in engines, so that their rounding differs in each frame.
         let boxes = town.boxes(walk.eye);
         let boxes = Boxes { origin: walk.eye, boxes: &boxes };
         let keys = town.keys();
@@ -235,12 +237,12 @@ impl Pair {
         })
     }
 
-    /// Returns the maps of both after the last frame.
+    /// Returns the content of both sets after the last frame.
     pub(super) fn stored(&self) -> [Stored; 2] {
         [&self.kept, &self.anew].map(|sun| Stored { depths: self.engine.unwrapped(sun), maps: sun.maps().to_vec() })
     }
 
-    /// Every map that is read holds what it must, those that wait too.
+    /// Asserts that every map that is read is complete, including maps that wait.
     pub(super) fn assert_proven(&self, town: &Town, walk: &Walk) {
         let views = [walk.camera().frustum().expect("a camera")];
         let boxes = town.boxes(walk.eye);

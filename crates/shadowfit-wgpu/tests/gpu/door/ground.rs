@@ -1,4 +1,4 @@
-//! Boxes that cast, a ground that is looked up from above, and a device that reports no error.
+//! Boxes that cast shadows, look-ups on the ground, and a device that must not report errors.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Boxes, PerspectiveCamera, ViewFrustum};
@@ -8,28 +8,28 @@ use crate::engine::casters::{CasterShader, Casters, Shape, look_up_wgsl};
 use crate::engine::picture::{READ_BACK, WHOLE, draw_whole};
 use crate::engine::{Engine, Pipeline};
 
-/// The camera's eye.
+/// Position of the camera's eye.
 pub(super) const EYE: DVec3 = DVec3::new(0.0, 6.0, 9.0);
 
-/// The ways that two suns' light travels.
+/// Directions of travel of the light of two suns.
 pub(super) const SUN: Vec3 = Vec3::new(0.5, -1.0, 0.0);
 pub(super) const MOON: Vec3 = Vec3::new(-0.5, -1.0, 0.0);
 
-/// The ground, a block over its middle, and a post at its side.
+/// The ground, a block over its centre, and a post at its side.
 pub(super) const BOXES: [Aabb; 3] = [
     Aabb { min: Vec3::new(-10.0, -0.5, -10.0), max: Vec3::new(10.0, 0.0, 10.0) },
     Aabb { min: Vec3::new(-0.75, 1.5, -0.75), max: Vec3::new(0.75, 2.5, 0.75) },
     Aabb { min: Vec3::new(-6.0, 0.0, -4.0), max: Vec3::new(-5.0, 2.0, -3.0) },
 ];
 
-/// Pixels along a side of a picture, and metres of the ground.
+/// Width of an image in pixels, and of the ground in metres.
 pub(super) const SIDE: u32 = 64;
 const GROUND: f32 = 16.0;
 
-/// Format of a picture: a factor for each of up to four suns.
+/// Format of an image: one factor for each of up to four suns.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Factors at a pixel of the ground.
+/// WGSL that returns the factors at a pixel of the ground.
 const FACTORS_WGSL: &str = "
 fn factors(pixel: vec2<f32>) -> vec4<f32> {
     let place = (pixel / SIDE - 0.5) * GROUND;
@@ -57,14 +57,15 @@ pub(super) fn camera(eye: DVec3) -> PerspectiveCamera {
     }
 }
 
-/// A frame of boxes that stand still, all of which cast and receive. Positions in shaders are world space.
+/// Returns a frame of static boxes that all cast and receive shadows. Positions in shaders are in world
+/// space.
 pub(super) fn frame_of<'a>(views: &'a [ViewFrustum], direction: Vec3, boxes: &'a [Aabb]) -> SunFrame<'a> {
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
     SunFrame::new(views, direction, boxes, shadowfit_wgpu::Casters::fixed(boxes)).with_origin(DVec3::ZERO)
 }
 
 impl Engine {
-    /// Opens a device with no more than WebGL2 has.
+    /// Opens a device with WebGL2's limits.
     pub(super) fn with_webgl2_limits() -> Self {
         let engine = Self::open(wgpu::Limits::downlevel_webgl2_defaults());
         assert_eq!(engine.device.features(), wgpu::Features::empty());
@@ -72,14 +73,14 @@ impl Engine {
         engine
     }
 
-    /// A depth buffer of the ground's picture.
+    /// Creates a depth buffer for the image of the ground.
     pub(super) fn depth_texture(&self) -> wgpu::TextureView {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
         self.texture([SIDE; 2], 1, wgpu::TextureFormat::Depth32Float, usage)
     }
 }
 
-/// Takes note of what a device reports.
+/// Error scopes of a device.
 pub(super) struct Quiet {
     memory: wgpu::ErrorScopeGuard,
     validation: wgpu::ErrorScopeGuard,
@@ -94,7 +95,7 @@ impl Quiet {
         Self { memory, validation, internal: scope(wgpu::ErrorFilter::Internal) }
     }
 
-    /// Nothing was reported.
+    /// Asserts that the device reported no error.
     pub(super) fn assert(self, what: &str) {
         for scope in [self.internal, self.validation, self.memory] {
             let error = pollster::block_on(scope.pop());
@@ -103,12 +104,13 @@ impl Quiet {
     }
 }
 
-/// How the WGSL of a sun fits into a shader.
+/// Returns the WGSL options of a sun.
 fn options(group: u32, prefix: &str) -> WgslOptions<'_> {
     WgslOptions::group(group).with_prefix(prefix).expect("a prefix")
 }
 
-/// WGSL of the function `factors`, which looks up to four suns up: each with its bind group and its prefix.
+/// Returns WGSL of the function `factors`, which looks up to four suns up, each with its bind group and its
+/// prefix.
 pub(super) fn factors_wgsl(suns: &[(&SunShadows, u32, &'static str)]) -> String {
     let look_up = |(sun, group, prefix): &(&SunShadows, u32, &str)| {
         look_up_wgsl(sun.map().descriptor(), &options(*group, prefix))
@@ -123,30 +125,30 @@ pub(super) fn factors_wgsl(suns: &[(&SunShadows, u32, &'static str)]) -> String 
     suns.iter().map(look_up).collect::<String>() + &wgsl
 }
 
-/// Draws the casters of up to four suns, and the ground by their factors.
+/// Pipelines that draw the casters of up to four suns, and the ground with their factors.
 pub(super) struct Painter {
     casters: Vec<wgpu::RenderPipeline>,
     ground: wgpu::RenderPipeline,
 }
 
-/// Factors of each sun over the ground.
+/// Image with the factors of each sun over the ground.
 #[derive(Debug, PartialEq)]
 pub(super) struct Picture(Vec<[u8; 4]>);
 
 impl Picture {
-    /// Submits commands, and returns the picture that they draw.
+    /// Submits commands, and returns the image that they draw.
     pub(super) fn read(engine: &Engine, encoder: wgpu::CommandEncoder, picture: &wgpu::TextureView) -> Self {
         engine.submit(encoder);
         Self(engine.texels(picture.texture()))
     }
 
-    /// At a place of the ground, in metres.
+    /// Returns the factors at a position on the ground, in metres.
     pub(super) fn at(&self, place: [f32; 2]) -> [u8; 4] {
         let [x, y] = place.map(|metres| ((metres / GROUND + 0.5) * SIDE as f32) as usize);
         self.0[y * SIDE as usize + x]
     }
 
-    /// All factors.
+    /// Returns all factors.
     pub(super) fn values(&self) -> impl Iterator<Item = u8> {
         self.0.iter().flatten().copied()
     }
@@ -156,7 +158,7 @@ impl Picture {
         self.0.iter().map(move |factors| factors[sun])
     }
 
-    /// The greatest difference from another picture.
+    /// Returns the greatest difference from another image.
     pub(super) fn difference(&self, other: &Self) -> u8 {
         let pixels = self.0.iter().flatten().zip(other.0.iter().flatten());
         pixels.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or_default()
@@ -164,15 +166,15 @@ impl Picture {
 }
 
 impl Painter {
-    /// Makes pipelines for suns with the prefixes of their names. One module holds the WGSL of all suns; each sun has a
-    /// separate bind group.
+    /// Creates pipelines for suns with these prefixes. One module contains the WGSL of all suns. Each sun has
+    /// a separate bind group.
     pub(super) fn new(engine: &Engine, suns: &[(&SunShadows, &'static str)]) -> Self {
         let at_groups: Vec<_> = (0..).zip(suns).map(|(group, (sun, prefix))| (*sun, group, *prefix)).collect();
         let groups: Vec<_> = suns.iter().map(|(sun, _)| Some(sun.map().receiver_layout())).collect();
         Self::with_layout(engine, &at_groups, &engine.layout(&groups))
     }
 
-    /// Makes pipelines like [`Self::new`], for suns at any bind groups.
+    /// Creates pipelines like [`Self::new`], for suns at any bind groups.
     pub(super) fn with_layout(
         engine: &Engine,
         suns: &[(&SunShadows, u32, &'static str)],
@@ -193,7 +195,7 @@ impl Painter {
         Self { casters, ground }
     }
 
-    /// Draws a frame of suns, each with the boxes that were given to it.
+    /// Draws a frame of suns, each with its boxes.
     pub(super) fn draw(&self, engine: &Engine, suns: &[(&SunShadows, &[Aabb])]) -> Picture {
         let groups: Vec<_> = suns.iter().map(|(sun, _)| sun.receiver_group()).collect();
         self.draw_with(engine, suns, &groups)
@@ -215,7 +217,7 @@ impl Painter {
         Picture::read(engine, encoder, &picture)
     }
 
-    /// Draws the casters of one of the suns.
+    /// Draws the casters of one sun.
     pub(super) fn draw_one(
         &self,
         engine: &Engine,

@@ -1,4 +1,4 @@
-//! Look-ups at bind groups of the engine's own, in compute shaders, and pipelines that two suns share.
+//! Look-ups at the engine's own bind groups, in compute shaders, and pipelines that two suns share.
 
 use shadowfit::Technique;
 use shadowfit::settings::FilterKind;
@@ -8,7 +8,7 @@ use super::ground::{BOXES, EYE, FORMAT, MOON, Painter, Picture, Quiet, SIDE, SUN
 use super::{IN_MOON_SHADOW, IN_SUN_SHADOW, LIT, technique};
 use crate::engine::{Engine, dispatch};
 
-/// Lights the ground as deferred engines do, after it is known what is seen.
+/// Lights the ground like a deferred renderer, in a compute shader.
 const LIGHT: &str = "
 @group(1) @binding(0) var lit: texture_storage_2d<rgba8unorm, write>;
 @compute @workgroup_size(8, 8) fn light(@builtin(global_invocation_id) pixel: vec3<u32>) {
@@ -22,12 +22,12 @@ fn shadows(device: &Engine, technique: &Technique, first_binding: u32) -> SunSha
     SunShadows::new(&device.device, &device.queue, &descriptor).expect("maps")
 }
 
-/// Factors of the sun and of the moon at the three places.
+/// Returns the factors of the sun and of the moon at the three positions.
 fn factors(picture: &Picture) -> [[u8; 2]; 3] {
     [IN_SUN_SHADOW, IN_MOON_SHADOW, LIT].map(|place| [picture.at(place)[0], picture.at(place)[1]])
 }
 
-/// Lights the ground by a compute shader.
+/// Lights the ground in a compute shader.
 fn computed(device: &Engine, sun: &SunShadows) -> Picture {
     let lit =
         device.texture([SIDE; 2], 1, FORMAT, wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC);

@@ -1,4 +1,5 @@
-//! A sun that the engine turns off: no pass and no light, and right maps in the first frame after.
+//! A sun that the engine turns off: it has no pass and gives no light, and its maps are correct in the first
+//! frame afterwards.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
@@ -8,7 +9,7 @@ use super::ground::{BOXES, EYE, MOON, Painter, Picture, Quiet, SUN, camera, fram
 use super::{IN_SUN_SHADOW, LIT, technique};
 use crate::engine::Engine;
 
-/// Places of the ground, in shadow and lit.
+/// Positions on the ground, in shadow and lit.
 const EVERYWHERE: [[f32; 2]; 5] = [IN_SUN_SHADOW, LIT, [-7.9, -7.9], [7.9, -7.9], [7.9, 7.9]];
 
 fn factors(picture: &Picture) -> [u8; 5] {
@@ -23,7 +24,7 @@ fn gpu_a_sun_that_is_off_has_no_pass_and_gives_no_light_from_anywhere() {
     let painter = Painter::new(&device, &[(&sun, "shadowfit")]);
     let views = [camera(EYE).frustum().expect("a camera")];
     let frame = frame_of(&views, SUN, &BOXES);
-    // Before the first frame too.
+    // Test before the first frame, and after it.
     for is_first in [true, false] {
         if !is_first {
             sun.update(&device.queue, &frame).expect("a good frame");
@@ -46,13 +47,13 @@ fn gpu_a_sun_that_is_off_has_no_pass_and_gives_no_light_from_anywhere() {
             assert_eq!(recorded, Ok(false));
         }
         let refused = sun.update(&device.queue, &frame_of(&[], SUN, &BOXES));
-        assert!(refused.is_err() && sun.is_off(), "a frame that is refused turns nothing on");
+        assert!(refused.is_err() && sun.is_off(), "a refused frame does not turn the sun on");
     }
     quiet.assert("a sun that is off");
 }
 
-/// Views of the same eye that begin beyond the shadow distance: by the distance that they are made with, and by that of
-/// the technique.
+/// Returns views of the same eye that begin beyond the shadow distance: one is created with this distance,
+/// the other exceeds the technique's distance.
 fn views_beyond() -> [ViewFrustum; 2] {
     let camera = PerspectiveCamera { near: 50.0, far: 90.0, ..camera(EYE) };
     let eye_from_clip = camera.clip_from_world(DepthConvention::Reversed).inverse();
@@ -77,7 +78,7 @@ fn gpu_views_beyond_the_shadow_distance_have_no_pass_and_are_lit_until_they_come
             sun.update(&device.queue, &frame).expect("a good frame");
             assert_eq!(factors(&painter.draw(&device, &[(&sun, &BOXES)]))[..2], [0, 255]);
         }
-        // Something moves meanwhile.
+        // A caster moves meanwhile.
         for boxes in [&BOXES, &moved] {
             let beyond = frame_of(&views, SUN, boxes);
             sun.update(&device.queue, &beyond).expect("a frame without shadows");
@@ -99,7 +100,7 @@ fn gpu_views_beyond_the_shadow_distance_have_no_pass_and_are_lit_until_they_come
         let fresh = painter.draw(&device, &[(&fresh, &moved)]);
         assert_eq!(factors(&kept), factors(&fresh), "a stale map");
         sun.update(&device.queue, &again).expect("a good frame");
-        assert_eq!(sun.passes().len(), 0, "what stands still is kept");
+        assert_eq!(sun.passes().len(), 0, "static casters are kept");
         painter.draw(&device, &[(&sun, &moved)]);
     }
     quiet.assert("views beyond the shadow distance");

@@ -1,4 +1,4 @@
-//! A sun that moves: what is held, and how one set of maps goes over into the next.
+//! A moving sun: held maps, and the fade from one set of maps to the next.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::MapFormat;
@@ -9,7 +9,8 @@ use super::ground::{BOXES, EYE, Painter, Picture, Quiet, camera, frame_of};
 use super::technique;
 use crate::engine::{ClearedDepth, Engine, cleared};
 
-/// Maps of 256 texels, of whose edges 3 may be off: the sun steps after 0.0234 rad. Less than 0.035 rad is no jump.
+/// Steps for maps of 256 texels with an error of 3 texels at the edges: the sun steps after 0.0234 rad. Less
+/// than 0.035 rad is no jump.
 const STEPS: LightSteps = LightSteps { texels: 3.0, fade: FADE };
 const FADE: u32 = 6;
 const STEP: f32 = 0.03;
@@ -17,13 +18,13 @@ const LESS: f32 = 0.02;
 const MAPS: usize = 4;
 const SIDE: u32 = 256;
 
-/// The way a sun's light travels that has turned by an angle, in radians.
+/// Returns the direction of travel of the light of a sun that has turned by an angle, in radians.
 fn sun_at(angle: f32) -> Vec3 {
     let (sin, cos) = (0.45 + angle).sin_cos();
     Vec3::new(sin, -cos, 0.1)
 }
 
-/// A sun with its device and its pipelines, looked at from some places.
+/// A sun with its device, its pipelines and some views.
 struct Day {
     device: Engine,
     sun: SunShadows,
@@ -40,10 +41,10 @@ impl Day {
         Self { sun, painter, views: vec![camera(EYE).frustum().expect("a camera")], device }
     }
 
-    /// One with these steps, whose windows have settled.
+    /// Returns a sun with these steps, whose windows have settled.
     fn settled(technique: &Technique, steps: LightSteps) -> Self {
         let mut day = Self::new(Engine::shared(), technique, Some(steps));
-        // For 60 frames after one window was replaced, the next replacement needs a larger gain.
+        // For 60 frames after a window is replaced, the next replacement needs a larger gain.
         for _ in 0..120 {
             day.go_on(0.0);
         }
@@ -54,18 +55,19 @@ impl Day {
         frame_of(&self.views, sun_at(angle), &BOXES)
     }
 
-    /// A frame of a sun that has turned by an angle. Every map that is read holds what it must.
+    /// Draws a frame of a sun that has turned by an angle, and asserts that every map that is read is
+    /// complete.
     fn draw(&mut self, angle: f32) -> Picture {
         self.draw_boxes(angle, &BOXES, &[])
     }
 
-    /// The same with other boxes, of which some move.
+    /// Draws a frame with other boxes, some of which move.
     fn draw_boxes(&mut self, angle: f32, boxes: &[Aabb], moves: &[bool]) -> Picture {
         self.update(angle, boxes, moves);
         self.painter.draw(&self.device, &[(&self.sun, boxes)])
     }
 
-    /// A frame of which no picture is drawn.
+    /// Advances by a frame without drawing an image.
     fn go_on(&mut self, angle: f32) {
         self.update(angle, &BOXES, &[]);
         let mut encoder = self.device.encoder();
@@ -81,11 +83,11 @@ impl Day {
         assert!(proof.is_proven(), "{proof:?}");
         let numbers: Vec<usize> =
             self.sun.passes().flat_map(|pass| pass.regions()).map(|region| region.number).collect();
-        assert_eq!(numbers, (0..numbers.len()).collect::<Vec<_>>(), "regions of both sets have numbers of their own");
+        assert_eq!(numbers, (0..numbers.len()).collect::<Vec<_>>(), "regions of both sets have different numbers");
         assert_eq!(self.sun.culling_regions().count(), numbers.len());
     }
 
-    /// Lets the sun see a wall that fills the view, so many metres ahead.
+    /// Records the visible demand of a wall that fills the view at this distance.
     fn see_wall(&mut self, metres: f32) {
         self.device.require_depth_loads();
         let (camera, convention) = (camera(EYE), DepthConvention::Reversed);
@@ -99,19 +101,19 @@ impl Day {
         self.sun.wait_for_demand().expect("a device");
     }
 
-    /// Texels that the last frame drew.
+    /// Returns the number of texels that the last frame drew.
     fn drawn(&self) -> u32 {
         let regions = self.sun.passes().flat_map(|pass| pass.regions());
         regions.map(|region| region.scissor[2] * region.scissor[3]).sum()
     }
 
-    /// Whether the maps that are read were made for the sun at an angle.
+    /// Returns whether the maps that are read were fitted to the sun at an angle.
     fn is_held_at(&self, angle: f32) -> bool {
         let held = self.sun.maps()[0].projection.direction;
         (held - sun_at(angle).normalize()).length() < 1e-6
     }
 
-    /// What a sun without steps shows with the same maps, drawn anew for an angle.
+    /// Returns the image of a sun without steps, with the same maps, drawn from scratch for an angle.
     fn plain(&self, technique: &Technique, angle: f32) -> (Picture, SunShadows) {
         let mut sun = SunShadows::new(&self.device.device, &self.device.queue, &(*technique).into()).expect("maps");
         sun.prepare(&self.device.queue, &self.frame(angle), self.sun.fitted()).expect("a good frame");
@@ -119,7 +121,7 @@ impl Day {
         (painter.draw(&self.device, &[(&sun, &BOXES)]), sun)
     }
 
-    /// The depths of some layers.
+    /// Returns the depths of the layers of one set of maps.
     fn layers(&self, sun: &SunShadows, first: usize) -> Vec<Vec<f32>> {
         let depths: Vec<f32> = self.device.texels(sun.map().view().texture());
         depths.chunks((SIDE * SIDE) as usize).skip(first).take(MAPS).map(<[f32]>::to_vec).collect()
@@ -146,7 +148,7 @@ fn gpu_a_step_without_a_fade_draws_all_maps_in_one_frame() {
     assert_eq!(day.drawn(), MAPS as u32 * SIDE * SIDE);
     assert!(day.is_held_at(STEP));
     assert_eq!(picture, day.plain(&technique(), STEP).0);
-    // There is one set of maps, and the look-up of a sun without steps.
+    // There is a single set of maps, with the look-up of a sun without steps.
     let plain = SunShadows::new(&day.device.device, &day.device.queue, &technique().into()).expect("maps");
     let wgsl = |sun: &SunShadows| receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
     assert_eq!(wgsl(&day.sun), wgsl(&plain));
@@ -182,9 +184,9 @@ fn gpu_a_fade_draws_a_map_in_a_frame_then_goes_from_the_old_shadow_to_the_new_on
     };
     for pair in pictures.windows(2) {
         let mut values = pair[0].values().zip(pair[1].values()).zip(new.values());
-        assert!(values.all(|((before, now), end)| is_between(before, now, end)), "a factor turns back");
+        assert!(values.all(|((before, now), end)| is_between(before, now, end)), "a factor reverses its change");
     }
-    assert_eq!(day.draw(STEP), plain, "and stays there");
+    assert_eq!(day.draw(STEP), plain, "the image stays the same");
     assert_eq!(day.drawn(), 0);
 }
 
@@ -198,14 +200,14 @@ fn gpu_windows_follow_what_is_seen_in_the_maps_that_are_not_read_yet_and_fade_in
         day.see_wall(40.0);
     }
     let (mut pictures, before) = (vec![day.draw(0.0)], places(&day));
-    // From the first frame of the step on something nearer is seen.
+    // From the first frame of the step on, a nearer wall is visible.
     for frame in 0..MAPS as u32 + LONG {
         pictures.push(day.draw(STEP));
         if frame < MAPS as u32 {
             assert_eq!(places(&day), before, "frame {frame}");
         } else {
             assert_eq!(day.drawn(), 0, "frame {frame}");
-            let seen = day.sun.fitter().visible_demand().expect("a picture").demand().space.direction;
+            let seen = day.sun.fitter().visible_demand().expect("visible demand").demand().space.direction;
             assert!((seen - sun_at(STEP).normalize()).length() < 1e-6, "frame {frame}");
         }
         day.see_wall(20.0);
@@ -239,7 +241,7 @@ fn gpu_every_kind_of_map_steps_in_every_format_and_is_that_of_the_new_direction_
     }
 }
 
-/// Beside the post, where it throws its shadow, and as far from where it goes.
+/// Ground points in the post's shadow, before and after it moves.
 const BESIDE_POST: [f32; 2] = [-4.6, -3.5];
 const BESIDE_MOVED: [f32; 2] = [-4.6, 2.5];
 
@@ -290,7 +292,7 @@ fn gpu_a_cut_ends_a_step_with_right_maps_and_a_reset_forgets_the_sun() {
         let expected = Painter::new(&day.device, &[(&new, "shadowfit")]).draw(&day.device, &[(&new, &BOXES)]);
         assert!(picture.difference(&expected) <= 1, "{}", picture.difference(&expected));
         day.draw(STEP + LESS);
-        assert_eq!(day.drawn(), 0, "nothing more is to be drawn");
+        assert_eq!(day.drawn(), 0, "no texel is drawn again");
         day.sun.reset();
         day.draw(STEP + LESS);
         assert!(day.is_held_at(STEP + LESS));
@@ -309,7 +311,7 @@ fn gpu_a_sun_that_is_turned_off_in_a_fade_is_dark_and_comes_back_with_right_maps
     let dark = day.painter.draw(&day.device, &[(&day.sun, &BOXES)]);
     assert!(dark.of(0).all(|factor| factor == 0));
     let picture = day.draw(STEP + STEP);
-    assert!(day.is_held_at(STEP + STEP), "the way it went meanwhile is not faded");
+    assert!(day.is_held_at(STEP + STEP), "the movement while the sun was off is not faded");
     assert_eq!(picture, day.plain(&technique(), STEP + STEP).0);
 }
 
@@ -326,7 +328,7 @@ fn gpu_views_that_walk_are_covered_in_every_frame_of_a_day_and_few_maps_are_draw
         whole += cleared;
         most = most.max(cleared);
     }
-    // 0.24 rad are 10 steps of a fade's length; a window is replaced now and then.
+    // 0.24 rad are 10 steps with fades. A window is replaced now and then.
     assert!(whole <= 12 * MAPS && most <= 2, "{whole} whole maps, {most} in a frame");
 }
 
@@ -336,7 +338,7 @@ fn gpu_a_sun_that_fades_stands_beside_another_in_one_shader_and_runs_on_a_device
     let quiet = Quiet::new(&device);
     let suns = || SunShadows::new(&device.device, &device.queue, &technique().into()).expect("maps");
     let (mut sun, mut moon) = (suns(), suns());
-    assert_eq!(sun.set_light_steps(Some(STEPS)), Ok(true), "pipelines and look-up are others now");
+    assert_eq!(sun.set_light_steps(Some(STEPS)), Ok(true), "pipelines and look-up have changed");
     assert_eq!(sun.set_light_steps(Some(STEPS.with_fade(3))), Ok(false));
     assert_eq!(sun.light_steps(), Some(STEPS.with_fade(3)));
     assert!(sun.set_light_steps(Some(STEPS.with_texels(-1.0))).is_err());
@@ -353,7 +355,7 @@ fn gpu_a_sun_that_fades_stands_beside_another_in_one_shader_and_runs_on_a_device
     }
     let factors = |frame: usize, sun: usize| pictures[frame].of(sun).collect::<Vec<u8>>();
     assert_ne!(factors(39, 0), factors(59, 0));
-    assert_eq!(factors(39, 1), factors(45, 1), "the moon's shadows stand still while the sun's fade");
+    assert_eq!(factors(39, 1), factors(45, 1), "the moon's shadows do not change while the sun's fade");
     assert_eq!(sun.set_light_steps(None), Ok(true));
     assert_eq!(sun.map().view().texture().depth_or_array_layers(), MAPS as u32);
     quiet.assert("two suns");

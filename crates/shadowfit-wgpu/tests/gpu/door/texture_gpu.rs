@@ -1,5 +1,5 @@
-//! Maps in textures that the engine made and owns: pictures as with internal ones, two suns in one array, and textures
-//! that cannot hold the maps.
+//! Maps in textures that the engine owns: the same images as with internal textures, two suns in one array,
+//! and textures that cannot hold the maps.
 
 use shadowfit::Technique;
 use shadowfit::settings::{FilterKind, MapFormat};
@@ -13,10 +13,10 @@ use super::ground::{BOXES, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
 use super::{IN_MOON_SHADOW, IN_SUN_SHADOW, LIT, technique};
 use crate::engine::{ClearedDepth, Engine, cleared};
 
-/// The depth that all layers are filled with at first.
+/// Initial depth of all layers.
 const FILLED: f32 = 0.25;
 
-/// A texture for the maps of a technique, with other layers, and with other differences.
+/// Creates a texture for the maps of a technique, with another number of layers, and with changes.
 fn texture(
     device: &Engine,
     technique: &Technique,
@@ -37,12 +37,12 @@ fn sun_in(device: &Engine, technique: &Technique, first_binding: u32, texture: &
     SunShadows::new(&device.device, &device.queue, &descriptor).expect("maps in a texture")
 }
 
-/// The description of maps in a texture, with bindings from 0 on.
+/// Returns the description of maps in a texture, with bindings from 0 on.
 fn in_texture(technique: &Technique, texture: &MapTexture) -> SunShadowsDescriptor {
     SunShadowsDescriptor { texture: Some(texture.clone()), ..(*technique).into() }
 }
 
-/// A frame in which the post moves.
+/// Updates suns with a frame in which the post moves.
 fn update(device: &Engine, suns: &mut [(&mut SunShadows, shadowfit::glam::Vec3)], step: u16) -> [shadowfit::Aabb; 3] {
     let mut boxes = BOXES;
     boxes[2].min.z += 0.3 * f32::from(step);
@@ -86,7 +86,7 @@ fn gpu_a_sun_that_steps_fades_within_a_texture_of_the_engine_s_if_it_has_room_fo
     let steps = Some(LightSteps { texels: 3.0, fade: 4 });
     let small = MapTexture { texture: texture(&device, &technique, 6, |_| ()), base_layer: 1 };
     let mut refused = sun_in(&device, &technique, 0, &small);
-    let error = refused.set_light_steps(steps).expect_err("there is no room for a second set");
+    let error = refused.set_light_steps(steps).expect_err("the texture has too few layers for a second set");
     let layers = MapTextureError::Layers { texture: 6, base_layer: 1, maps: 8 };
     assert!(matches!(&error, SunShadowsError::Map(ShadowMapError::Texture(why)) if *why == layers), "{error:?}");
     assert_eq!(refused.light_steps(), None);
@@ -95,12 +95,12 @@ fn gpu_a_sun_that_steps_fades_within_a_texture_of_the_engine_s_if_it_has_room_fo
     let mut own = sun_in(&device, &technique, 0, &large);
     let mut internal = SunShadows::new(&device.device, &device.queue, &technique.into()).expect("maps");
     for sun in [&mut own, &mut internal] {
-        sun.set_light_steps(steps).expect("there is room");
+        sun.set_light_steps(steps).expect("the texture has enough layers");
     }
     assert_eq!(own.map().texture(), Some(&large));
     let painter = Painter::new(&device, &[(&own, "shadowfit")]);
     for step in 0..16_u16 {
-        // It steps in the fourth frame.
+        // The sun steps in the fourth frame.
         let turned = shadowfit::glam::Vec3::X * if step < 3 { 0.0 } else { 0.03 };
         let boxes = update(&device, &mut [(&mut own, SUN + turned), (&mut internal, SUN + turned)], step % 4);
         let [own, internal] = [&own, &internal].map(|sun| painter.draw(&device, &[(sun, &boxes)]));
@@ -124,7 +124,7 @@ fn fill(device: &Engine, texture: &wgpu::Texture) {
     device.submit(encoder);
 }
 
-/// The depths of each layer.
+/// Returns the depths of each layer.
 fn layers(device: &Engine, texture: &wgpu::Texture) -> Vec<Vec<f32>> {
     let texels: Vec<f32> = device.texels(texture);
     texels.chunks((texture.width() * texture.height()) as usize).map(<[f32]>::to_vec).collect()
@@ -136,7 +136,7 @@ fn gpu_two_suns_of_one_array_leave_each_other_s_layers_and_all_others_alone() {
     let quiet = Quiet::new(&device);
     let techniques = [technique().with_format(MapFormat::Depth32Float), technique().with_count(2)];
     let techniques = techniques.map(|technique| technique.with_format(MapFormat::Depth32Float));
-    // Layers 0 and 7 are nobody's.
+    // Layers 0 and 7 belong to no sun.
     let texture = texture(&device, &techniques[0], 8, |descriptor| descriptor.usage |= wgpu::TextureUsages::COPY_SRC);
     fill(&device, &texture);
     let mut sun = sun_in(&device, &techniques[0], 0, &MapTexture { texture: texture.clone(), base_layer: 1 });
@@ -146,7 +146,7 @@ fn gpu_two_suns_of_one_array_leave_each_other_s_layers_and_all_others_alone() {
     let (mut before, mut drawn) = (layers(&device, &texture), 0);
     assert!(before.iter().all(is_filled));
     for step in 0..6 {
-        // Turn by turn, so that what changes is told apart.
+        // Update the suns in turn, so that changes can be attributed.
         let is_sun = step % 2 == 0;
         let (shadows, direction, own) = if is_sun { (&mut sun, SUN, 1..5) } else { (&mut moon, MOON, 5..7) };
         let boxes = update(&device, &mut [(shadows, direction)], step);
@@ -171,7 +171,7 @@ fn gpu_two_suns_of_one_array_leave_each_other_s_layers_and_all_others_alone() {
     quiet.assert("two suns in one array");
 }
 
-/// Textures that cannot hold the four maps of 256² texels, what is wrong, and words of the message.
+/// Returns textures that cannot hold four maps of 256² texels, the error, and words of the message.
 fn unsuited(device: &Engine) -> Vec<(MapTexture, MapTextureError, [&'static str; 2])> {
     let technique = technique();
     let format = ShadowMapDescriptor::from(&technique).texture().format;
@@ -275,7 +275,7 @@ fn gpu_another_technique_stays_in_the_texture_or_moves_to_one_that_holds_it() {
     let wider = technique().with_filter(FilterKind::Pcf3x3);
     assert_eq!(sun.set_technique(&wider), Ok(true));
     assert_eq!(sun.map().texture(), Some(&small));
-    // One map more, or larger ones, do not fit.
+    // Another map, or larger maps, do not fit.
     let (more, larger) = (wider.with_count(5), wider.with_resolution(512, 512));
     let layers = MapTextureError::Layers { texture: 5, base_layer: 1, maps: 5 };
     assert_eq!(sun.set_technique(&more), Err(ShadowMapError::Texture(layers)));

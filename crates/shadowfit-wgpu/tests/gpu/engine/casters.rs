@@ -1,4 +1,5 @@
-//! Casters drawn into maps of any format: triangles, and boxes as instances of a cube. And the depths of the maps.
+//! Casters drawn into maps of any format: triangles, and boxes as instances of a cube. Also reads the depths
+//! of the maps.
 
 use shadowfit::FittedMap;
 use shadowfit::glam::Vec3;
@@ -27,7 +28,7 @@ fn drawn_PREFIX(position: vec3<f32>) -> Drawn_PREFIX {
 }
 ";
 
-/// The colour for the formats that need one.
+/// Fragment shaders for the formats with a colour target.
 const COLOR: &str = "
 struct Color_PREFIX {
     @location(0) color: vec4<f32>,
@@ -42,43 +43,43 @@ struct Color_PREFIX {
 }
 ";
 
-/// What casters consist of: the beginning of the vertex shader's name.
+/// Geometry of casters. The names are prefixes of the vertex shader's name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
     Triangles,
     Boxes,
 }
 
-/// Casters in buffers, by their numbers.
+/// Casters in buffers, by number.
 pub(crate) enum Casters {
-    /// The triangles of each caster.
+    /// Triangles of each caster.
     Triangles(Vec<wgpu::Buffer>),
-    /// The corners of a unit cube, and the low and the high corner of each box.
+    /// Triangles of a unit cube, and the lower and upper corner of each box.
     Boxes { cube: wgpu::Buffer, boxes: wgpu::Buffer },
 }
 
 impl Casters {
-    /// Takes the corners of the triangles of each caster.
+    /// Creates casters from the triangles of each one.
     pub(crate) fn triangles(engine: &Engine, casters: impl IntoIterator<Item = impl AsRef<[Vec3]>>) -> Self {
         let buffer = |corners: &[Vec3]| engine.buffer(corners, wgpu::BufferUsages::VERTEX);
         Self::Triangles(casters.into_iter().map(|corners| buffer(corners.as_ref())).collect())
     }
 
-    /// Takes the low and the high corner of each box.
+    /// Creates casters from the lower and upper corner of each box.
     pub(crate) fn boxes(engine: &Engine, corners: &[[Vec3; 2]]) -> Self {
         let [cube, boxes] = [unit_cube().as_slice(), corners.as_flattened()]
             .map(|corners| engine.buffer(corners, wgpu::BufferUsages::VERTEX));
         Self::Boxes { cube, boxes }
     }
 
-    /// Draws the casters of some numbers.
+    /// Draws the casters with these numbers.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, numbers: &[u32]) {
         pass.set_pipeline(pipeline);
         match self {
             Self::Triangles(buffers) => {
                 for buffer in numbers.iter().map(|number| &buffers[*number as usize]) {
                     pass.set_vertex_buffer(0, buffer.slice(..));
-                    // The buffer of no corners is too small for a triangle.
+                    // The buffer of an empty caster is too small for a triangle.
                     pass.draw(0..(buffer.size() / size_of::<Vec3>() as u64) as u32, 0..1);
                 }
             }
@@ -103,7 +104,7 @@ impl Casters {
     }
 }
 
-/// How casters are drawn into a map.
+/// Shader that draws casters into a map.
 #[derive(Clone, Copy)]
 pub(crate) struct CasterShader<'a> {
     pub(crate) map: &'a ShadowMap,
@@ -119,19 +120,19 @@ impl<'a> CasterShader<'a> {
         Self { map, shape, group: 0, prefix: "shadowfit" }
     }
 
-    /// The WGSL, which may stand in one module with others of other prefixes.
+    /// Returns the WGSL, which can share a module with WGSL of other prefixes.
     pub(crate) fn wgsl(&self) -> String {
         let options = WgslOptions::group(self.group).with_prefix(self.prefix).expect("a prefix");
         let color = if self.map.color_target().is_some() { COLOR } else { "" };
         caster_wgsl(self.map.descriptor(), &options) + &[CASTER, color].concat().replace("PREFIX", self.prefix)
     }
 
-    /// Compiles the shader alone in its module.
+    /// Compiles the shader in a separate module.
     pub(crate) fn pipeline(&self, engine: &Engine) -> wgpu::RenderPipeline {
         self.pipeline_of(engine, &self.wgsl())
     }
 
-    /// Compiles the shader in a module that holds its WGSL.
+    /// Compiles the shader in a module that contains its WGSL.
     pub(crate) fn pipeline_of(&self, engine: &Engine, wgsl: &str) -> wgpu::RenderPipeline {
         let Self { map, shape, group, prefix } = *self;
         let mut groups = vec![None; group as usize];
@@ -170,7 +171,7 @@ pub(crate) fn look_up_wgsl(map: &ShadowMapDescriptor, options: &WgslOptions<'_>)
     format!("// {:?}\n", map.format) + &receiver_wgsl(map, options)
 }
 
-/// The triangles of a cube from 0 to 1, of any winding.
+/// Returns the triangles of a cube from 0 to 1, with any winding.
 fn unit_cube() -> Vec<Vec3> {
     let face = |axis: usize, side: f32| {
         [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[u, v]| {

@@ -1,6 +1,6 @@
-//! An engine of a few lines, which the tests share: a device, its buffers, textures and pipelines, and values read back.
-//! Tests add their scene and their questions. [`casters`] draws into maps, [`points`] evaluates WGSL at points, and
-//! [`picture`] draws pictures and depth buffers.
+//! A minimal engine that the tests share: a device, its buffers, textures and pipelines, and values read
+//! back. Tests add their scenes. [`casters`] draws into maps, [`points`] evaluates WGSL at points, and
+//! [`picture`] draws images and depth buffers.
 
 pub(crate) mod casters;
 pub(crate) mod picture;
@@ -15,8 +15,8 @@ use shadowfit_testing::{Lent, TestGpu, lacking, open_test_gpu, read_back, requir
 use shadowfit_wgpu::ShadowMapDescriptor;
 use wgpu::util::DeviceExt;
 
-/// A device of the software adapter. A test has it to itself and finds the pipelines of the tests before it: most tests draw
-/// with few shaders, and compiling one takes longer than drawing with it.
+/// A device of the software adapter. One test uses it at a time, and reuses the pipelines of earlier tests:
+/// most tests draw with few shaders, and compiling one takes longer than drawing with it.
 #[derive(Clone)]
 pub(crate) struct Engine {
     pub(crate) adapter: wgpu::Adapter,
@@ -25,11 +25,12 @@ pub(crate) struct Engine {
     /// Pipelines by their WGSL and their states.
     draws: Made<wgpu::RenderPipeline>,
     computes: Made<wgpu::ComputePipeline>,
-    /// Whether the device compiles compute shaders, once it was tried.
+    /// Whether the device compiles compute shaders, once this was tested.
     compiles_compute: Arc<OnceLock<bool>>,
 }
 
-/// A small compute shader that uses what all of the tests' compute shaders use: a storage buffer of any length.
+/// A small compute shader that uses a feature of all the tests' compute shaders: a storage buffer of any
+/// length.
 const COMPUTE: &str = "
 @group(0) @binding(0) var<storage, read_write> values: array<u32>;
 @compute @workgroup_size(1) fn write_one() {
@@ -37,10 +38,10 @@ const COMPUTE: &str = "
 }
 ";
 
-/// Things that were made for a text.
+/// Objects by the text that they were created from.
 type Made<T> = Arc<Mutex<HashMap<String, T>>>;
 
-/// Returns the thing of a text, and makes it if it is missing.
+/// Returns the object for a text, and creates it if it is missing.
 fn made<T: Clone>(all: &Made<T>, text: String, make: impl FnOnce() -> T) -> T {
     let found = all.lock().expect("no thread panics with the lock").get(&text).cloned();
     found.unwrap_or_else(|| {
@@ -72,19 +73,20 @@ impl Engine {
         LENT.with(Lent::get)
     }
 
-    /// Ends a test whose counts need corners that are rounded to 1/256 pixel: coarser steps leave other pixels unsure.
+    /// Ends a test whose counts need corners that are rounded to 1/256 pixel: coarser steps make different
+    /// pixels unsure.
     pub(crate) fn require_fine_steps(&self) {
         require_fine_steps(&self.adapter.get_info());
     }
 
-    /// Ends a test in which shaders read depth textures as numbers. OpenGL's cannot: naga writes every depth texture as a
-    /// sampler that compares, and GLSL loads no texels of these.
+    /// Ends a test whose shaders read depth textures as numbers. OpenGL cannot: naga writes every depth
+    /// texture as a comparison sampler, and GLSL cannot load texels from one.
     pub(crate) fn require_depth_loads(&self) {
-        self.require_other_than_opengl("loads of depths in shaders");
+        self.require_other_than_opengl("loads from depth textures in shaders");
     }
 
-    /// Ends a test with maps in a texture from a later layer than the first one on. wgpu's OpenGL has no views of textures:
-    /// its shaders read a texture from layer 0 on.
+    /// Ends a test with maps that do not begin at the first layer of a texture. wgpu's OpenGL backend has no
+    /// texture views: its shaders read a texture from layer 0 on.
     pub(crate) fn require_base_layers(&self) {
         self.require_other_than_opengl("bind groups of a texture's later layers");
     }
@@ -97,7 +99,8 @@ impl Engine {
         }
     }
 
-    /// Ends a test with shadow maps that the adapter cannot draw, or whose depths its shaders cannot read as PCSS does.
+    /// Ends a test with shadow maps that the adapter cannot draw, or whose depths its shaders cannot read for
+    /// PCSS.
     pub(crate) fn require_map(&self, map: &ShadowMapDescriptor) {
         let texture = map.texture();
         self.require(texture.format, texture.usage);
@@ -113,9 +116,10 @@ impl Engine {
         }
     }
 
-    /// Ends a test in which one shader has several uniforms or textures, where wgpu binds all of them as the first one. In its
-    /// OpenGL backend shaders state the numbers of their bindings if the driver lists compute shaders, but naga writes the
-    /// numbers from GLSL 4.20 on only. A context of OpenGL 3.3 whose driver lists compute shaders has neither.
+    /// Ends a test whose shader has several uniforms or textures, if wgpu binds all of them as the first one.
+    /// In its OpenGL backend, shaders state their binding numbers if the driver lists compute shaders, but
+    /// naga writes the numbers only from GLSL 4.20 on. A context of OpenGL 3.3 whose driver lists compute
+    /// shaders fails both ways.
     pub(crate) fn require_bindings(&self) {
         let info = self.adapter.get_info();
         let flags = self.adapter.get_downlevel_capabilities().flags;
@@ -125,16 +129,17 @@ impl Engine {
         }
     }
 
-    /// Whether the adapter has everything that WebGPU asks for. There a compute shader that does not compile is an error.
+    /// Returns whether the adapter has all WebGPU capabilities. If so, a compute shader that does not compile
+    /// is an error.
     fn is_complete(&self) -> bool {
         self.adapter.get_downlevel_capabilities().is_webgpu_compliant()
     }
 
-    /// Whether wgpu compiles a small compute shader: flags and limits of OpenGL follow from the driver's extensions, but GLSL
-    /// 3.30, which wgpu may get beside them, has no compute shaders.
+    /// Returns whether wgpu compiles a small compute shader. In OpenGL, flags and limits follow from the
+    /// driver's extensions, but wgpu may get GLSL 3.30, which has no compute shaders.
     fn compiles_compute(&self) -> bool {
         *self.compiles_compute.get_or_init(|| {
-            // Outside the scopes: WGSL that is not valid must not look like a lack.
+            // Outside the error scopes: invalid WGSL must not look like a missing capability.
             let module = self.module(COMPUTE);
             let scopes = [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
                 .map(|filter| self.device.push_error_scope(filter));
@@ -151,7 +156,7 @@ impl Engine {
         })
     }
 
-    /// Opens a device of its own without optional features.
+    /// Opens a separate device without optional features.
     pub(crate) fn open(limits: wgpu::Limits) -> Self {
         Self::of(open_test_gpu(wgpu::Features::empty(), limits))
     }
@@ -176,7 +181,7 @@ impl Engine {
     }
 
     pub(crate) fn buffer<T: NoUninit>(&self, contents: &[T], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        // A buffer of no size cannot be bound.
+        // An empty buffer cannot be bound.
         let contents: &[u8] = if contents.is_empty() { &[0; 32] } else { bytemuck::cast_slice(contents) };
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
     }
@@ -189,8 +194,8 @@ impl Engine {
         usage: wgpu::TextureUsages,
     ) -> wgpu::TextureView {
         self.require(format, usage);
-        // wgpu's OpenGL has several samples in render buffers alone: it asks for a texture of them by the target
-        // `GL_TEXTURE_2D`, which OpenGL refuses.
+        // wgpu's OpenGL backend supports several samples only in render buffers: it creates multisampled
+        // textures with the target `GL_TEXTURE_2D`, which OpenGL refuses.
         if samples > 1 && usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) {
             self.require_other_than_opengl("multisampled textures that shaders read");
         }
@@ -207,7 +212,8 @@ impl Engine {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Refuses a test that uses a format as the adapter cannot, as all of WebGPU's devices can.
+    /// Ends a test that uses a format in a way that the adapter does not support, although all WebGPU devices
+    /// do.
     fn require(&self, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) {
         let missing = usage - self.adapter.get_texture_format_features(format).allowed_usages;
         if !missing.is_empty() {
@@ -239,8 +245,8 @@ impl Engine {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Compiles a compute shader, whose text names its only entry point. Without a layout, the bind groups follow from the
-    /// shader.
+    /// Compiles a compute shader, whose text names its only entry point. Without a layout, the bind group
+    /// layouts follow from the shader.
     pub(crate) fn compute_pipeline(
         &self,
         layout: Option<&wgpu::PipelineLayout>,
@@ -270,7 +276,7 @@ impl Engine {
         read_back::texels(&self.device, &self.queue, texture)
     }
 
-    /// Submits commands, and returns the values that they leave in a buffer.
+    /// Submits commands, and returns the final values of a buffer.
     pub(crate) fn values<T: Pod>(&self, mut encoder: wgpu::CommandEncoder, buffer: &wgpu::Buffer) -> Vec<T> {
         let read = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -281,7 +287,7 @@ impl Engine {
         encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
         self.submit(encoder);
         read.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the buffer can be read"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
         bytemuck::pod_collect_to_vec(&read.slice(..).get_mapped_range().expect("the buffer is mapped"))
     }
 }
@@ -293,7 +299,7 @@ fn opengl_version(info: &wgpu::AdapterInfo) -> Option<[u32; 2]> {
     (info.backend == wgpu::Backend::Gl).then_some(version)
 }
 
-/// Records a compute pass of one dispatch.
+/// Records a compute pass with one dispatch.
 pub(crate) fn dispatch(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::ComputePipeline,
@@ -308,10 +314,10 @@ pub(crate) fn dispatch(
     pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
 }
 
-/// The varying parts of the tests' render pipelines.
+/// Varying parts of the tests' render pipelines.
 #[derive(Debug)]
 pub(crate) struct Pipeline<'a> {
-    /// Without a layout, the bind groups follow from the shaders.
+    /// Pipeline layout. If `None`, the bind group layouts follow from the shaders.
     pub(crate) layout: Option<&'a wgpu::PipelineLayout>,
     pub(crate) wgsl: &'a str,
     pub(crate) vertex: &'a str,
@@ -324,7 +330,8 @@ pub(crate) struct Pipeline<'a> {
 }
 
 impl<'a> Pipeline<'a> {
-    /// Triangles by the entry points `vs` and `fs`, without buffers, targets and depth.
+    /// Returns a pipeline for triangles with the entry points `vs` and `fs`, without buffers, targets and
+    /// depth.
     pub(crate) fn new(wgsl: &'a str) -> Self {
         Self {
             layout: None,
@@ -339,7 +346,8 @@ impl<'a> Pipeline<'a> {
         }
     }
 
-    /// Compiles the pipeline, or returns one that was compiled before. Layouts that differ need texts that differ.
+    /// Compiles the pipeline, or returns an earlier one. Pipelines with different layouts need different
+    /// texts.
     pub(crate) fn make(mut self, engine: &Engine) -> wgpu::RenderPipeline {
         let layout = self.layout.take();
         let text = format!("{self:?}");
@@ -376,7 +384,7 @@ impl<'a> Pipeline<'a> {
     }
 }
 
-/// A vertex buffer of attributes one after the other.
+/// Returns a vertex buffer layout with consecutive attributes.
 pub(crate) fn vertices(
     attributes: &[wgpu::VertexAttribute],
     step_mode: wgpu::VertexStepMode,
@@ -407,7 +415,7 @@ pub(crate) fn cleared<'encoder>(
     })
 }
 
-/// A depth buffer, and the value that clears it.
+/// A depth buffer, and its clear value.
 #[derive(Clone, Copy)]
 pub(crate) struct ClearedDepth<'a> {
     pub(crate) view: &'a wgpu::TextureView,

@@ -1,22 +1,22 @@
-//! Pictures: one triangle over the whole of them, or triangles with their depths.
+//! Images: one triangle over the whole image, or triangles with their depths.
 
 use shadowfit::DepthConvention;
 use shadowfit::glam::Vec4;
 
 use super::{ClearedDepth, Engine, Pipeline, cleared, vertices};
 
-/// The vertex shader `vs` of a triangle over the whole picture.
+/// The vertex shader `vs` of a triangle over the whole image.
 pub(crate) const WHOLE: &str = "
 @vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.5, 1.0);
 }
 ";
 
-/// Usage of pictures that are read back.
+/// Usage of images that are read back.
 pub(crate) const READ_BACK: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::COPY_SRC);
 
-/// Positions are in clip space already.
+/// Shaders for triangles whose positions are in clip space.
 const SURFACE: &str = "
 struct Surface {
     @builtin(position) clip: vec4<f32>,
@@ -30,17 +30,17 @@ struct Surface {
 }
 ";
 
-/// A corner of a triangle that is seen.
+/// A corner of a visible triangle.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SeenCorner {
     /// Position in clip space.
     pub(crate) clip: Vec4,
-    /// Value in a picture of normals.
+    /// Value in the texture of normals.
     pub(crate) normal: Vec4,
 }
 
-/// A depth buffer: its texture, and the part of it that is drawn.
+/// A depth buffer: its texture, and the part that is drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct DepthPicture<'a> {
     /// Width and height of the texture, in pixels.
@@ -48,23 +48,23 @@ pub(crate) struct DepthPicture<'a> {
     /// Left, top, width and height of the part, in pixels.
     pub(crate) part: [u32; 4],
     pub(crate) samples: u32,
-    /// The samples that are drawn.
+    /// Mask of the drawn samples.
     pub(crate) mask: u64,
     pub(crate) format: wgpu::TextureFormat,
     pub(crate) convention: DepthConvention,
-    /// A picture of normals, which is drawn in the same pass.
+    /// Texture of normals, which is drawn in the same pass.
     pub(crate) normals: Option<&'a wgpu::TextureView>,
 }
 
 impl DepthPicture<'_> {
-    /// All samples of 32-bit floats, one a pixel, of a whole texture.
+    /// Returns a depth buffer of 32-bit floats with one sample per pixel, which fills its texture.
     pub(crate) fn new(size: [u32; 2], convention: DepthConvention) -> Self {
         let format = wgpu::TextureFormat::Depth32Float;
         Self { size, part: [0, 0, size[0], size[1]], samples: 1, mask: !0, format, convention, normals: None }
     }
 }
 
-/// Draws one triangle over a whole picture.
+/// Draws one triangle over a whole image.
 pub(crate) fn draw_whole(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
@@ -84,7 +84,7 @@ impl Engine {
     pub(crate) fn draw_depths(&self, picture: &DepthPicture<'_>, corners: &[SeenCorner]) -> wgpu::TextureView {
         let DepthPicture { size, part, samples, mask, format, convention, normals } = *picture;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        // Pictures of several samples cannot be copied.
+        // Multisampled textures cannot be copied.
         let copied = if samples == 1 { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::empty() };
         let view = self.texture(size, samples, format, usage | copied);
         let is_reversed = convention == DepthConvention::Reversed;

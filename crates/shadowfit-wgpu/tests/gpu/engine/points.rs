@@ -1,4 +1,4 @@
-//! WGSL evaluated at points: each point is a pixel of a picture of answers.
+//! WGSL evaluated at points: each point is a pixel of a texture of answers.
 
 use super::{Engine, Pipeline, cleared, vertices};
 
@@ -24,7 +24,7 @@ pub(crate) struct Bound<'a> {
     pub(crate) group: &'a wgpu::BindGroup,
 }
 
-/// Format of a picture of answers.
+/// Format of a texture of answers.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 const POINTS: &str = "
@@ -50,8 +50,8 @@ struct Answer {
 ";
 
 impl Engine {
-    /// Evaluates the function `answer` of some WGSL at points: `fn answer(position: vec3<f32>, normal: vec3<f32>, pixel:
-    /// vec2<f32>) -> Answer`. Point i is pixel (i mod `row`, i / `row`).
+    /// Evaluates the function `answer` of some WGSL at points: `fn answer(position: vec3<f32>, normal:
+    /// vec3<f32>, pixel: vec2<f32>) -> Answer`. Point i is pixel (i mod `row`, i / `row`).
     pub(crate) fn ask(&self, wgsl: &str, bound: &[Bound<'_>], points: &[Point], row: u32) -> Vec<Values> {
         if bound.len() > 1 {
             self.require_bindings();

@@ -1,4 +1,4 @@
-//! An engine's own alpha test in the edge pass: what it says of hits decides, and what does not suit is refused.
+//! The engine's own alpha test in the edge pass: its verdict on hits is used, and invalid input is refused.
 
 use shadowfit::Technique;
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
@@ -10,10 +10,10 @@ use super::stage::{Look, Stage, Thing, traced};
 
 /// Height of a square over the ground, from -1 to 1 m along x and z.
 const HEIGHT: f32 = 1.5;
-/// The custom number of its instance.
+/// Custom number of the square's instance.
 const SQUARE: u32 = 7;
 
-/// Of the square counts what lies farther along x than a share that is bound.
+/// Accepts hits on the square only if they lie farther along x than a bound share.
 const FARTHER: &str = "
 @group(3) @binding(0) var<storage, read> engine_share: array<f32>;
 fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool {
@@ -24,19 +24,19 @@ fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool {
 
 const ALL: &str = "fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool { return true; }";
 
-/// The part of the square from a share of its side along x on.
+/// Returns the part of the square beyond a share of its side along x.
 fn square(share: f32) -> Vec<Vec3> {
     let x = share * 2.0 - 1.0;
     let [a, b, c, d] = [(x, -1.0), (1.0, -1.0), (1.0, 1.0), (x, 1.0)].map(|(x, z)| Vec3::new(x, HEIGHT, z));
     vec![a, b, c, a, c, d]
 }
 
-/// Maps that hold part of the square, as if their passes had discarded the rest, and a pass with WGSL and a layout of as
-/// many storage buffers.
+/// Returns maps with a part of the square, as if their passes had discarded the rest, and a pass with this
+/// WGSL and a layout of `buffers` storage buffers.
 fn stage(share: f32, wgsl: &str, buffers: Option<u32>) -> (Stage, Option<wgpu::BindGroupLayout>) {
     let ground = Thing::solid(Vec3::new(-10.0, -0.5, -10.0), Vec3::new(10.0, 0.0, 10.0));
     let part = Thing { corners: square(share), ..Thing::default() };
-    // With wide texels, so that many pixels are not sure.
+    // With wide texels, so that many pixels are unsure.
     let coarse = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256).with_max_distance(60.0);
     let mut stage = Stage::new(&traced(coarse, 1), vec![ground, part]);
     let layout = buffers.map(|buffers| layout(&stage, buffers));
@@ -70,14 +70,14 @@ fn layout(stage: &Stage, buffers: u32) -> wgpu::BindGroupLayout {
     stage.gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }
 
-/// A bind group of buffers that hold a share each.
+/// Creates a bind group of buffers with one share each.
 fn group(stage: &Stage, layout: &wgpu::BindGroupLayout, shares: &[f32]) -> wgpu::BindGroup {
     let buffer = |share: &f32| stage.gpu.buffer(&[*share], wgpu::BufferUsages::STORAGE);
     let buffers: Vec<wgpu::Buffer> = shares.iter().map(buffer).collect();
     stage.gpu.group(layout, buffers.iter().map(wgpu::Buffer::as_entire_binding))
 }
 
-/// How far a point of the ground is inside the shadow of part of the square, in metres; negative outside.
+/// Returns how far a ground point is inside the shadow of a part of the square, in metres; negative outside.
 fn inside(point: Vec3, share: f32, look: &Look) -> f32 {
     let met = point - look.direction * ((HEIGHT - point.y) / -look.direction.y);
     [met.x - (share * 2.0 - 1.0), 1.0 - met.x, met.z + 1.0, 1.0 - met.z].into_iter().fold(f32::MAX, f32::min)
@@ -96,7 +96,7 @@ fn hits_count_where_the_engine_s_own_wgsl_says_so_by_what_it_binds() {
         for (factor, point) in factors.iter().zip(points(&stage, &look, &drawn)) {
             let Some([position, _]) = point.filter(|[position, _]| position.y.abs() < 0.01) else { continue };
             let inside = inside(position.truncate(), share, &look);
-            // Farther from the border than the start of the ray is above the ground.
+            // Farther from the border than the height at which rays start.
             if inside.abs() > 0.005 {
                 let is_dark = inside > 0.0;
                 assert_eq!(*factor < 0.5, is_dark, "{share}: {factor} at {position}");
@@ -129,7 +129,7 @@ fn wgsl_that_is_not_valid_is_an_error_in_the_compiler_s_words_when_the_pass_is_m
     let cases = [
         ("fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool { return engine_missing; }", "engine_missing"),
         ("fn engine_other() -> bool { return true; }", "shadowfit_rays_counts"),
-        // A name of the pass.
+        // A name that the pass uses.
         (&[ALL, "fn unit() {}"].concat(), "unit"),
     ];
     for (wgsl, word) in cases {
@@ -142,7 +142,7 @@ fn wgsl_that_is_not_valid_is_an_error_in_the_compiler_s_words_when_the_pass_is_m
 #[test]
 fn a_layout_that_does_not_suit_is_an_error_and_the_filter_decides() {
     let look = look();
-    // Nothing for what the WGSL reads, and more storage buffers than the device has beside those of the pass.
+    // Too few buffers for the WGSL, and more storage buffers than the device has in addition to the pass's.
     for (shares, word) in [(&[][..], "Binding is missing"), (&[0.5; 3], "Too many bindings")] {
         let (mut stage, layout) = stage(0.0, FARTHER, Some(shares.len() as u32));
         let drawn = stage.draw(&look);

@@ -1,5 +1,5 @@
-//! Pictures whose edges cannot be traced: each is refused with its value, and the filter decides. Devices that cannot
-//! compute.
+//! Views whose edges cannot be traced: each is refused with its value, and the filter decides. Also tests
+//! devices without compute shaders.
 
 use shadowfit::glam::{DVec3, Mat4};
 use shadowfit::{Boxes, DepthConvention};
@@ -15,7 +15,7 @@ use crate::engine::Engine;
 const BOUND: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
 const DRAWN: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT;
 
-/// Refuses a picture, and leaves everything to the filter until the next good one.
+/// Asserts that a view is refused, and that the filter decides until the next valid view.
 fn refused<'a>(stage: &mut Stage, drawn: &'a Drawn, edit: impl FnOnce(&mut EdgeView<'a>), words: &[&str]) -> EdgeError {
     let look = look();
     let good = stage.draw_surfaces(&look);
@@ -118,11 +118,11 @@ fn views_that_make_no_sense_are_refused_with_their_values() {
 #[test]
 fn devices_that_lack_something_filter_edges_and_say_what_without_an_error() {
     let webgl2 = wgpu::Limits::downlevel_webgl2_defaults();
-    // As many as rays have, and none for the list of pixels.
+    // The number that rays need, without one for the list of pixels.
     let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 5, ..wgpu::Limits::default() };
     for (limits, lack, traces) in [(webgl2, Unsupported::Compute, false), (few, Unsupported::StorageBuffers, true)] {
         let engine = Engine::open(limits);
-        // A device that computes lacks loads of depths first.
+        // A device that computes may lack loads from depth textures, which is reported first.
         if lack != Unsupported::Compute {
             engine.require_depth_loads();
         }
@@ -131,7 +131,7 @@ fn devices_that_lack_something_filter_edges_and_say_what_without_an_error() {
         let mut sun = SunShadows::new(device, queue, &traced(technique(), 1).into()).expect("maps");
         let rays = RayScene::new(device, queue).ok();
         assert_eq!(rays.is_some(), traces, "{lack:?}");
-        let mut pass = EdgePass::new(device, queue).expect("what engines read at least");
+        let mut pass = EdgePass::new(device, queue).expect("the resources for filtered edges");
         let look = look();
         let views = [look.camera.frustum().expect("a camera")];
         let nothing = Boxes { origin: DVec3::ZERO, boxes: &[] };

@@ -1,4 +1,4 @@
-//! Factors of one ray against the truth: one ray on the CPU from the exact point of the triangle that a pixel shows.
+//! Factors of one ray equal the truth: one ray on the CPU from the exact point of the visible triangle.
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera, Technique};
@@ -14,25 +14,26 @@ use super::twin_gpu::{start, things};
 /// Distance above the surface at which the true rays start, in metres.
 const RAY_OFFSET: f64 = 1e-3;
 
-/// Wrong pixels of each picture that are allowed beside a share: two were found in pictures of 160×90 pixels.
+/// Wrong pixels allowed per image in addition to a share. Two were found in images of 160×90 pixels.
 const SOME: f64 = 2.0;
 
-/// Share of the facing pixels that may be wrong. A drawn triangle ends within 1/256 pixel of some pixels' centres, where the
-/// eye's ray meets its neighbour, and some rays pass an edge within the rounding of f32. On Mesa's driver and on NVIDIA's
-/// 0.009% were found on the plain of 2 km, beside boxes that are nearer to a point than rounding raises the rays, and 0.002%
-/// elsewhere.
+/// Share of the facing pixels that may be wrong. A drawn triangle ends within 1/256 pixel of some pixels'
+/// centres, where the eye's ray hits its neighbour, and some rays pass an edge within the rounding of f32.
+/// With Mesa's driver and on NVIDIA, 0.009% were found on the plain of 2 km, next to boxes that are nearer to
+/// a point than rounding raises the rays, and 0.002% elsewhere.
 const WRONG: f64 = 1e-4;
 
-/// The same by 16 bits of depth, whose steps show the ground through the foot of a wall: 0.02% were found.
+/// Share of wrong pixels for 16 bits of depth, whose steps show the ground through the foot of a wall. 0.02%
+/// were found.
 const WRONG_BY_16_BITS: f64 = 5e-4;
 
-/// Share of the facing pixels that may be wrong away from edges of the true shadow, without normals: 0.001% were found where a
-/// triangle is narrower than a pixel, and none with normals.
+/// Share of the facing pixels that may be wrong away from edges of the true shadow, without normals. 0.001%
+/// were found at triangles narrower than a pixel, and none with normals.
 const AWAY: f64 = 2e-5;
 
-/// The true picture.
+/// The true image.
 struct Truth {
-    /// Whether the light reaches each pixel; `None` where nothing faces the light within the distance of shadows.
+    /// Whether the light reaches each pixel; `None` if no surface faces the light within the shadow distance.
     lit: Vec<Option<bool>>,
     size: [u32; 2],
 }
@@ -42,7 +43,7 @@ impl Truth {
         let corners: Vec<Vec3> = stage.things.iter().flat_map(|thing| thing.corners.iter().copied()).collect();
         let triangles = corners.as_chunks::<3>().0;
         let eye_from_clip = look.camera.clip_from_world(look.convention).as_dmat4().inverse();
-        // Nearer than shadows begin to fade.
+        // Nearer than the beginning of the fade.
         let max_distance = 0.9 * f64::from(Technique::default().fit.max_distance);
         let pixel = |(index, triangle): (usize, &Option<usize>)| {
             let sight = Sight::new(look, &eye_from_clip, index as u32);
@@ -58,7 +59,7 @@ impl Truth {
         Self { lit: stage.triangles(look).iter().enumerate().map(pixel).collect(), size: look.size }
     }
 
-    /// Whether a neighbour of a pixel has another truth.
+    /// Returns whether a neighbour of a pixel has a different truth.
     fn is_at_edge(&self, index: usize) -> bool {
         let [width, height] = self.size.map(u32::cast_signed);
         let (x, y) = ((index as u32).cast_signed() % width, (index as u32).cast_signed() / width);
@@ -89,7 +90,8 @@ impl Sight {
         Self { origin, direction: (at(0.5) - origin).normalize() }
     }
 
-    /// Where it meets a triangle's plane, no nearer and no farther than the corners, and the normal on the side of the eye.
+    /// Returns the intersection with a triangle's plane, clamped to the distances of its corners, and the
+    /// normal that faces the eye.
     fn meets(&self, corners: [Vec3; 3], eye: DVec3) -> Option<(DVec3, DVec3)> {
         let [a, b, c] = corners.map(|corner| corner.as_dvec3() - eye);
         let normal = (b - a).cross(c - a).try_normalize()?;
@@ -101,7 +103,7 @@ impl Sight {
     }
 }
 
-/// Compares a picture with the truth. `share`: of the facing pixels, so many may be wrong.
+/// Compares an image with the truth. `share` is the share of the facing pixels that may be wrong.
 fn judge(what: &str, stage: &mut Stage, look: &Look, (tracer, share): (&Tracer, f64)) {
     let truth = Truth::new(stage, look, tracer);
     let drawn = stage.draw_surfaces(look);
@@ -113,13 +115,13 @@ fn judge(what: &str, stage: &mut Stage, look: &Look, (tracer, share): (&Tracer, 
     let away: Vec<&(usize, bool)> = wrong.iter().copied().filter(|(index, _)| !truth.is_at_edge(*index)).collect();
     let count = facing.len() as f64;
     println!("{what}: {} of {count} are wrong, {} away from edges; {counts:?}", wrong.len(), away.len());
-    assert!(count > 500.0 && counts.traced > 50, "{what}: nothing is seen: {counts:?}");
+    assert!(count > 500.0 && counts.traced > 50, "{what}: too few pixels: {counts:?}");
     assert!(wrong.len() as f64 <= SOME + share * count, "{what}: {wrong:?} are wrong");
     let most_away = if look.normals.is_some() { 0.0 } else { 1.0 + AWAY * count };
     assert!(away.len() as f64 <= most_away, "{what}: {away:?} are wrong away from edges");
 }
 
-/// Depth buffers.
+/// Tested depth buffers.
 const DEPTHS: [(DepthConvention, wgpu::TextureFormat); 3] = [
     (DepthConvention::Reversed, wgpu::TextureFormat::Depth32Float),
     (DepthConvention::ZeroToOne, wgpu::TextureFormat::Depth32Float),
@@ -147,7 +149,7 @@ fn assert_exact(rows: &[Vec<usize>], heights: &[u32]) {
     }
 }
 
-// Four pictures with a ray on the CPU for each of their pixels.
+// Four images with one CPU ray per pixel.
 #[test]
 fn one_ray_finds_the_truth_in_small_pictures_whatever_the_depth_buffer() {
     let heights = &HEIGHTS[..2];
@@ -160,8 +162,8 @@ fn one_ray_finds_the_truth_in_pictures_of_all_sizes_whatever_the_depth_buffer() 
     assert_exact(&full_product(&[HEIGHTS.len(), DEPTHS.len(), NORMALS.len()]), &HEIGHTS);
 }
 
-/// A depth of 16 bits has steps of metres in the distance, and shows one of several surfaces there. A single surface with
-/// walls on it is as exact as by any other depth.
+/// A depth of 16 bits has steps of metres in the distance, and shows one of several surfaces there. A single
+/// surface with walls on it is as exact as with any other depth.
 #[test]
 fn one_ray_finds_the_truth_by_16_bits_of_depth() {
     let ground = Thing::solid(Vec3::new(-30.0, -0.5, -30.0), Vec3::new(30.0, 0.0, 30.0));
@@ -182,7 +184,7 @@ fn one_ray_finds_the_truth_by_16_bits_of_depth() {
     }
 }
 
-/// Sides that the picture leaves out and that cast lie close before the ones that it shows: the inner side of a thin shell, or
+/// Culled sides that cast shadows lie just in front of the visible ones: the inner side of a thin shell, or
 /// the hull of an outline.
 #[test]
 fn culled_sides_close_before_a_surface_are_not_taken_for_it() {
@@ -212,8 +214,8 @@ fn culled_sides_close_before_a_surface_are_not_taken_for_it() {
     }
 }
 
-/// Ten bits cannot hold a zero: a level ground's normal leans by 0.08 degrees, and beyond a kilometre the eye seems to see its
-/// lower side.
+/// Ten bits cannot represent zero: the normal of level ground leans by 0.08 degrees, and beyond a kilometre
+/// it seems to face away from the eye.
 #[test]
 fn level_ground_is_lit_as_far_as_the_horizon_by_normals_of_ten_bits() {
     let ground = Thing::solid(Vec3::new(-3000.0, -0.5, -3000.0), Vec3::new(3000.0, 0.0, 3000.0));

@@ -1,5 +1,5 @@
-//! Factors of traced pixels: those that the twin finds by the same rays and the same texels, and full light on surfaces that
-//! nothing shadows.
+//! Factors of traced pixels equal the twin's factors for the same rays and texels, and unshadowed surfaces
+//! are fully lit.
 
 use core::f32::consts::{PI, TAU};
 
@@ -17,43 +17,45 @@ use super::twin_gpu::{look, start, things};
 
 const SIZE: [u32; 2] = [96, 54];
 
-/// By how much a factor may differ from the twin's: weights of the hardware's look-ups have eight bits.
+/// Allowed difference from the twin's factor: the weights of hardware look-ups have eight bits.
 const ROUNDED: f32 = 0.02;
 
-/// Pixels of a picture that may differ by more, since a texel, or an edge that a ray meets, lies next to a threshold: 4 of
-/// 53,000 were found, no more than two in a picture.
+/// Pixels per image that may differ by more, because a texel, or an edge that a ray hits, lies next to a
+/// threshold. 4 of 53,000 were found, and no more than two in one image.
 const OTHERS: usize = 2;
 
-/// Share of the pixels of a bent surface in full light that may be darker than it is: without normals 0.4% of the hills and
-/// 0.2% of the ball were found, where several bends within a few pixels look like a plane, and with normals 0.1% and none.
-/// They were 13% and 32%, and 1% and none, where two pixels sufficed to tell that a surface goes on as a plane.
+/// Share of the pixels of a fully lit curved surface that may be too dark. Without normals 0.4% of the hills
+/// and 0.2% of the ball were found, where several bends within a few pixels look like a plane, and with
+/// normals 0.1% and none. With a test of only two pixels for a plane, it was 13% and 32%, and 1% and none
+/// with normals.
 const DARK: f32 = 0.005;
 
-/// Share of the pixels whose factor may be another one by a depth buffer that is less precise than reversed floats, where
-/// normals follow from it: 0.1% were found with plain floats, 0.2% with 24 bits, and none with normals.
+/// Share of the pixels whose factor may differ with a depth buffer that is less precise than reversed floats,
+/// if normals come from depths. 0.1% were found with plain floats, 0.2% with 24 bits, and none with normals.
 const OTHER_DEPTH: f32 = 0.003;
 
-/// Share by which the number of traced pixels may be another one where normals follow from depths: 3.8% were found on NVIDIA's
-/// driver. Corners of triangles are rounded to 1/256 pixel, which moves neighbours off a common plane. The rounding of plain
-/// floats and of 24 bits covers this in the distance, and that of reversed floats does not.
+/// Relative difference of the number of traced pixels that is allowed if normals come from depths. 3.8% were
+/// found on NVIDIA. Corners of triangles are rounded to 1/256 pixel, which moves neighbours off a common
+/// plane. In the distance, the rounding bounds of plain floats and of 24 bits cover this, but not the bounds
+/// of reversed floats.
 const OTHER_COUNT: f32 = 0.05;
 
-/// What is found about traced pixels.
+/// Results for traced pixels.
 #[derive(Debug, Default)]
 struct TracedPixels {
     all: usize,
-    /// Those whose factor is not the twin's.
+    /// Pixels whose factor differs from the twin's.
     others: usize,
-    /// Those whose factor is not the share of the rays.
+    /// Pixels whose factor differs from the share of their rays.
     corrected: usize,
 }
 
-/// Whether a pixel was traced, and is not black.
+/// Returns whether a pixel was traced, and is not black.
 fn is_traced(factor: f32) -> bool {
     factor > 0.0 && factor.to_bits() & 1 == 1
 }
 
-/// Compares the factors of a picture's traced pixels with the twin's.
+/// Compares the factors of an image's traced pixels with the twin's.
 fn compare(stage: &mut Stage, look: &Look, tracer: &Tracer) {
     let drawn = stage.draw(look);
     let (factors, _) = stage.traced(look, &drawn, |_| ());
@@ -151,7 +153,8 @@ fn depth_buffers_of_plain_floats_and_24_bits_give_the_same_factors_with_as_many_
     }
 }
 
-/// Triangles of a surface over a grid of a number of cells a side. `point`: its point at a place in 0..=1.
+/// Returns the triangles of a surface over a grid of `cells` × `cells`. `point` returns its point at a
+/// position in 0..=1.
 fn bent(cells: u16, point: impl Fn(Vec2) -> Vec3) -> Thing {
     let corner = |x: u16, y: u16| point(Vec2::new(f32::from(x), f32::from(y)) / f32::from(cells));
     let cell = |index: u16| {
@@ -162,7 +165,7 @@ fn bent(cells: u16, point: impl Fn(Vec2) -> Vec3) -> Thing {
     Thing { corners: (0..cells * cells).flat_map(cell).collect(), ..Thing::default() }
 }
 
-/// Hills that are less steep than the light.
+/// Returns hills that are less steep than the light.
 fn hills() -> Thing {
     bent(160, |place| {
         let Vec2 { x, y: z } = (place - 0.5) * 8.0;
@@ -186,7 +189,7 @@ fn bent_surfaces_that_nothing_shadows_are_lit_by_four_rays_a_pixel() {
     let forward = (-eye).as_vec3().normalize();
     let aspect = Look::aspect(size);
     let camera = PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y: 0.9, aspect, near: 0.1, far: 60.0 };
-    // The ball is seen from where the light comes from.
+    // The ball is viewed along the light.
     for (name, thing, direction) in
         [("hills", hills(), Vec3::new(0.4, -1.0, -0.3).normalize()), ("ball", ball(), forward)]
     {

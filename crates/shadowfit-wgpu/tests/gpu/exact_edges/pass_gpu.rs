@@ -1,4 +1,5 @@
-//! What the edge pass promises beside its verdicts: budgets, what it leaves to the filter and where, and maps that wait.
+//! Properties of the edge pass apart from its verdicts: budgets, pixels that the filter decides, and maps
+//! that wait.
 
 use shadowfit::glam::{DMat4, DVec3, Vec3, Vec4};
 use shadowfit::settings::MAX_MAPS;
@@ -11,7 +12,7 @@ use super::stage::{Drawn, Look, Stage, Thing, traced};
 pub(super) const SIZE: [u32; 2] = [160, 90];
 const PIXELS: usize = (SIZE[0] * SIZE[1]) as usize;
 
-/// A ground, a block over its middle, and a post at its side.
+/// Returns a ground, a block over its centre, and a post at its side.
 fn things() -> Vec<Thing> {
     let solid = |min: [f32; 3], max: [f32; 3]| Thing::solid(min.into(), max.into());
     vec![
@@ -25,7 +26,7 @@ pub(super) fn technique() -> Technique {
     Technique::default().with_resolution(256, 256).with_max_distance(40.0)
 }
 
-/// A stage with many posts and wide texels, so that many pixels are not sure.
+/// Returns a stage with many posts and wide texels, so that many pixels are unsure.
 fn coarse_stage() -> Stage {
     let coarse = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256).with_max_distance(60.0);
     let mut things = things();
@@ -62,7 +63,8 @@ pub(super) fn look() -> Look {
     }
 }
 
-/// What each pixel shows: its position in world space and its normal, and `None` for the sky.
+/// Returns the visible point of each pixel: its position in world space and its normal, or `None` for the
+/// sky.
 pub(super) fn points(stage: &Stage, look: &Look, drawn: &Drawn) -> Vec<Option<[Vec4; 2]>> {
     let depths = stage.depths(&drawn.depth);
     let normals: Vec<[f32; 4]> = drawn
@@ -82,7 +84,7 @@ pub(super) fn points(stage: &Stage, look: &Look, drawn: &Drawn) -> Vec<Option<[V
     (0..PIXELS).map(point).collect()
 }
 
-/// Points to ask the look-up about; those of the sky are somewhere.
+/// Returns points for the look-up, with an arbitrary point for the sky.
 fn asked(points: &[Option<[Vec4; 2]>]) -> Vec<[Vec4; 2]> {
     points.iter().map(|point| point.unwrap_or([Vec4::W, Vec4::Y])).collect()
 }
@@ -91,12 +93,12 @@ fn bits(factors: &[f32]) -> Vec<u32> {
     factors.iter().map(|factor| factor.to_bits()).collect()
 }
 
-/// Pixels whose factors differ, by more than the bit that says which were traced.
+/// Returns the number of pixels whose factors differ by more than the bit of traced pixels.
 fn different(a: &[f32], b: &[f32]) -> usize {
     a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 1e-6).count()
 }
 
-/// Pixels that show something and are left to the filter.
+/// Returns the number of pixels with a surface that the filter decides.
 fn filtered(factors: &[f32], points: &[Option<[Vec4; 2]>]) -> usize {
     factors.iter().zip(points).filter(|(factor, point)| **factor < 0.0 && point.is_some()).count()
 }
@@ -114,7 +116,7 @@ fn a_budget_traces_as_many_pixels_as_it_has_and_leaves_the_others_to_the_filter(
         let EdgeCounts { facing, unsure, traced, filtered: left } = found;
         assert_eq!([facing, unsure, traced + left], [counts.facing, counts.unsure, counts.unsure], "{budget}");
         assert_eq!(filtered(&some, &points), left as usize, "{budget}");
-        // Those that are traced have the factor that they have without a budget.
+        // Traced pixels have the same factor as without a budget.
         assert!(some.iter().zip(&all).all(|(some, all)| *some == -1.0 || some.to_bits() == all.to_bits()), "{budget}");
         let share = f64::from(traced) / f64::from(budget.clamp(1, counts.unsure));
         let is_right = match budget {
@@ -152,7 +154,7 @@ fn the_same_frame_traces_the_same_pixels_and_frames_take_turns_within_the_budget
     }
     let mean = f64::from(traced) / 24.0;
     assert!((mean / f64::from(budget) - 1.0).abs() < 0.1, "{mean} pixels a frame");
-    // The golden ratio brings every pixel up within some frames.
+    // The golden ratio selects every pixel within some frames.
     let waits = unsure.iter().zip(&turns).filter(|(unsure, turns)| **unsure && **turns == 0).count();
     let all = unsure.iter().filter(|unsure| **unsure).count();
     assert!(waits * 20 < all, "{waits} of {all} pixels were never traced");
@@ -171,7 +173,7 @@ fn pixels_whose_samples_show_several_surfaces_are_left_to_the_filter_and_no_othe
         for (pixel, factor) in factors.iter().enumerate() {
             let [first, rest @ ..] = samples(pixel);
             let farthest = rest.iter().map(|depth| (depth / first - 1.0).abs()).fold(0.0, f32::max);
-            // Farther apart than a plane that is seen at 3° may be; and less than a plane ever is.
+            // Farther apart than on a plane that is viewed at 3°, and nearer than on any plane.
             let (is_several, is_one) = (farthest > 0.5, farthest < 1e-6);
             if first == 0.0 || is_several {
                 assert!(*factor == -1.0 || first != 0.0 && *factor == 0.0 && !is_several, "{pixel}: {factor}");
@@ -209,14 +211,14 @@ fn an_engine_reads_exact_factors_and_the_filter_elsewhere_bit_for_bit() {
         let wanted = if *factor >= 0.0 { factor } else { filter };
         assert_eq!(exact.to_bits(), wanted.to_bits(), "pixel {pixel}: {factor}");
     }
-    assert!(read.iter().filter(|[filter, exact]| filter != exact).count() > 100, "all is the filter's");
+    assert!(read.iter().filter(|[filter, exact]| filter != exact).count() > 100, "all factors come from the filter");
 }
 
-/// No edges are traced for a reason, and an engine reads the filter.
+/// Asserts that edges are filtered for this reason, and that engines read the filter's factors.
 pub(super) fn assert_filtered(stage: &Stage, why: FallbackReason) {
     assert_eq!(stage.pass.result(), EdgeOutcome::Filtered(why));
     let factors = stage.pass.factors().texture();
-    assert_eq!([factors.width(), factors.height()], [1, 1], "{why:?}: a texture of the picture's size");
+    assert_eq!([factors.width(), factors.height()], [1, 1], "{why:?}: the texture has the view's size");
     let at = |index: usize| Vec3::new((index % 64) as f32 * 0.25 - 8.0, 0.0, (index / 64) as f32 * 0.25 - 8.0);
     let points: Vec<[Vec4; 2]> = (0..64 * 64).map(|index| [at(index).extend(1.0), Vec4::Y]).collect();
     for [filter, exact] in stage.read(&points, 64) {
@@ -242,7 +244,7 @@ fn a_technique_with_filtered_edges_records_nothing_and_makes_no_texture() {
     let found = stage.trace_edges(&look, &drawn, |_| ());
     assert_eq!(found, Ok(EdgeOutcome::Filtered(FallbackReason::Technique)));
     assert_filtered(&stage, FallbackReason::Technique);
-    stage.gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    stage.gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
     assert_eq!(stage.pass.take_counts(), None);
 }
 
@@ -290,7 +292,7 @@ fn edges_are_filtered_while_light_steps_fade_and_right_before_and_after() {
             let look = Look { direction: held, ..look };
             let drawn = new.draw(&look);
             let (expected, _) = new.traced(&look, &drawn, |_| ());
-            // Both are exact; where an edge meets a pixel's middle, rounding decides.
+            // Both are exact. Where an edge crosses a pixel's centre, rounding decides.
             assert!(different(&factors, &expected) <= 5, "frame {number}: {}", different(&factors, &expected));
             compared += 1;
         }
@@ -299,7 +301,7 @@ fn edges_are_filtered_while_light_steps_fade_and_right_before_and_after() {
     assert_eq!(found[0], EdgeOutcome::Traced);
 }
 
-/// Whether a ray from a point toward the light meets a box.
+/// Returns whether a ray from a point toward the light intersects a box.
 fn is_under(point: Vec3, look: &Look, aabb: &Aabb, around: f32) -> bool {
     let inverse = 1.0 / -look.direction.as_dvec3();
     let [least, most] = [aabb.min - around, aabb.max + around].map(Vec3::as_dvec3);
@@ -332,7 +334,7 @@ fn what_the_rays_lack_keeps_the_filter_under_its_box_and_nowhere_else() {
     for (pixel, point) in points.iter().enumerate() {
         let Some([position, normal]) = point else { continue };
         let position = position.truncate();
-        // What faces away is dark whatever casts.
+        // Surfaces that face away are dark with any casters.
         if normal.truncate().dot(-look.direction) <= 1e-3 {
             continue;
         }
@@ -395,13 +397,13 @@ fn maps_that_wait_are_not_trusted_where_casters_have_moved_over_them() {
             let read = stage.read(&points, SIZE[0]);
             (factors, read)
         });
-        // Both are exact; where an edge meets a pixel's middle, rounding decides.
+        // Both are exact. Where an edge crosses a pixel's centre, rounding decides.
         assert!(different(&a.0, &b.0) <= 2, "step {step}: {} pixels", different(&a.0, &b.0));
         let behind = a.1.iter().zip(&b.1).filter(|([a, _], [b, _])| (a - b).abs() > 0.5).count();
         late += behind;
         frames += usize::from(behind > 0);
     }
-    assert!(late > 200 && frames > 4, "the maps that wait are late in {late} pixels of {frames} frames");
+    assert!(late > 200 && frames > 4, "waiting maps are outdated in {late} pixels of {frames} frames");
 }
 
 #[test]
@@ -425,14 +427,14 @@ fn a_part_of_a_texture_is_traced_as_a_picture_of_its_own_and_the_rest_stays() {
     let (mut stage, look) = (stage(), Look { normals: None, ..look() });
     let drawn = stage.draw(&look);
     let (alone, counts) = stage.traced(&look, &drawn, |_| ());
-    // The same picture at a corner of a larger texture.
+    // The same view at a corner of a larger texture.
     let rectangle = [40, 30, SIZE[0], SIZE[1]];
     let large = [256, 160];
     let larger = stage.draw_part(&look, large, [40, 30]);
     let (found, of_part) = stage.traced(&look, &larger, |view| view.rectangle = Some(rectangle));
     let rows = found.chunks(large[0] as usize).skip(30).take(SIZE[1] as usize);
     let part: Vec<f32> = rows.flat_map(|row| &row[40..40 + SIZE[0] as usize]).copied().collect();
-    // Rasterisers may interpolate depths otherwise elsewhere.
+    // Rasterisers may interpolate depths differently at other positions.
     assert!(different(&alone, &part) <= 5, "{} pixels", different(&alone, &part));
     assert!(of_part.facing.abs_diff(counts.facing) <= 5 && of_part.unsure.abs_diff(counts.unsure) <= 5, "{of_part:?}");
 }

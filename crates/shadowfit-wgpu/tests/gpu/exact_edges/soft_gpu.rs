@@ -1,4 +1,4 @@
-//! Suns with a radius: verdicts of the twin, and rays on the CPU for pixels that the maps are sure of.
+//! Suns with a radius: verdicts equal the twin's, and CPU rays confirm pixels that the maps decide.
 
 use shadowfit::settings::{FilterKind, SoftRadius, Softness};
 use shadowfit::{DepthConvention, Technique};
@@ -10,17 +10,17 @@ use super::stage::{Look, Stage, traced};
 use super::twin::Twin;
 use super::twin_gpu::{compare, look, start, things};
 
-/// Angular radii: the sun's, and one of a degree, in radians.
+/// Angular radii in radians: the sun's, and one degree.
 pub(super) const RADII: [f32; 2] = [0.004_65, 0.017_453];
 
-/// Pixels of the pictures whose sure pixels are compared with rays.
+/// Size of the images whose sure pixels are compared with rays.
 const FINE: [u32; 2] = [240, 135];
 
-/// Rays over the sun's disc from a pixel that the maps are sure of.
+/// Rays over the sun's disc from a sure pixel.
 const RAYS: u32 = 64;
 
-/// Pixels of all pictures of the built-in scenes together that the maps are sure of and rays are not: 4 of 67,800 were
-/// found, in the courtyard under both suns, behind casters that are narrower than a texel.
+/// Number of wrong sure pixels in all images of the built-in scenes. 4 of 67,800 were found, in the courtyard
+/// under both suns, behind casters that are narrower than a texel.
 const WRONG: usize = 4;
 
 pub(super) fn technique(radius: f32) -> Technique {
@@ -29,7 +29,7 @@ pub(super) fn technique(radius: f32) -> Technique {
     technique.with_filter(FilterKind::Vogel16).with_softness(softness)
 }
 
-/// Maps under another sun of the same scene.
+/// Changes the stage's technique.
 pub(super) fn set(stage: &mut Stage, technique: &Technique) {
     stage.sun.set_technique(technique).expect("a good technique");
 }
@@ -53,7 +53,7 @@ fn every_pixel_of_the_built_in_scenes_has_the_verdict_of_the_twin() {
             set(&mut stage, &traced(technique(radius), 4));
             let look = start(scene, Some(NormalEncoding::Signed));
             let [sure, unsure] = compare(&format!("{scene:?} {radius}"), &mut stage, &look);
-            // A wide sun leaves hardly anything in the forest to the maps.
+            // With a wide sun, the maps decide hardly any pixel in the forest.
             assert!(sure > 40 && unsure > 1000, "{scene:?}: {sure} and {unsure}");
         }
     }
@@ -75,22 +75,22 @@ fn verdicts_are_the_twin_s_in_maps_that_blocks_do_not_fill_and_in_plain_depth() 
     }
 }
 
-/// Pixels that the maps are sure of: dark ones, and lit ones.
+/// Pixels that the maps decide: dark ones, and lit ones.
 #[derive(Debug, Default)]
 struct SurePixels {
     all: [usize; 2],
-    /// Those for which one of many rays over the sun's disc finds something else.
+    /// Pixels for which one of many rays over the sun's disc has a different result.
     wrong: [usize; 2],
 }
 
-/// Draws a picture, and asks rays about its pixels that the maps are sure of.
+/// Draws an image, and traces rays for the pixels that the maps decide.
 fn sure_pixels(stage: &mut Stage, look: &Look, tracer: &Tracer) -> SurePixels {
     let drawn = stage.draw(look);
     let (factors, _) = stage.traced(look, &drawn, |_| ());
     let twin = Twin::new(stage, look, &drawn);
     let mut found = SurePixels::default();
     for (index, (classified, factor)) in twin.verdicts().iter().zip(factors).enumerate() {
-        // Without those that face away or are beyond the distance of shadows.
+        // Without pixels that face away or lie beyond the shadow distance.
         if classified.is_sure() && (factor == 0.0 || factor == 1.0) {
             let is_lit = usize::from(factor == 1.0);
             found.all[is_lit] += 1;
@@ -116,6 +116,6 @@ fn pixels_that_the_maps_are_sure_of_are_lit_or_dark_by_all_rays_over_the_sun_s_d
             (0..2).for_each(|kind| wrong[kind] += found.wrong[kind]);
         }
     }
-    assert!(all.iter().all(|count| *count > 20_000), "{all:?} pixels say little");
+    assert!(all.iter().all(|count| *count > 20_000), "{all:?} are too few pixels");
     assert!(wrong[0] + wrong[1] <= WRONG, "dark and lit: {wrong:?} of {all:?}");
 }

@@ -1,5 +1,5 @@
-//! The edge pass on triangles that cast and are seen: a depth pre-pass, and the results of the pass and of the look-up at
-//! each pixel.
+//! The edge pass on triangles that are casters and visible: a depth pre-pass, and the results of the pass and
+//! of the look-up at each pixel.
 
 use std::sync::{Arc, OnceLock};
 
@@ -20,21 +20,21 @@ use crate::engine::{Engine, dispatch};
 /// Triangles that are drawn together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Thing {
-    /// Three corners a triangle; world space, metres.
+    /// Three corners per triangle, in world space, in metres.
     pub(super) corners: Vec<Vec3>,
-    /// By how much it is moved, in metres.
+    /// Offset in metres.
     pub(super) shift: Vec3,
     pub(super) moves: bool,
-    /// Whether the rays lack it.
+    /// Whether it is missing in the rays.
     pub(super) is_lacking: bool,
-    /// Whether it casts and is not drawn, like sides that an engine culls.
+    /// Whether it casts shadows but is not visible, like the sides that an engine culls.
     pub(super) is_culled: bool,
-    /// The hierarchy of the corners, which clones share once it is built.
+    /// Hierarchy of the triangles, which clones share once it is built.
     pub(super) mesh: Arc<OnceLock<RayMesh>>,
 }
 
 impl Thing {
-    /// An axis-aligned box.
+    /// Returns an axis-aligned box.
     pub(super) fn solid(min: Vec3, max: Vec3) -> Self {
         Self { corners: crate::demand_picture::cuboid(min, max), ..Self::default() }
     }
@@ -47,7 +47,7 @@ impl Thing {
     }
 }
 
-/// How a picture is taken.
+/// Settings of an image.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     pub(super) camera: PerspectiveCamera,
@@ -55,7 +55,7 @@ pub(super) struct Look {
     pub(super) size: [u32; 2],
     pub(super) samples: u32,
     pub(super) convention: DepthConvention,
-    /// Of the depth buffer.
+    /// Format of the depth buffer.
     pub(super) format: wgpu::TextureFormat,
     pub(super) normals: Option<NormalEncoding>,
     pub(super) number: u32,
@@ -67,14 +67,14 @@ impl Look {
     }
 }
 
-/// What a picture was drawn into.
+/// Textures that an image was drawn into.
 #[derive(Debug)]
 pub(super) struct Drawn {
     pub(super) depth: wgpu::TextureView,
     pub(super) normals: Option<wgpu::TextureView>,
 }
 
-/// Everything that a picture needs.
+/// All resources for drawing images.
 pub(super) struct Stage {
     pub(super) gpu: Engine,
     pub(super) sun: SunShadows,
@@ -84,12 +84,12 @@ pub(super) struct Stage {
     meshes: Vec<MeshId>,
 }
 
-/// The technique with traced edges.
+/// Returns the technique with traced edges.
 pub(super) fn traced(technique: Technique, samples: u32) -> Technique {
     technique.with_edges(Edges::Traced { samples })
 }
 
-/// Answers about points: the filter's factor, and the factor that an engine reads after the pass.
+/// WGSL that evaluates points: the filter's factor, and the factor that an engine reads after the pass.
 const READ: &str = "
 fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
     let filtered = shadowfit_factor_at(position, normal, pixel);
@@ -97,7 +97,7 @@ fn answer(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Answer {
 }
 ";
 
-/// The values of a texture's texels, layer by layer and row by row.
+/// WGSL that returns the texels of a texture, layer by layer and row by row.
 const LOAD: &str = "
 @group(0) @binding(0) var loaded: TEXTURE;
 @group(0) @binding(1) var<storage, read_write> values: array<f32>;
@@ -133,7 +133,7 @@ impl Stage {
         stage
     }
 
-    /// Tells the rays where everything is.
+    /// Places the instances of the rays.
     fn place(&mut self) {
         let things = self.things.iter().zip(&self.meshes).filter(|(thing, _)| !thing.is_lacking);
         let instance =
@@ -180,7 +180,7 @@ impl Stage {
         Drawn { depth, normals }
     }
 
-    /// Returns the index of the triangle that each pixel shows, counted over all things.
+    /// Returns the index of the visible triangle at each pixel, counted over all things.
     pub(super) fn triangles(&self, look: &Look) -> Vec<Option<usize>> {
         let mut corners = self.corners(look);
         for (index, corner) in corners.iter_mut().enumerate() {
@@ -194,7 +194,7 @@ impl Stage {
         numbers.iter().map(|number| (number[0] as usize).checked_sub(1)).collect()
     }
 
-    /// Draws depths at a corner of a texture of another size.
+    /// Draws depths into a part of a texture of another size.
     pub(super) fn draw_part(&self, look: &Look, texture: [u32; 2], [left, top]: [u32; 2]) -> Drawn {
         let part = [left, top, look.size[0], look.size[1]];
         let whole = DepthPicture::new(texture, look.convention);
@@ -202,7 +202,7 @@ impl Stage {
         Drawn { depth: self.gpu.draw_depths(&picture, &self.corners(look)), normals: None }
     }
 
-    /// Positions in clip space, and normals.
+    /// Returns positions in clip space, and normals.
     fn corners(&self, look: &Look) -> Vec<SeenCorner> {
         let clip = look.camera.clip_from_world(look.convention).as_dmat4();
         let mut corners = Vec::new();
@@ -217,7 +217,7 @@ impl Stage {
                 corners.extend([a, b, c].map(|corner| {
                     let relative = (*corner + thing.shift).as_dvec3() - look.camera.eye;
                     let clip = (clip * relative.extend(1.0)).as_vec4();
-                    // A triangle of three equal corners is not drawn.
+                    // A degenerate triangle is not drawn.
                     SeenCorner { clip: if thing.is_culled { Vec4::W } else { clip }, normal: stored.extend(0.0) }
                 }));
             }
@@ -225,7 +225,7 @@ impl Stage {
         corners
     }
 
-    /// Traces the edges of a picture that was drawn. `edit` changes how.
+    /// Traces the edges of a drawn image. `edit` changes the settings.
     pub(super) fn trace_edges<'a>(
         &mut self,
         look: &Look,
@@ -244,13 +244,13 @@ impl Stage {
         result
     }
 
-    /// The factors of the picture that was traced last; it must be traced.
+    /// Returns the factors of the last image, whose edges must be traced.
     pub(super) fn factors(&self) -> Vec<f32> {
         assert_eq!(self.pass.result(), EdgeOutcome::Traced);
         self.gpu.texels(self.pass.factors().texture())
     }
 
-    /// Traces the edges of a picture, and gives its factors and counts.
+    /// Traces the edges of an image, and returns its factors and counts.
     pub(super) fn traced<'a>(
         &mut self,
         look: &Look,
@@ -259,10 +259,11 @@ impl Stage {
     ) -> (Vec<f32>, EdgeCounts) {
         assert_eq!(self.trace_edges(look, drawn, edit), Ok(EdgeOutcome::Traced));
         let factors = self.factors();
-        (factors, self.pass.take_counts().expect("the picture is finished"))
+        (factors, self.pass.take_counts().expect("the frame is finished"))
     }
 
-    /// The filter's factor and the factor that an engine reads, of points by pixel: position in world space and normal.
+    /// Returns the filter's factor and the factor that an engine reads, for points by pixel: position in
+    /// world space and normal.
     pub(super) fn read(&self, points: &[[Vec4; 2]], width: u32) -> Vec<[f32; 2]> {
         let map = self.sun.map();
         let wgsl = look_up_wgsl(map.descriptor(), &WgslOptions::group(0))
@@ -280,7 +281,7 @@ impl Stage {
         self.gpu.ask(&wgsl, &bound, &points, width).iter().map(|values| [values.one[0], values.one[1]]).collect()
     }
 
-    /// The depths of all samples of a texture: sample by sample, row by row.
+    /// Returns the depths of all samples of a texture: sample by sample, row by row.
     pub(super) fn depths(&self, view: &wgpu::TextureView) -> Vec<f32> {
         let texture = view.texture();
         let samples = texture.sample_count();
@@ -292,7 +293,7 @@ impl Stage {
         self.loaded(view, kind, load, texture.width() * texture.height() * samples)
     }
 
-    /// The depths of all layers of the maps.
+    /// Returns the depths of all layers of the maps.
     pub(super) fn stored(&self) -> Vec<f32> {
         let map = self.sun.map();
         let ([width, height], layers) = (map.descriptor().resolution, map.descriptor().maps);

@@ -1,7 +1,7 @@
-//! The first edge pass in plain Rust: the arithmetic of `edges.wgsl`,
-//! `classify.wgsl` and the look-up's WGSL, in f32 and in their order, over a depth buffer and maps that were read
-//! back. Suns with a radius are in `twin/soft.rs`, and the rays of the later passes, and the maps' estimate beside them, in
-//! `twin/rays.rs` and `twin/estimate.rs`.
+//! The twin: the first edge pass in plain Rust. It repeats the arithmetic of `edges.wgsl`, `classify.wgsl`
+//! and the look-up's WGSL, in f32 and in the same order, on a depth buffer and maps that were read back. Suns
+//! with a radius are in `twin/soft.rs`. The rays of the later passes are in `twin/rays.rs`, and the maps'
+//! estimates in `twin/estimate.rs`.
 
 #[path = "twin/estimate.rs"]
 mod estimate;
@@ -27,7 +27,7 @@ use self::surface::Surface;
 pub(super) use self::verdict::Verdict;
 use super::stage::{Drawn, Look, Stage};
 
-/// A pixel's verdict, and its factor where the maps are sure.
+/// A pixel's verdict, and its factor if the maps decide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Classified {
     pub(super) verdict: Verdict,
@@ -35,20 +35,20 @@ pub(super) struct Classified {
 }
 
 impl Classified {
-    /// Whether the maps decide the factor.
+    /// Returns whether the maps decide the factor.
     pub(super) fn is_sure(self) -> bool {
         matches!(self.verdict, Verdict::Lit | Verdict::Shadowed)
     }
 }
 
-/// By how much thresholds are moved, to see which pixels lie next to one: in texels for places, as a share for the others;
-/// depths by a few roundings as well.
+/// Shift of the thresholds, for finding pixels next to one: in texels for positions, and relative for other
+/// values. Depths are also shifted by a few roundings.
 pub(super) type Slack = f32;
 
-/// The slack of pixels that count as next to a threshold.
+/// Slack of pixels that count as next to a threshold.
 pub(super) const NEXT_TO: Slack = 1e-3;
 
-// The constants of the WGSL.
+// Constants of the WGSL.
 const FOOTPRINT: f32 = 2.0;
 const COARSEST_FOOTPRINT: f32 = 3.0;
 const MOST_BLOCKS: f32 = 6.0;
@@ -62,37 +62,38 @@ const MOST_SNAP: f32 = 0.031_25;
 const BEND: f32 = 0.5;
 const MIN_COSINE: f32 = 0.005;
 const POSITION_ROUNDING: f32 = 4.768_371_6e-7;
-/// Least height of a ray's start, in metres: [`EdgeView::new`](shadowfit_wgpu::exact_edges::EdgeView::new)'s.
+/// Least height of a ray's start, in metres, as in
+/// [`EdgeView::new`](shadowfit_wgpu::exact_edges::EdgeView::new).
 const RAY_OFFSET: f32 = 1e-3;
-/// By how much a depth on a plane may be rounded otherwise: by 2⁻²⁴ in each of some sums.
+/// Rounding bound of a depth on a plane: 2⁻²⁴ in each of some sums.
 const DEPTH_ROUNDING: f32 = 5e-7;
-/// WebGPU's places of four samples.
+/// WebGPU's positions of four samples.
 const FOUR: [Vec2; 4] =
     [Vec2::new(-0.125, -0.375), Vec2::new(0.375, -0.125), Vec2::new(-0.375, 0.125), Vec2::new(0.125, 0.375)];
 
-/// A picture and the maps that it is classified by.
+/// A view, and the maps that classify its pixels.
 pub(super) struct Twin {
     size: [i32; 2],
     convention: DepthConvention,
     world_from_pixel: [Vec4; 4],
     forward: Vec3,
-    /// Sample by sample.
+    /// Depths, sample by sample.
     depths: Vec<f32>,
     samples: usize,
     normals: Option<(Vec<[f32; 4]>, NormalEncoding)>,
-    /// Of each ray: its start, in pixels from the first sample, and its place in the sun's disc.
+    /// For each ray: its start, in pixels from the first sample, and its position in the sun's disc.
     points: Vec<[Vec2; 2]>,
     point_reach: f32,
     descriptor: ShadowMapDescriptor,
     receiver: ReceiverUniform,
-    /// Layer by layer.
+    /// Stored depths, layer by layer.
     stored: Vec<f32>,
-    /// For filters that are soft.
+    /// Pyramid for soft filters.
     pyramid: Option<soft::Pyramid>,
-    /// Relative to the origin of the rays.
+    /// Eye relative to the origin of the rays.
     eye: Vec3,
     slack: Slack,
-    /// Of how far casters may stand from a point, in texels.
+    /// Shift of the distance of casters from a point, in texels.
     radius_slack: Slack,
 }
 
@@ -104,7 +105,7 @@ struct Projected {
 }
 
 impl Twin {
-    /// Of the picture that a stage has drawn and traced.
+    /// Creates the twin of an image that a stage has drawn and traced.
     pub(super) fn new(stage: &Stage, look: &Look, drawn: &Drawn) -> Self {
         let map = stage.sun.map();
         let from_eye = MapView { origin: look.camera.eye, ..*stage.sun.map_view().expect("a frame") };
@@ -138,13 +139,13 @@ impl Twin {
         }
     }
 
-    /// Classifies each pixel, rows from the top.
+    /// Classifies each pixel, in rows from the top.
     pub(super) fn verdicts(&self) -> Vec<Classified> {
         let [width, height] = self.size;
         (0..width * height).map(|index| self.classified([index % width, index / width])).collect()
     }
 
-    /// Classifies a pixel with thresholds that are a little lower or higher.
+    /// Classifies a pixel with slightly lower and higher thresholds.
     pub(super) fn nearby(&mut self, index: usize, slack: Slack) -> Vec<Classified> {
         let index = (index as u32).cast_signed();
         let at = [index % self.size[0], index / self.size[0]];
@@ -198,8 +199,8 @@ impl Twin {
         share * share * (3.0 - 2.0 * share)
     }
 
-    /// The verdict of the finest map in which a pixel's footprint is whole and not too wide, or of the one that it reads by
-    /// view depth.
+    /// Returns the verdict of the finest map whose footprint is inside it and not too wide, or of the map
+    /// selected by view depth.
     fn of_maps(&self, surface: &Surface) -> Verdict {
         let selection = self.choose(surface.position);
         if selection.first < 0 || selection.first == selection.clamped {
@@ -244,7 +245,8 @@ impl Twin {
         Projected { texel, surface: uv.z, depth, gradient }
     }
 
-    /// By how much the starts of a pixel's rays differ from its first sample in a map, in texels; more in the last one.
+    /// Returns the greatest distance between the starts of a pixel's rays and its first sample in a map, in
+    /// texels. It is larger in the last map.
     fn spread_in(&self, entry: u32, map: &MapUniform, surface: &Surface) -> Vec2 {
         let [right, down] = self.texels_per_pixel(map, surface);
         let in_map = |shift: Vec3| texture_place(map, shift.extend(0.0)).truncate() * Vec2::from(map.size);
@@ -255,7 +257,8 @@ impl Twin {
         self.point_reach * (right.abs() + down.abs()) + above.abs() + along.abs() + beside
     }
 
-    /// By how much the depth of a point's plane may be nearer to the light, since its surface may be nearer to the eye.
+    /// Returns how much nearer to the light a point's plane may be in depth, because the surface may be
+    /// nearer to the eye.
     fn rise_in_map(&self, map: &MapUniform, surface: &Surface) -> f32 {
         let to_light = Vec3::from(self.receiver.to_light);
         let depth = texture_place(map, to_light.extend(0.0)).z;
@@ -277,7 +280,7 @@ impl Twin {
         let [mut is_lit, mut is_shadowed] = [true; 2];
         for row in 0..(2.0 * blocks.y) as u32 {
             for column in 0..(2.0 * blocks.x) as u32 {
-                // Depths of a block are those of its corner, and half a texel on.
+                // Depths of a block are computed from its corner, half a texel away.
                 let texel = first + Vec2::new(column as f32, row as f32);
                 let corner = first + 1.0 + 2.0 * Vec2::new((column / 2) as f32, (row / 2) as f32);
                 let offset = corner - projected.texel;
@@ -299,12 +302,12 @@ impl Twin {
         }
     }
 
-    /// By how much depths are moved on a plane that changes by so much over a texel.
+    /// Returns the shift of depths on a plane with this depth change over a texel.
     fn depth_slack(&self, steepness: f32) -> f32 {
         self.slack * (steepness + DEPTH_ROUNDING / NEXT_TO)
     }
 
-    /// Whether a depth is as near to the light as another one, or nearer.
+    /// Returns whether a depth is at least as near to the light as another one.
     fn is_nearer(&self, a: f32, b: f32) -> bool {
         if self.descriptor.depth == DepthConvention::Reversed { a >= b } else { a <= b }
     }
@@ -319,7 +322,7 @@ impl Twin {
     }
 }
 
-/// A matrix times a vector, from the first column on.
+/// Returns a matrix times a vector, summed from the first column on.
 fn transformed(m: &[Vec4; 4], v: Vec4) -> Vec4 {
     ((m[0] * v.x + m[1] * v.y) + m[2] * v.z) + m[3] * v.w
 }
@@ -332,7 +335,7 @@ fn dot(a: Vec3, b: Vec3) -> f32 {
     (a.x * b.x + a.y * b.y) + a.z * b.z
 }
 
-/// From a pixel's column and row, and its depth minus the far plane's.
+/// Returns the matrix from a pixel's column and row, and its depth minus the far plane's.
 fn world_from_pixel(look: &Look) -> DMat4 {
     let [width, height] = look.size.map(f64::from);
     let clip_from_pixel = DMat4::from_cols(
@@ -352,7 +355,7 @@ fn forward(to_world: &DMat4, look: &Look) -> Vec3 {
     forward.normalize_or_zero().as_vec3()
 }
 
-/// The uniform of the look-up, with the change of a plane's depth whatever the bias.
+/// Returns the uniform of the look-up, with the depth change per texel even without receiver-plane bias.
 fn on_planes(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> ReceiverUniform {
     let mut uniform = ReceiverUniform::new(maps, view, descriptor);
     for slot in uniform.maps.iter_mut().take(uniform.map_count as usize) {

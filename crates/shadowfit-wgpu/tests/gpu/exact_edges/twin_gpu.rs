@@ -1,4 +1,4 @@
-//! The first edge pass against its twin in plain Rust, pixel for pixel.
+//! The first edge pass equals its twin in plain Rust, pixel by pixel.
 
 use std::sync::OnceLock;
 
@@ -14,20 +14,20 @@ use super::stage::{Look, Stage, Thing, traced};
 use super::twin::{Classified, NEXT_TO, Twin, Verdict};
 
 const SIZE: [u32; 2] = [160, 90];
-/// Triangles that are drawn together.
+/// Number of triangles that are drawn together.
 const TOGETHER: usize = 1000;
-/// Pixels of a picture's 14,400 whose verdict may be another one, since compilers round products and sums as they like: each
-/// of them must lie next to a threshold. One in all pictures was found.
+/// Pixels of an image's 14,400 whose verdict may differ, because compilers may round products and sums
+/// differently. Each must lie next to a threshold. One was found in all images.
 const OTHERS: usize = 3;
 
-/// A built-in scene as these tests use it.
+/// A built-in scene for these tests.
 struct Built {
     things: Vec<Thing>,
     camera: PerspectiveCamera,
     direction: Vec3,
 }
 
-/// Returns a built-in scene. Building one takes longer than most pictures of it.
+/// Returns a built-in scene. It is cached, because building it takes longer than most images.
 fn built(scene: BuiltinScene) -> &'static Built {
     static BUILT: [OnceLock<Built>; BuiltinScene::ALL.len()] = [const { OnceLock::new() }; BuiltinScene::ALL.len()];
     let index = BuiltinScene::ALL.iter().position(|other| *other == scene).expect("all scenes are listed");
@@ -56,12 +56,12 @@ fn build(scene: BuiltinScene) -> Built {
     Built { things, camera, direction: scene.sun.expect("a sun").direction }
 }
 
-/// A built-in scene without the holes of its leaves.
+/// Returns the triangles of a built-in scene without the holes of its leaves.
 pub(super) fn things(scene: BuiltinScene) -> Vec<Thing> {
     built(scene).things.clone()
 }
 
-/// A view of the courtyard.
+/// Returns a view of the courtyard.
 pub(super) fn look(samples: u32, convention: DepthConvention, normals: Option<NormalEncoding>) -> Look {
     let (eye, target) = (Vec3::new(4.0, 2.5, 7.0), Vec3::new(0.0, 1.0, 0.0));
     let camera = PerspectiveCamera {
@@ -78,13 +78,14 @@ pub(super) fn look(samples: u32, convention: DepthConvention, normals: Option<No
     Look { camera, direction, size: SIZE, samples, convention, format, normals, number: 0 }
 }
 
-/// The view from a scene's own camera under its own sun.
+/// Returns the view of a scene's own camera under its own sun.
 pub(super) fn start(scene: BuiltinScene, normals: Option<NormalEncoding>) -> Look {
     let Built { camera, direction, .. } = *built(scene);
     Look { camera, direction, ..look(1, DepthConvention::Reversed, normals) }
 }
 
-/// Compares the picture that a stage draws with its twin's, and returns how many pixels are sure, and unsure.
+/// Compares the image that a stage draws with its twin's, and returns the number of sure pixels, and of
+/// unsure ones.
 pub(super) fn compare(what: &str, stage: &mut Stage, look: &Look) -> [usize; 2] {
     let drawn = stage.draw(look);
     let (sure, none) = stage.traced(look, &drawn, |view| view.budget = Some(0));
@@ -138,7 +139,7 @@ fn every_pixel_of_the_built_in_scenes_has_the_verdict_of_the_twin() {
     }
 }
 
-/// Numbers of counts of rays, counts of samples and encodings of normals.
+/// Number of ray counts, sample counts and normal encodings.
 const COUNTS: [usize; 3] = [2, 2, 3];
 
 #[test]
@@ -152,7 +153,7 @@ fn verdicts_are_the_twin_s_for_the_full_product_of_rays_samples_and_normals() {
     assert_twins(&full_product(&COUNTS));
 }
 
-/// Compares verdicts with the twin's for rays, samples and normals by their indices.
+/// Compares verdicts with the twin's for rays, samples and normals, by index.
 fn assert_twins(rows: &[Vec<usize>]) {
     let mut stage = Stage::new(&traced(technique(), 1), things(BuiltinScene::Courtyard));
     for row in rows {

@@ -1,8 +1,8 @@
-//! Clusters: triangles cut into boxes that hug their surface.
+//! Clusters: triangles cut into groups with tight boxes.
 //!
-//! A fit knows a receiver only by its box, and the box of a level that is one mesh says nothing.
-//! Cut the same mesh once into a few hundred clusters, and their boxes hold much less empty space.
-//! An animated mesh keeps its clusters, and only their boxes are computed anew.
+//! A fit knows a receiver only by its box, and the box of a level in one mesh is useless. The boxes of a few
+//! hundred clusters of the same mesh hold much less empty space. An animated mesh keeps its clusters, and
+//! only their boxes are computed again.
 
 mod piece;
 mod split;
@@ -16,8 +16,8 @@ use crate::base::{Aabb, FitError, checks};
 use crate::content::normal_cone::NormalCone;
 use piece::{Corners, Outline, Triangle};
 
-/// Boxes around small groups of triangles, for [`Boxes::boxes`](crate::Boxes::boxes): together
-/// they hold every point of every triangle. No group holds triangles of two objects.
+/// Boxes around small groups of triangles, for [`Boxes::boxes`](crate::Boxes::boxes). Together they hold
+/// every point of every triangle. A group holds triangles of one object only.
 ///
 /// ```
 /// use shadowfit::glam::Vec3;
@@ -43,46 +43,43 @@ pub struct Clusters {
     /// The pieces of triangles in each cluster, one cluster after the other.
     pieces: Vec<Outline>,
     corners: Corners,
-    /// Object of each cluster, and where its pieces end.
+    /// Object of each cluster, and the end of its pieces.
     ends: Vec<(u32, usize)>,
     boxes: Vec<Aabb>,
     cones: Vec<NormalCone>,
 }
 
 impl Clusters {
-    /// Number of clusters that works well for scenes of one mesh. On five measured scenes, each at
-    /// three headings, maps around this many boxes were 10% longer than around the triangles
-    /// themselves; with a quarter of the boxes 13%, with four times as many 7%.
+    /// Number of clusters that works well for scenes in one mesh. On five measured scenes with three headings
+    /// each, the longer sides of maps around this number of boxes exceeded those of maps around the triangles
+    /// themselves by 10%. With a quarter of the boxes it was 13%, and with four times as many 7%.
     pub const DEFAULT_LIMIT: usize = 1024;
 
-    /// Greatest number of clusters that objects are cut into; higher limits are lowered to it.
+    /// Greatest number of clusters. Higher limits are lowered to it.
     pub const MAX_LIMIT: usize = 65_536;
 
-    /// Cuts objects into `limit` clusters or fewer, or into one for each object that has triangles
-    /// if those are more.
+    /// Cuts objects into at most `limit` clusters, or one for each object with triangles if these are more.
     ///
-    /// Each object is a slice of triangles; the three positions of each are in metres, relative to
-    /// an origin that all share, which is the origin of [`boxes`](Self::boxes). Winding and
-    /// handedness do not matter. The same triangles give the same clusters on every target.
+    /// Each object is a slice of triangles. Their positions are in metres, relative to a common origin, which
+    /// is the origin of [`boxes`](Self::boxes). Winding and handedness do not matter. Clusters depend only on
+    /// the triangles, not on the target.
     ///
-    /// Groups of triangles are cut in two by planes, always the group whose box holds the most
-    /// empty space; a flat box that is full is not cut. A triangle that a plane passes through is
-    /// in the groups on both sides, each with the part of it there, so large slanted ones get small
-    /// boxes too. Where very many large triangles intersect one another, later ones are not cut,
-    /// and boxes overlap.
+    /// Planes cut groups of triangles in two, always the group whose box holds the most empty space. A flat,
+    /// full box is not cut. A triangle that crosses the plane joins the groups on both sides with its part
+    /// there, so large slanted triangles get small boxes too. If very many large triangles intersect, later
+    /// ones are not cut, and boxes overlap.
     ///
-    /// Takes about 0.25 µs a triangle and 20 µs a cluster: 100 ms for 1,024 clusters of an object of
+    /// Takes about 0.25 µs per triangle and 20 µs per cluster: 100 ms for 1,024 clusters of an object of
     /// 300,000 triangles.
     ///
-    /// Sources: Wald, Ingo: "On fast construction of SAH-based bounding volume hierarchies", 2007;
-    /// Stich, Martin, Heiko Friedrich and Andreas Dietrich: "Spatial splits in bounding volume
-    /// hierarchies", 2009. Here no hierarchy is kept, and the cost is empty space, not the expected
-    /// number of rays.
+    /// Sources: Wald, Ingo: "On fast construction of SAH-based bounding volume hierarchies", 2007; Stich,
+    /// Martin, Heiko Friedrich and Andreas Dietrich: "Spatial splits in bounding volume hierarchies", 2009.
+    /// Unlike these, no hierarchy is kept, and the cost is empty space, not the expected number of rays.
     ///
     /// # Errors
     ///
-    /// A position that is NaN, infinite or beyond 1e18 m; a limit of zero; more than `u32::MAX`
-    /// triangles or objects.
+    /// Fails for a position that is NaN, infinite or beyond 1e18 m, for a limit of zero, and for more than
+    /// `u32::MAX` triangles or objects.
     pub fn build(objects: &[&[[Vec3; 3]]], limit: usize) -> Result<Self, FitError> {
         if limit == 0 {
             let max = Self::MAX_LIMIT as f64;
@@ -108,15 +105,15 @@ impl Clusters {
 
     /// Updates boxes and cones for triangles that have moved, keeping the clusters.
     ///
-    /// `objects` are those of [`build`](Self::build) in the same order, each with the same number
-    /// of triangles; metres, relative to one origin. Parts of triangles move with their triangles,
-    /// however these are deformed. Boxes grow where neighbouring triangles move apart, so build
-    /// again when an object has changed its shape completely. Takes about 0.06 µs a triangle.
+    /// `objects` are the objects of [`build`](Self::build) in the same order, each with the same number of
+    /// triangles, in metres relative to one origin. Parts of triangles follow any movement and deformation of
+    /// their triangles. Boxes grow where neighbouring triangles move apart, so build again after an object
+    /// has changed its shape completely. Takes about 0.06 µs per triangle.
     ///
     /// # Errors
     ///
-    /// [`FitError::CountMismatch`] for another number of objects or triangles, and positions as for
-    /// `build`. The clusters are then left as they were.
+    /// Returns [`FitError::CountMismatch`] for another number of objects or triangles, and the errors of
+    /// `build` for positions. On an error the clusters stay unchanged.
     pub fn refit(&mut self, objects: &[&[[Vec3; 3]]]) -> Result<(), FitError> {
         let mismatch = |input, given, expected| Err(FitError::CountMismatch { input, given, expected });
         if objects.len() != self.counts.len() {
@@ -132,19 +129,19 @@ impl Clusters {
         Ok(())
     }
 
-    /// The box of each cluster, in metres, relative to the origin of the triangles. None is empty;
-    /// flat ones are common. Those of an object follow one another.
+    /// Returns the box of each cluster, in metres, relative to the origin of the triangles. Boxes are never
+    /// empty, but often flat. The boxes of an object follow one another.
     pub fn boxes(&self) -> &[Aabb] {
         &self.boxes
     }
 
-    /// Where the surfaces of each cluster face, one cone for each of the [`boxes`](Self::boxes).
+    /// Returns a cone around the normals of each cluster, one for each of the [`boxes`](Self::boxes).
     pub fn cones(&self) -> &[NormalCone] {
         &self.cones
     }
 
-    /// Object and index within the object of each triangle that is in a cluster with all or part of
-    /// its area; none if there is no such cluster.
+    /// Returns the object and the index within the object of each triangle that lies in a cluster completely
+    /// or in part. Empty if there is no such cluster.
     pub fn triangles(&self, cluster: usize) -> impl ExactSizeIterator<Item = (u32, u32)> {
         let object = self.ends.get(cluster).map_or(0, |end| end.0);
         self.outlines(cluster).iter().map(move |outline| (object, outline.triangle))
@@ -158,7 +155,7 @@ impl Clusters {
         }
     }
 
-    /// Makes the boxes and cones of all clusters.
+    /// Computes the boxes and cones of all clusters.
     fn measure(&mut self, objects: &[&[Triangle]]) {
         self.boxes.clear();
         self.cones.clear();
@@ -174,7 +171,7 @@ impl Clusters {
     }
 }
 
-/// Refuses positions that are not finite or too far out.
+/// Returns an error if a position is not finite or too far away.
 fn check_positions(objects: &[&[[Vec3; 3]]]) -> Result<(), FitError> {
     let limit = Vec3::splat(MAX_LENGTH as f32);
     let is_good = |position: &Vec3| position.abs().cmple(limit).all();
@@ -185,10 +182,10 @@ fn check_positions(objects: &[&[[Vec3; 3]]]) -> Result<(), FitError> {
 }
 
 impl NormalCone {
-    /// A narrow cone around the normals of triangles; not the narrowest.
+    /// Returns a narrow cone around the normals of triangles, though not the narrowest.
     fn around<'a, I: Iterator<Item = &'a [Vec3; 3]>>(triangles: impl Fn() -> I) -> Self {
         let normals = || triangles().map(area_normal).filter(|normal| *normal != DVec3::ZERO);
-        // The side of the largest triangle, then of the mean, decides which normals are flipped.
+        // Flip normals to the side of the largest triangle, then to the side of the mean.
         let largest = normals().fold(DVec3::ZERO, |most, n| if n.dot(n) > most.dot(most) { n } else { most });
         let mean = normals().fold(DVec3::ZERO, |sum, n| sum + toward(largest, n / length(n)));
         let axis = (mean / length(mean)).as_vec3();
@@ -201,17 +198,17 @@ impl NormalCone {
     }
 }
 
-/// What is subtracted from a cosine in f32 so that rounding never narrows a cone: two steps just
-/// below 1. It widens the cone of parallel normals to 0.03°.
+/// Amount that is subtracted from a cosine in f32 so that rounding never narrows a cone: two steps just below 1.
+/// It widens the cone of parallel normals to 0.03°.
 const COSINE_STEP: f32 = 2.0 * f32::EPSILON;
 
-/// The normal of a triangle by the right-hand rule, twice its area long.
+/// Returns the normal of a triangle by the right-hand rule, with twice its area as length.
 fn area_normal([a, b, c]: &[Vec3; 3]) -> DVec3 {
     let a = a.as_dvec3();
     (b.as_dvec3() - a).cross(c.as_dvec3() - a)
 }
 
-/// The normal or its opposite, whichever is on the side of `reference`.
+/// Returns the normal or its opposite, on the side of `reference`.
 fn toward(reference: DVec3, normal: DVec3) -> DVec3 {
     if reference.dot(normal) < 0.0 { -normal } else { normal }
 }

@@ -1,7 +1,7 @@
 //! Pieces of triangles, cut by planes.
 //!
-//! A corner of a piece is kept as its position in the triangle, (u, v) for a + u (b - a) + v (c - a),
-//! so that the piece follows when the triangle moves, however it is deformed:
+//! A corner of a piece is stored as its position in the triangle, (u, v) for a + u (b - a) + v (c - a). So
+//! the piece follows any movement and deformation of the triangle:
 //!
 //! ```text
 //!    c                 c
@@ -23,40 +23,40 @@ pub(super) type Triangle = [Vec3; 3];
 /// Corners of a whole triangle.
 const WHOLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::Y];
 
-/// A triangle or a part of one; the caller keeps track of its object.
+/// A triangle or a part of one. The caller keeps track of its object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) aabb: Aabb,
-    /// Area vector: along the normal by the right-hand rule, as long as the area, in m².
+    /// Area vector in m²: along the normal by the right-hand rule, with the area as length.
     pub(super) area: Vec3,
     pub(super) outline: Outline,
 }
 
-/// Which triangle of an object, and which part of it.
+/// A triangle of an object, or a part of that triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outline {
     pub(super) triangle: u32,
-    /// First of its corners among [`Corners`].
+    /// Index of its first corner in [`Corners`].
     first: u32,
-    /// Number of its corners; 0 for the whole triangle.
+    /// Number of its corners. 0 for the whole triangle.
     count: u32,
 }
 
 impl Piece {
-    /// A whole triangle.
+    /// Returns a whole triangle as a piece.
     pub(super) fn whole(index: u32, triangle: &Triangle) -> Self {
         let aabb = triangle.iter().fold(Aabb::EMPTY, |aabb, &corner| aabb.with_point(corner));
         let outline = Outline { triangle: index, first: 0, count: 0 };
         Self { aabb, area: area(triangle).as_vec3(), outline }
     }
 
-    /// The middle of its box.
+    /// Returns the middle of the piece's box.
     pub(super) fn middle(&self) -> Vec3 {
         (self.aabb.min + self.aabb.max) * 0.5
     }
 }
 
-/// Corners of the pieces that are not whole, by their position in their triangle.
+/// Corners of cut pieces, by position in their triangle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Corners {
     positions: Vec<DVec2>,
@@ -67,7 +67,7 @@ impl Corners {
         self.positions.len()
     }
 
-    /// Puts the corners of a piece into `out`, in order around it, rounded.
+    /// Writes the rounded corners of a piece to `out`, in order around it.
     pub(super) fn copy(&self, outline: Outline, triangle: &Triangle, out: &mut Vec<Vec3>) {
         out.clear();
         match outline.count {
@@ -76,7 +76,7 @@ impl Corners {
         }
     }
 
-    /// The least box in f32 around a piece.
+    /// Returns the smallest f32 box around a piece.
     pub(super) fn bounds(&self, outline: Outline, triangle: &Triangle) -> Aabb {
         if outline.count == 0 {
             return triangle.iter().fold(Aabb::EMPTY, |aabb, &corner| aabb.with_point(corner));
@@ -86,8 +86,7 @@ impl Corners {
         rounded_out(min, max)
     }
 
-    /// Copies the corners of a piece from `other`, so that only corners of pieces that are still in
-    /// use are kept.
+    /// Copies the corners of a piece from `other`. Corners that no piece uses are left behind.
     pub(super) fn adopt(&mut self, outline: Outline, other: &Self) -> Outline {
         if outline.count == 0 {
             return outline;
@@ -97,14 +96,14 @@ impl Corners {
         Outline { first, ..outline }
     }
 
-    /// How many corners both parts of a piece have at most.
+    /// Returns an upper bound for the number of corners of both parts of a piece.
     pub(super) fn needed_to_cut(&self, outline: Outline) -> usize {
-        // Each part has the corners on its side, and each corner and each edge may give one more.
+        // Each part has the corners on its side, and each corner and each edge may add one more.
         4 * self.positions(outline).len()
     }
 
-    /// The parts of a piece below and above a coordinate along an axis. `None` for a part without
-    /// extent; never both.
+    /// Returns the parts of a piece below and above a coordinate along an axis. A part without extent is
+    /// `None`. At least one part exists.
     pub(super) fn cut(&mut self, piece: &Piece, triangle: &Triangle, axis: usize, cut: f32) -> [Option<Piece>; 2] {
         let mut parts = [1.0, -1.0].map(|side| self.part(piece, triangle, axis, cut, side));
         match &mut parts {
@@ -120,7 +119,7 @@ impl Corners {
         parts
     }
 
-    /// The part of a piece on one side of a plane: below for `side` 1, above for -1.
+    /// Returns the part of a piece on one side of a plane: below it for `side` 1, above it for -1.
     fn part(&mut self, piece: &Piece, triangle: &Triangle, axis: usize, cut: f32, side: f64) -> Option<Piece> {
         let first = self.positions.len();
         let count = self.positions(piece.outline).len();
@@ -158,7 +157,8 @@ impl Corners {
     }
 }
 
-/// The point of a triangle at a position (u, v). Exact at a flat triangle's common coordinate.
+/// Returns the point of a triangle at a position (u, v). The common coordinate of an axis-aligned triangle is
+/// exact.
 fn at(triangle: &Triangle, position: DVec2) -> DVec3 {
     let [a, b, c] = triangle.map(Vec3::as_dvec3);
     a + (b - a) * position.x + (c - a) * position.y
@@ -169,13 +169,13 @@ fn area(triangle: &Triangle) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// Area of a convex polygon of positions, as a share of the triangle's.
+/// Returns the area of a convex polygon of positions, as a share of the triangle's area.
 fn share(positions: &[DVec2]) -> f64 {
     let fan = positions.windows(2).map(|edge| (edge[0] - positions[0]).perp_dot(edge[1] - positions[0]));
     fan.sum::<f64>().abs()
 }
 
-/// The least box in f32 that holds one in f64.
+/// Returns the smallest f32 box around an f64 box.
 fn rounded_out(min: DVec3, max: DVec3) -> Aabb {
     let down = |v: f64, r: f32| if f64::from(r) > v { r.next_down() } else { r };
     let up = |v: f64, r: f32| if f64::from(r) < v { r.next_up() } else { r };

@@ -1,9 +1,11 @@
-//! Cuts groups of pieces in two, each time the group with the most empty space, where that leaves the least of it.
+//! Cuts groups of pieces in two: always the group with the most empty space, where the cut leaves the least
+//! of it.
 //!
-//! Cuts are tried between slabs along an axis: binned splits as of bounding volume hierarchies (Wald, Ingo: "On fast
-//! construction of SAH-based bounding volume hierarchies", 2007), of pieces cut at the planes (Stich, Martin, et al.:
-//! "Spatial splits in bounding volume hierarchies", 2009). Unlike there, a half's cost does not grow with its number of
-//! triangles, because a fit reads each box once, no matter how many triangles are in it.
+//! Cuts are tried between slabs along an axis. These are the binned splits of bounding volume hierarchies
+//! (Wald, Ingo: "On fast construction of SAH-based bounding volume hierarchies", 2007), with pieces cut at
+//! the planes (Stich, Martin, et al.: "Spatial splits in bounding volume hierarchies", 2009). Unlike in these
+//! papers, the cost of a half does not grow with its number of triangles, because a fit reads each box once
+//! regardless of the triangles in it.
 
 use alloc::collections::BinaryHeap;
 use alloc::vec;
@@ -15,19 +17,19 @@ use glam::{DVec3, Vec3, Vec3Swizzles as _};
 use super::piece::{Corners, Piece, Triangle};
 use crate::base::Aabb;
 
-/// Pieces of a group that decide where it is cut. This many give cuts as good as all do.
+/// Number of a group's pieces that decide where it is cut. This many give cuts as good as all pieces.
 const SAMPLE: usize = 128;
 
-/// Depth, as a share of a box's longest side, by which the unfilled part of its sides counts as
-/// empty space.
+/// Depth of the empty space that is assumed at the uncovered part of a box's sides, as a share of the box's
+/// longest side.
 const SILHOUETTE_WEIGHT: f64 = 0.1;
 
-/// Share of a side that may be missing by rounding.
+/// Share of a side that counts as the full side in spite of rounding.
 const FILLED: f64 = 1.0 - 1e-3;
 
-/// Corners of cut pieces that may be kept, for each triangle and for each cluster: ten times what
-/// ordinary scenes use. Where very many large triangles intersect one another, later cuts leave
-/// pieces whole instead, and the boxes overlap.
+/// Number of corners of cut pieces that may be kept, per triangle and per cluster: ten times the need of
+/// ordinary scenes. In scenes where very many large triangles intersect, later cuts leave pieces whole, and
+/// the boxes overlap.
 const CORNERS_PER_TRIANGLE: usize = 16;
 const CORNERS_PER_CLUSTER: usize = 64;
 
@@ -38,7 +40,7 @@ pub(super) struct Group {
     aabb: Aabb,
     /// Estimate of the empty space in the box, in m³.
     air: f64,
-    /// Its slot in [`Splitter::next`], which also breaks ties.
+    /// Its slot in [`Splitter::next`]. It also breaks ties.
     slot: usize,
 }
 
@@ -54,7 +56,7 @@ impl Group {
         Self { object, air: air(&aabb, front.max(back)), aabb, pieces, slot }
     }
 
-    /// The axis and coordinate to cut at; `None` for a point.
+    /// Returns the axis and coordinate to cut at. `None` for a point.
     fn cut(&self, triangles: &[Triangle], corners: &Corners, buffer: &mut Vec<Vec3>) -> Option<(usize, f32)> {
         let mut slabs = [0, 1, 2].map(|axis| Slabs::new(axis, &self.aabb));
         for piece in self.pieces.iter().step_by(self.pieces.len().div_ceil(SAMPLE).max(1)) {
@@ -74,14 +76,14 @@ impl Group {
         best.map(|(_, axis, cut)| (axis, cut)).or_else(|| middle(&self.aabb))
     }
 
-    /// The axis along which the pieces' middles spread most, and half way there; `None` if they
-    /// all coincide.
+    /// Returns the axis along which the pieces' middles spread most, and the centre of this range. `None` if
+    /// all middles coincide.
     fn middle_of_middles(&self) -> Option<(usize, f32)> {
         middle(&self.pieces.iter().fold(Aabb::EMPTY, |aabb, piece| aabb.with_point(piece.middle())))
     }
 }
 
-/// The axis of a box's longest side and the middle of that; `None` for a point.
+/// Returns the axis of a box's longest side, and the middle of that side. `None` for a point.
 fn middle(aabb: &Aabb) -> Option<(usize, f32)> {
     let size = aabb.max - aabb.min;
     let axis = size.max_position();
@@ -89,7 +91,7 @@ fn middle(aabb: &Aabb) -> Option<(usize, f32)> {
 }
 
 impl Ord for Group {
-    /// The group with more empty space is greater; of equal ones the one with the lower slot.
+    /// Orders groups by empty space. Of equal groups, the one with the lower slot is greater.
     fn cmp(&self, other: &Self) -> Ordering {
         self.air.total_cmp(&other.air).then(other.slot.cmp(&self.slot))
     }
@@ -109,19 +111,18 @@ impl PartialEq for Group {
 
 impl Eq for Group {}
 
-/// Estimate of the empty space in a box, in m³, from the areas of its surfaces projected along x, y
-/// and z.
+/// Estimates the empty space in a box, in m³, from the areas of its surfaces projected along x, y and z.
 ///
-/// It is the box's volume, since surfaces are thin, plus the area of its sides that they leave
-/// uncovered times a tenth of its longest side. A flat box that is full has none.
+/// The estimate is the volume of the box, since surfaces are thin, plus a tenth of the box's longest side
+/// times the uncovered area of its sides. A flat, full box has no empty space.
 fn air(aabb: &Aabb, area: Vec3) -> f64 {
     let size = (aabb.max - aabb.min).as_dvec3();
     let open = (sides(size) * FILLED - area.as_dvec3()).max(DVec3::ZERO);
     size.element_product() + SILHOUETTE_WEIGHT * open.element_sum() * size.max_element()
 }
 
-/// Cuts objects into groups: at most `limit` of them, or one for each object that has triangles.
-/// Those of an object follow one another, and halves of a half do.
+/// Cuts objects into at most `limit` groups, or one for each object with triangles if these are more. The
+/// groups of an object follow one another, and so do the parts of a group.
 pub(super) fn split(objects: &[&[Triangle]], limit: usize) -> (Vec<Group>, Corners) {
     let mut splitter = Splitter::new(objects, limit);
     let mut open = BinaryHeap::new();
@@ -147,14 +148,13 @@ pub(super) fn split(objects: &[&[Triangle]], limit: usize) -> (Vec<Group>, Corne
 struct Splitter<'a> {
     objects: &'a [&'a [Triangle]],
     corners: Corners,
-    /// How many corners may be kept.
+    /// Greatest number of corners to keep.
     room: usize,
-    /// Whether that number has been reached, so that no more pieces are cut.
+    /// Whether that number has been reached. Then pieces are no longer cut.
     is_full: bool,
-    /// The groups' order: the slot that follows each slot. After the last one comes an index that
-    /// is no slot.
+    /// The order of the groups: the next slot after each slot. The last slot has an invalid index as next.
     next: Vec<usize>,
-    /// Scratch space for the corners of one piece.
+    /// Scratch memory for the corners of one piece.
     buffer: Vec<Vec3>,
 }
 
@@ -166,14 +166,14 @@ impl<'a> Splitter<'a> {
         Self { objects, corners: Corners::default(), room, is_full: false, next: Vec::new(), buffer: Vec::new() }
     }
 
-    /// A new slot that follows another one.
+    /// Returns a new slot that follows another one.
     fn slot_after(&mut self, slot: usize) -> usize {
         self.next.push(self.next[slot]);
         self.next[slot] = self.next.len() - 1;
         self.next[slot]
     }
 
-    /// Each slot's rank in the order.
+    /// Returns each slot's rank in the order.
     fn ranks(&self) -> Vec<usize> {
         let mut ranks = vec![0; self.next.len()];
         let mut slot = 0;
@@ -184,7 +184,7 @@ impl<'a> Splitter<'a> {
         ranks
     }
 
-    /// Both halves of a group, or the group itself when it holds no empty space or cannot be cut.
+    /// Returns both halves of a group, or the group itself if it has no empty space or cannot be cut.
     fn halves(&mut self, mut group: Group) -> Result<[Group; 2], Group> {
         let triangles = self.objects[group.object as usize];
         let cut = match self.is_full {
@@ -216,34 +216,33 @@ impl<'a> Splitter<'a> {
     }
 }
 
-/// Slabs that a box is cut into along an axis; a cut is tried between each two. More did not make
-/// the fits of five measured scenes tighter, and 32 took three times as long.
+/// Number of slabs along an axis of a box. Cuts are tried between them. More slabs did not make the fits of
+/// five measured scenes tighter, and 32 took three times as long.
 const SLABS: usize = 8;
 
-/// Weight of longest side times area, relative to volume, in the cost: flat boxes are then cut
-/// where that removes most of their area.
+/// Weight of longest side times area in the cost, relative to volume. With it, flat boxes are cut where this
+/// removes most of their area.
 const AREA_WEIGHT: f64 = 0.01;
 
-/// Boxes of what lies in each slab along an axis.
+/// Slabs along an axis, with the bounding box of the content of each.
 pub(super) struct Slabs {
     axis: usize,
     min: f32,
     size: f32,
-    /// Slabs in a metre.
+    /// Number of slabs per metre.
     density: f32,
     boxes: [Aabb; SLABS],
 }
 
 impl Slabs {
-    /// Empty slabs along an axis of a box.
+    /// Returns empty slabs along an axis of a box.
     pub(super) fn new(axis: usize, aabb: &Aabb) -> Self {
         let min = aabb.min[axis];
         let size = aabb.max[axis] - min;
         Self { axis, min, size, density: SLABS as f32 / size, boxes: [Aabb::EMPTY; SLABS] }
     }
 
-    /// Adds a piece with its box and its corners, in order around it, to the slabs that it passes
-    /// through.
+    /// Adds a piece to the slabs that it crosses. `corners` are in order around the piece.
     pub(super) fn add(&mut self, aabb: &Aabb, corners: &[Vec3]) {
         let (first, last) = (self.slab(aabb.min[self.axis]), self.slab(aabb.max[self.axis]));
         if first == last {
@@ -257,7 +256,7 @@ impl Slabs {
         }
     }
 
-    /// Adds the end of an edge, and where it passes from slab to slab.
+    /// Adds the end of an edge, and the points where the edge crosses from slab to slab.
     fn add_edge(&mut self, a: Vec3, b: Vec3) {
         let axis = self.axis;
         let (start, end) = (self.slab(a[axis]), self.slab(b[axis]));
@@ -273,7 +272,8 @@ impl Slabs {
         }
     }
 
-    /// The coordinate to cut at, and the cost of the two halves; `None` where all lies in one slab.
+    /// Returns the cost of the best two halves and the coordinate to cut at. `None` if only one slab has
+    /// content.
     pub(super) fn best(&self) -> Option<(f64, f32)> {
         let mut above = [Aabb::EMPTY; SLABS];
         let mut aabb = Aabb::EMPTY;
@@ -296,7 +296,8 @@ impl Slabs {
     }
 
     fn slab(&self, coordinate: f32) -> usize {
-        // Negative numbers and NaN, from zero times infinity without extent, become slab 0.
+        // Negative numbers become slab 0, and so does NaN, which is zero times infinity for a box without
+        // extent.
         (((coordinate - self.min) * self.density) as usize).min(SLABS - 1)
     }
 
@@ -305,13 +306,13 @@ impl Slabs {
     }
 }
 
-/// Cost of a box, in m³: the empty space that it may hold.
+/// Returns the cost of a box, in m³: the empty space that it may hold.
 fn cost(aabb: &Aabb) -> f64 {
     let size = (aabb.max - aabb.min).as_dvec3();
     size.element_product() + AREA_WEIGHT * sides(size).element_sum() * size.max_element()
 }
 
-/// Areas of a box's sides across x, y and z.
+/// Returns the areas of a box's sides across x, y and z.
 pub(super) fn sides(size: DVec3) -> DVec3 {
     size.yzx() * size.zxy()
 }

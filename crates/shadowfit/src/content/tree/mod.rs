@@ -1,8 +1,8 @@
 //! A hierarchy of static boxes. The cost of a frame depends on the boxes nearby, not on the total.
 //!
-//! A list is read from end to end in each frame, which is fastest for hundreds of boxes. [`StaticBoxes`] are built once
-//! and then changed box by box. A fit reads only the boxes that can change it, culling finds the casters of a map in the
-//! hierarchy, and the cache asks which boxes have changed.
+//! A list is read completely in each frame, which is fastest for hundreds of boxes. [`StaticBoxes`] are built
+//! once and then changed box by box. A fit reads only the boxes that can change it, culling finds the casters
+//! of a map in the hierarchy, and the cache reads the changes.
 
 mod nodes;
 
@@ -14,11 +14,11 @@ use glam::{DVec3, Vec3};
 use crate::base::{Aabb, Boxes, FitError, checks};
 use nodes::{NONE, Nodes};
 
-/// Static boxes in world axes, each with a number that it keeps. They receive and cast shadows beside the lists of a
-/// frame ([`FitInput::static_boxes`](crate::FitInput::static_boxes)).
+/// Static boxes in world axes, each with a permanent number. They receive and cast shadows in addition to the
+/// lists of a frame ([`FitInput::static_boxes`](crate::FitInput::static_boxes)).
 ///
-/// Use them for a thousand static boxes or more. Boxes that move in each frame are cheaper in a list. A change takes
-/// about a microsecond for any number of boxes, and no frame rebuilds the hierarchy.
+/// Use them for a thousand static boxes or more. Boxes that move in each frame are cheaper in a list. A
+/// change takes about a microsecond for any number of boxes. Frames do not rebuild the hierarchy.
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
@@ -46,7 +46,7 @@ use nodes::{NONE, Nodes};
 pub struct StaticBoxes {
     origin: DVec3,
     nodes: Nodes,
-    /// Whether each number is in use, by a box that may be empty.
+    /// Whether each number is in use. Its box may be empty.
     used: Vec<bool>,
     free: Vec<u32>,
     revision: BoxRevision,
@@ -54,12 +54,12 @@ pub struct StaticBoxes {
     log: VecDeque<(BoxRevision, BoxChange)>,
 }
 
-/// A state of a [`StaticBoxes`], to ask [what has changed since](StaticBoxes::changes_since).
+/// A state of a [`StaticBoxes`], for [`StaticBoxes::changes_since`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoxRevision {
-    /// Number of changes since the tree was made.
+    /// Number of changes since the tree was created.
     changes: u64,
-    /// Sum of hashes of all boxes, so that states of different trees differ.
+    /// Sum of hashes of all boxes. It tells states of different trees apart.
     content: u64,
 }
 
@@ -68,31 +68,31 @@ pub struct BoxRevision {
 pub struct BoxChange {
     /// Number of the box.
     pub number: u32,
-    /// Where it was, relative to the tree's origin, in metres; empty for one that came.
+    /// Old box relative to the tree's origin, in metres. Empty for a new box.
     pub before: Aabb,
-    /// Where it is now; empty for one that is gone.
+    /// New box. Empty for a removed box.
     pub after: Aabb,
 }
 
 impl StaticBoxes {
-    /// Changes that are remembered: with more of them between two frames, all counts as changed.
+    /// Number of recorded changes. After more changes between two frames, all boxes count as changed.
     pub const MAX_CHANGES: usize = 16_384;
 
-    /// A tree without a box. Its boxes are relative to `origin`, a world position in metres, as those of [`Boxes`]: f32
-    /// has steps of 8 mm at 100 km from it.
+    /// Returns a tree without boxes. Boxes are relative to `origin`, a world position in metres, as in
+    /// [`Boxes`]. At 100 km from it, f32 has steps of 8 mm.
     pub fn new(origin: DVec3) -> Self {
         let content = hash(NONE, &[origin.x, origin.y, origin.z]);
         let revision = BoxRevision { changes: 0, content };
         Self { origin, nodes: Nodes::new(), used: Vec::new(), free: Vec::new(), revision, log: VecDeque::new() }
     }
 
-    /// The tree of a whole list, which is faster and tighter than one box after the other. Numbers are those of the list;
-    /// empty boxes keep theirs.
+    /// Builds the tree of a whole list, faster and tighter than by inserting single boxes. Numbers are the
+    /// indices in the list. Empty boxes have numbers as well.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for coordinates that are not numbers or beyond 1e18 m, and for
-    /// more than `u32::MAX - 1` boxes.
+    /// Returns [`FitError::NotFinite`] and [`FitError::OutOfRange`] for coordinates that are not numbers or
+    /// beyond 1e18 m, and for more than `u32::MAX - 1` boxes.
     pub fn from_boxes(boxes: Boxes<'_>) -> Result<Self, FitError> {
         checks::point("the boxes' origin", boxes.origin)?;
         checks::within("the number of boxes of a tree", boxes.boxes.len() as f64, 0.0, MAX_BOXES)?;
@@ -110,37 +110,38 @@ impl StaticBoxes {
         Ok(tree)
     }
 
-    /// World position that the boxes are relative to, in metres.
+    /// Returns the world position that the boxes are relative to, in metres.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// Number of boxes, empty ones included.
+    /// Returns the number of boxes, including empty ones.
     pub fn len(&self) -> usize {
         self.used.len() - self.free.len()
     }
 
-    /// Whether there is no box.
+    /// Returns whether there are no boxes.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A box around all, relative to the [origin](Self::origin); empty without one.
+    /// Returns a box around all boxes, relative to the [origin](Self::origin). Empty if there are none.
     pub fn bounds(&self) -> Aabb {
         self.nodes.bounds()
     }
 
-    /// The box of a number, relative to the [origin](Self::origin); `None` where the number is not in use.
+    /// Returns the box with a number, relative to the [origin](Self::origin). `None` if the number is not in
+    /// use.
     pub fn get(&self, number: u32) -> Option<Aabb> {
         self.is_used(number).then(|| self.nodes.get(number).unwrap_or(Aabb::EMPTY))
     }
 
-    /// Adds a box, in metres relative to the [origin](Self::origin), and returns its number, which it keeps until it is
-    /// [removed](Self::remove). An empty box receives and casts nothing.
+    /// Adds a box, in metres relative to the [origin](Self::origin). Returns its number, which it keeps until
+    /// it is [removed](Self::remove). An empty box receives and casts no shadow.
     ///
     /// # Errors
     ///
-    /// As [`Self::from_boxes`].
+    /// Returns the same errors as [`Self::from_boxes`].
     pub fn insert(&mut self, aabb: Aabb) -> Result<u32, FitError> {
         let aabb = checked(&aabb)?;
         let number = self.free.last().copied().unwrap_or(self.used.len() as u32);
@@ -156,12 +157,12 @@ impl StaticBoxes {
         Ok(number)
     }
 
-    /// Moves a box. A shadow map that is kept is redrawn where it was and where it is; a box that stays as it is changes
-    /// nothing.
+    /// Moves a box. Kept shadow maps are redrawn at its old and new place. An unchanged box has no effect.
     ///
     /// # Errors
     ///
-    /// As [`Self::from_boxes`], and [`FitError::OutOfRange`] for a number that is not in use.
+    /// Returns the same errors as [`Self::from_boxes`], and [`FitError::OutOfRange`] for a number that is not
+    /// in use.
     pub fn set(&mut self, number: u32, aabb: Aabb) -> Result<(), FitError> {
         let after = checked(&aabb)?;
         let Some(before) = self.get(number) else {
@@ -180,7 +181,7 @@ impl StaticBoxes {
         Ok(())
     }
 
-    /// Removes a box and returns it; `None` where the number is not in use. A later box may get the number.
+    /// Removes a box and returns it. `None` if the number is not in use. A later box may get the number.
     pub fn remove(&mut self, number: u32) -> Option<Aabb> {
         let before = self.get(number)?;
         self.nodes.remove(number);
@@ -190,18 +191,19 @@ impl StaticBoxes {
         Some(before)
     }
 
-    /// All boxes with their numbers, in no particular order; empty ones are left out.
+    /// Calls `visit` for all boxes and their numbers, in no particular order. Skips empty boxes.
     pub fn for_each(&self, mut visit: impl FnMut(u32, &Aabb)) {
         self.nodes.visit((), &mut (), &|(), (), _| Some(()), &mut |(), (), number, aabb| visit(number, aabb));
     }
 
-    /// The present state.
+    /// Returns the current state.
     pub fn revision(&self) -> BoxRevision {
         self.revision
     }
 
-    /// What has changed since an earlier state, the oldest change first: a box that changed twice comes twice. `None`
-    /// where that is not known: more than [`Self::MAX_CHANGES`] have changed since, or it was the state of another tree.
+    /// Returns the changes since an earlier state, oldest first. A box that changed twice comes twice. `None`
+    /// if the changes are unknown: there were more than [`Self::MAX_CHANGES`] since, or the state belongs to
+    /// another tree.
     pub fn changes_since(&self, revision: BoxRevision) -> Option<impl ExactSizeIterator<Item = BoxChange>> {
         let count = usize::try_from(self.revision.changes.checked_sub(revision.changes)?).ok()?;
         let first = self.log.len().checked_sub(count)?;
@@ -209,8 +211,9 @@ impl StaticBoxes {
         (known == revision).then(|| self.log.range(first..).map(|(_, change)| *change))
     }
 
-    /// Passes on each box with its number for which `enter` gives something, as it does for all boxes of the hierarchy
-    /// around it. Boxes are relative to the tree's origin; what `enter` gives for a box is handed to those inside it.
+    /// Visits boxes from the root down, relative to the tree's origin. `enter` gets a box and the context of
+    /// its parent, and returns the context of the box or `None` to skip it. `take` gets each reached box of a
+    /// leaf with its number and context.
     pub(crate) fn visit<C: Copy, S>(
         &self,
         context: C,
@@ -221,7 +224,8 @@ impl StaticBoxes {
         self.nodes.visit(context, state, &enter, &mut take);
     }
 
-    /// The same of those that have distances, least and greatest, about the nearest first.
+    /// Visits boxes as [`Self::visit`] does, roughly nearest first. `distances` returns a box's least and
+    /// greatest distance, or `None` to skip it.
     pub(crate) fn visit_nearest<S>(
         &self,
         state: &mut S,
@@ -248,10 +252,10 @@ impl StaticBoxes {
     }
 }
 
-/// Most boxes: one number stands for none.
+/// Greatest number of boxes. One number is reserved for "none".
 const MAX_BOXES: f64 = u32::MAX as f64 - 1.0;
 
-/// A box whose coordinates are numbers that fits can use, with all empty ones alike.
+/// Returns the box if its coordinates are numbers that fits can use. All empty boxes become [`Aabb::EMPTY`].
 fn checked(aabb: &Aabb) -> Result<Aabb, FitError> {
     let is_nan = aabb.min.is_nan() || aabb.max.is_nan();
     if aabb.is_empty() && !is_nan {
@@ -262,7 +266,7 @@ fn checked(aabb: &Aabb) -> Result<Aabb, FitError> {
     Ok(*aabb)
 }
 
-/// A hash of a box and its number; 0 for an empty one.
+/// Returns a hash of a box and its number. 0 for an empty box.
 fn hash_of(number: u32, aabb: &Aabb) -> u64 {
     if aabb.is_empty() {
         return 0;
@@ -272,7 +276,7 @@ fn hash_of(number: u32, aabb: &Aabb) -> u64 {
     hash(number, &[a, b, c, d, e, f])
 }
 
-/// The bits of numbers, mixed by multiplication with a prime and shifts.
+/// Returns a hash of numbers, mixed by multiplication with a prime and shifts.
 fn hash(number: u32, values: &[f64]) -> u64 {
     values.iter().fold(u64::from(number) + 1, |hash, value| {
         let mixed = (hash ^ value.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -326,7 +330,7 @@ mod tests {
         for i in 0..StaticBoxes::MAX_CHANGES {
             tree.insert(cube(i as f32)).expect("a box");
         }
-        assert_eq!(changes(&tree, second), None, "it is forgotten");
+        assert_eq!(changes(&tree, second), None, "more changes than are recorded");
     }
 
     #[test]

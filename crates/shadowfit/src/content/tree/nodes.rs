@@ -1,4 +1,4 @@
-//! The hierarchy itself: nodes of up to eight boxes, each of which holds the boxes of a node below.
+//! The nodes of the hierarchy. A node has up to eight boxes, each around the boxes of a child node.
 //!
 //! ```text
 //!   root   ┌─[all of a]─[all of b]─[all of c]─┐     level 1
@@ -6,12 +6,12 @@
 //!   leaves [1][4][9]    [0][2]      [3][5][6][7]     level 0: numbers of boxes
 //! ```
 //!
-//! A box goes where it widens the boxes around it least; a full node is cut in two across its longer side; what a node
-//! with too few boxes holds is put elsewhere. So all leaves have the same level, and each change costs a path from a
-//! leaf to the root.
+//! A box is inserted where it widens the surrounding boxes least. A full node is cut in two across its
+//! longest axis. A node with too few boxes is dissolved, and its boxes are inserted elsewhere. So all leaves
+//! have the same level, and each change costs one path from a leaf to the root.
 //!
-//! Source: A. Guttman, "R-trees: a dynamic index structure for spatial searching", 1984. Where it differs: full nodes
-//! are cut at the median of the longer side, and a whole list is put into nodes at once from the top.
+//! Source: A. Guttman, "R-trees: a dynamic index structure for spatial searching", 1984. Differences: full
+//! nodes are cut at the median along the longest axis, and a whole list is built at once from the top.
 
 use alloc::vec::Vec;
 
@@ -19,36 +19,36 @@ use glam::Vec3;
 
 use crate::base::Aabb;
 
-/// Boxes of a node.
+/// Greatest number of boxes in a node.
 const WIDTH: usize = 8;
 
 /// Nodes with fewer boxes are dissolved.
 const FEWEST: usize = 3;
 
-/// No node, or no box.
+/// No node or no box.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A box in a node, and its number in a leaf, or the index of the node that it is around.
+/// A box in a node, with its number in a leaf or else the index of its child node.
 type Entry = (Aabb, u32);
 
-/// Boxes that lie close together.
+/// A node: boxes that lie close together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
     boxes: [Aabb; WIDTH],
     ids: [u32; WIDTH],
     parent: u32,
     len: u8,
-    /// Levels below: 0 for a leaf.
+    /// Number of levels below. 0 for a leaf.
     level: u8,
 }
 
-/// All nodes, and where each box is.
+/// All nodes, and the leaf of each box.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nodes {
     all: Vec<Node>,
     free: Vec<u32>,
     root: u32,
-    /// The leaf of each box by its number.
+    /// The leaf of each box, by box number.
     leaves: Vec<u32>,
 }
 
@@ -84,7 +84,7 @@ impl Node {
         Some(removed)
     }
 
-    /// The box that a further one widens least.
+    /// Returns the slot whose box grows least if it takes in another box.
     fn nearest(&self, aabb: &Aabb) -> usize {
         let mut best = (f32::INFINITY, f32::INFINITY, 0);
         for (slot, around) in self.boxes[..usize::from(self.len)].iter().enumerate() {
@@ -98,19 +98,19 @@ impl Node {
     }
 }
 
-/// Half of a box's surface, in square metres.
+/// Returns half of a box's surface area, in square metres.
 fn half_area(aabb: &Aabb) -> f32 {
     let size = aabb.max - aabb.min;
     size.x * size.y + size.y * size.z + size.z * size.x
 }
 
-/// Whether a box holds all of another one.
+/// Returns whether a box holds another one completely.
 fn holds(outer: &Aabb, inner: &Aabb) -> bool {
     outer.min.cmple(inner.min).all() && outer.max.cmpge(inner.max).all()
 }
 
-/// Orders boxes along the axis on which their middles lie farthest apart, so that those before `middle` are the lower
-/// ones.
+/// Partitions boxes at the index `middle` along the axis of the greatest distance between their centres. The
+/// boxes with the lower centres come first.
 fn cut(entries: &mut [Entry], middle: usize) {
     let centre = |entry: &Entry| entry.0.min + entry.0.max;
     let (low, high) =
@@ -128,7 +128,8 @@ impl Nodes {
         Self { all: Vec::new(), free: Vec::new(), root: NONE, leaves: Vec::new() }
     }
 
-    /// The nodes of a whole list: boxes that are not empty, with different numbers below `count`.
+    /// Builds the nodes of a whole list. The boxes must not be empty and have different numbers below
+    /// `count`.
     pub(super) fn of(entries: &mut [Entry], count: usize) -> Self {
         let mut nodes = Self::new();
         nodes.leaves.resize(count, NONE);
@@ -140,7 +141,7 @@ impl Nodes {
         nodes
     }
 
-    /// Makes a node of boxes, no more than fit into its level; returns its index.
+    /// Builds a node from boxes, which must fit into a node of its level. Returns the node's index.
     fn build(&mut self, entries: &mut [Entry], level: u8) -> u32 {
         let index = self.add_node(Node::new(level));
         let each = if level == 0 { 1 } else { WIDTH.pow(u32::from(level)) };
@@ -148,7 +149,7 @@ impl Nodes {
         index
     }
 
-    /// Cuts boxes into groups of at most `each`, and adds these to a node.
+    /// Cuts boxes into groups of at most `each`, and adds the groups to a node.
     fn distribute(&mut self, index: u32, entries: &mut [Entry], each: usize) {
         let groups = entries.len().div_ceil(each);
         if groups > 1 {
@@ -178,7 +179,7 @@ impl Nodes {
         self.all.len() as u32 - 1
     }
 
-    /// Says that a box, or the node that it is around, lies in a node.
+    /// Records that a box or child node lies in a node.
     fn adopt(&mut self, id: u32, index: u32) {
         if self.all[index as usize].level == 0 {
             self.leaves[id as usize] = index;
@@ -187,18 +188,18 @@ impl Nodes {
         }
     }
 
-    /// The box of a number, if it has one.
+    /// Returns the box with a number, if there is one.
     pub(super) fn get(&self, number: u32) -> Option<Aabb> {
         let leaf = self.all.get(*self.leaves.get(number as usize)? as usize)?;
         leaf.slot_of(number).map(|slot| leaf.boxes[slot])
     }
 
-    /// A box around all.
+    /// Returns a box around all boxes.
     pub(super) fn bounds(&self) -> Aabb {
         self.all.get(self.root as usize).map_or(Aabb::EMPTY, Node::bounds)
     }
 
-    /// Adds a box that is not empty, by a number that has none.
+    /// Adds a box that is not empty under an unused number.
     pub(super) fn insert(&mut self, number: u32, aabb: Aabb) {
         let least = number as usize + 1;
         if self.leaves.len() < least {
@@ -207,7 +208,7 @@ impl Nodes {
         self.put((aabb, number), 0);
     }
 
-    /// Puts a box into a node of a level.
+    /// Inserts a box into a node of a level.
     fn put(&mut self, entry: Entry, level: u8) {
         if self.root == NONE {
             self.root = if level == 0 { self.add_node(Node::new(0)) } else { entry.1 };
@@ -226,7 +227,7 @@ impl Nodes {
         self.push(index, entry);
     }
 
-    /// Adds a box to a node, whose own box holds it already, and cuts the node in two if it is full.
+    /// Adds a box to a node whose own box already holds it. Cuts the node in two if it is full.
     fn push(&mut self, index: u32, entry: Entry) {
         let node = &mut self.all[index as usize];
         if usize::from(node.len) < WIDTH {
@@ -259,7 +260,7 @@ impl Nodes {
         self.push(parent, second);
     }
 
-    /// Removes the box of a number, and returns it.
+    /// Removes the box with a number and returns it.
     pub(super) fn remove(&mut self, number: u32) -> Option<Aabb> {
         let leaf = *self.leaves.get(number as usize)?;
         let removed = self.all.get_mut(leaf as usize)?.remove(number)?;
@@ -268,7 +269,7 @@ impl Nodes {
         Some(removed)
     }
 
-    /// Moves the box of a number.
+    /// Moves the box with a number.
     pub(super) fn set(&mut self, number: u32, aabb: Aabb) {
         let Some(leaf) = self.leaves.get(number as usize).copied().filter(|leaf| *leaf != NONE) else {
             return self.insert(number, aabb);
@@ -283,7 +284,7 @@ impl Nodes {
         }
     }
 
-    /// Makes the boxes around a node as small as they can be, up to the root, and dissolves nodes with too few boxes.
+    /// Shrinks the boxes around a node, up to the root, and dissolves nodes with too few boxes.
     fn tighten(&mut self, mut index: u32) {
         loop {
             let node = self.all[index as usize];
@@ -307,7 +308,7 @@ impl Nodes {
         }
     }
 
-    /// Leaves out roots around a single node.
+    /// Removes roots with a single child node.
     fn lower_root(&mut self) {
         while let Some(root) = self.all.get(self.root as usize).copied() {
             if root.len > 1 || root.len == 1 && root.level == 0 {
@@ -321,8 +322,9 @@ impl Nodes {
         }
     }
 
-    /// Passes on each box, with its number, for which `enter` gives something, as it does for all boxes around it: what
-    /// it gives is handed to the boxes inside and to `take`.
+    /// Visits boxes from the root down. `enter` gets a box and the context of its parent, and returns the
+    /// context of the box or `None` to skip it. `take` gets each reached box of a leaf with its number and
+    /// context.
     pub(super) fn visit<C: Copy, S>(
         &self,
         context: C,
@@ -353,8 +355,9 @@ impl Nodes {
         }
     }
 
-    /// Passes on the boxes that have distances, least and greatest, and for which `enter` is true, as for all boxes
-    /// around them; those of each node in the order of their least distances.
+    /// Visits boxes from the root down. Boxes without least and greatest `distances` are skipped, and so are
+    /// boxes for which `enter` returns false. The boxes of each node are visited in the order of their least
+    /// distances.
     pub(super) fn visit_nearest<S>(
         &self,
         state: &mut S,
@@ -403,8 +406,8 @@ impl Nodes {
 mod tests {
     use super::*;
 
-    /// What must be true of every tree: boxes around nodes are tight, all leaves lie at level 0, and each box is where
-    /// it is said to be. Returns the number of boxes.
+    /// Checks every tree's invariants: the boxes around nodes are tight, all leaves have level 0, and each
+    /// box lies in its recorded leaf. Returns the number of boxes.
     fn check(nodes: &Nodes) -> usize {
         fn below(nodes: &Nodes, index: u32) -> usize {
             let node = &nodes.all[index as usize];
@@ -430,7 +433,7 @@ mod tests {
         below(nodes, nodes.root)
     }
 
-    /// Numbers without a pattern.
+    /// Returns pseudo-random numbers.
     fn random(state: &mut u64) -> f32 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*state >> 40) as f32 / 16_777_216.0
@@ -448,7 +451,7 @@ mod tests {
         let mut known: Vec<Option<Aabb>> = alloc::vec![None; 600];
         for step in 0..12_000 {
             let number = (random(&mut state) * known.len() as f32) as u32;
-            // It grows, shrinks to nothing, and grows again.
+            // The tree grows, shrinks until it is empty, and grows again.
             let grows = random(&mut state) < if step / 3000 % 2 == 0 { 0.8 } else { 0.2 };
             let slot = &mut known[number as usize];
             if grows {

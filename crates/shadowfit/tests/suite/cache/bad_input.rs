@@ -1,4 +1,4 @@
-//! Numbers that make no sense: a plan or an error, never a panic.
+//! Bad numbers give a plan or an error, never a panic.
 
 use shadowfit::cache::{CacheFrame, CacheSettings, Casters, InView, MapCache, UpdateSchedule};
 use shadowfit::culling::Reader;
@@ -11,7 +11,7 @@ const LIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 
 const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, -1e30, 1e-310];
 
-/// Updates a cache with a good frame, a frame in which one number is bad, and the good one again.
+/// Updates a cache with a good frame, a frame with one bad number, and the good frame again.
 fn update(schedule: UpdateSchedule, bad: f64, number: usize) {
     let objects =
         [Aabb::new(Vec3::new(-90.0, -1.0, -90.0), Vec3::new(90.0, 2.0, 90.0)), Aabb::new(Vec3::ZERO, Vec3::ONE)];

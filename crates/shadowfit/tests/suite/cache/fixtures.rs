@@ -7,12 +7,13 @@ use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, PerspectiveCamera, ShadowFitt
 /// Width and height of the maps, in texels.
 pub(crate) const SIDE: u32 = 2048;
 
-/// Settings for the technique's maps, drawn with depth clamp.
+/// Returns settings for the technique's maps, drawn with depth clamp.
 pub(crate) fn settings(caching: bool, culling: Culling) -> CacheSettings {
     CacheSettings { caching, culling, depth_clamp: true, layer: UVec2::splat(SIDE), ..CacheSettings::default() }
 }
 
-/// Four windows of an eye at the world's origin that looks along -z, with shadows up to a distance in metres.
+/// Returns four windows for an eye at the world's origin that looks along -z, with shadows up to a distance
+/// in metres.
 pub(crate) fn fitted(direction: Vec3, far: f32, boxes: &[Aabb]) -> FittedMaps {
     let camera = PerspectiveCamera {
         eye: DVec3::new(0.0, 2.0, 0.0),

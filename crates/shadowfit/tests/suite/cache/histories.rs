@@ -50,7 +50,7 @@ fn any_settings() -> impl Strategy<Value = CacheSettings> {
 }
 
 proptest! {
-    // At least 500 cases; PROPTEST_CASES raises the number by night.
+    // At least 500 cases. PROPTEST_CASES raises the number in nightly runs.
     #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases.max(500)))]
 
     #[test]

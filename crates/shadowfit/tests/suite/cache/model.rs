@@ -1,9 +1,9 @@
 //! A model of the maps: histories of a small world, drawn into simulated maps.
 //!
-//! A simulated map has a sample every 128 texels of its layer, which holds the set of casters that were drawn there. Each
-//! frame's plan is carried out on it: clears, restored parts, regions. Maps that are kept must then hold all that stands
-//! still now, and what moves in view; maps that are drawn for one frame what is in view; and maps that wait nothing
-//! static that is gone.
+//! A simulated map has a sample every 128 texels of its layer, which holds the set of casters that were drawn
+//! there. Each frame's plan is executed on it: clears, restored parts, regions. A cached map must then hold
+//! all current static casters, and the visible moving casters. A map that is drawn for one frame must hold
+//! the visible casters. A waiting map must not hold static casters that are gone.
 
 use std::sync::LazyLock;
 
@@ -18,18 +18,18 @@ use shadowfit::{Aabb, Boxes, CasterVolume, FittedMap, StaticBoxes};
 
 use super::fixtures::{SIDE, fitted};
 
-/// The finest windows.
+/// Number of maps: the finest windows.
 const MAPS: usize = 3;
 
 /// Samples along a side of a map.
 pub(crate) const SAMPLES: u32 = 16;
 
-/// Where the world lies.
+/// Position of the world.
 const PLACE: DVec3 = DVec3::new(3000.0, 10.0, -2000.0);
 
 const LIGHTS: [Vec3; 3] = [Vec3::new(0.45, -0.8, 0.3), Vec3::new(0.4, -0.8, 0.35), Vec3::new(-0.6, -0.5, 0.1)];
 
-/// The maps of each light, for two distances, at the world's place.
+/// The maps of each light, for two distances, at the world's position.
 static FITTED: LazyLock<[[[FittedMap; MAPS]; 2]; 3]> = LazyLock::new(|| {
     let boxes = [Aabb::new(Vec3::new(-90.0, -1.0, -90.0), Vec3::new(90.0, 12.0, 90.0))];
     let maps = |light, far| {
@@ -39,7 +39,7 @@ static FITTED: LazyLock<[[[FittedMap; MAPS]; 2]; 3]> = LazyLock::new(|| {
     LIGHTS.map(|light| [40.0, 60.0].map(|far| maps(light, far)))
 });
 
-/// A map of the world's origin at the world's place.
+/// Moves a map from the world's origin to the world's position.
 fn placed(map: &FittedMap) -> FittedMap {
     let mut map = panned(map, PLACE);
     let toward_light = map.projection.light_from_world.transpose().z_axis.truncate().as_dvec3();
@@ -50,7 +50,7 @@ fn placed(map: &FittedMap) -> FittedMap {
     map
 }
 
-/// A map that lies elsewhere on its grid, by metres.
+/// Moves a map on its grid, by metres.
 fn panned(map: &FittedMap, by: DVec3) -> FittedMap {
     let mut map = *map;
     let grid_position = map.grid_position.as_mut().expect("a map on a grid");
@@ -64,25 +64,25 @@ fn panned(map: &FittedMap, by: DVec3) -> FittedMap {
     map
 }
 
-/// Something that casts.
+/// A caster.
 #[derive(Clone, Copy, Debug)]
 struct Object {
     centre: DVec3,
     half: DVec3,
     key: u64,
     moves: bool,
-    /// Its number in the tree of static casters; the others are in the list.
+    /// Its number in the tree of static casters, or `None` if it is in the list.
     stands: Option<u32>,
-    /// Number of the bit that stands for its shape where it is.
+    /// Number of the bit that represents its shape at its position.
     bit: u32,
 }
 
-/// What happens before a frame. Objects are chosen by a number, counted round and round.
+/// A change before a frame. Numbers of objects wrap around.
 #[derive(Clone, Debug)]
 pub(crate) enum Event {
     Nothing,
     Insert(usize, [f64; 3]),
-    /// An equal one.
+    /// Inserts a copy of another object.
     Copy(usize, usize),
     Remove(usize),
     SwapRemove(usize),
@@ -92,31 +92,32 @@ pub(crate) enum Event {
     SortByPlace,
     Place(usize, [f64; 3]),
     PlaceAll(f64),
-    /// Another shape in the same box.
+    /// Gives an object another shape in the same box.
     Reshape(usize),
-    /// Thirds of the casters that have keys.
+    /// Sets how many thirds of the casters have keys.
     Keys(usize),
     Moves(usize),
-    /// From the list into the tree, or back.
+    /// Moves an object from the list into the tree, or back.
     Stand(usize),
     NewTree,
     Schedule(UpdateSchedule),
     Light(usize),
     Distance(usize),
     Pan([f64; 2]),
-    /// What lies in view is all, or begins in this direction, in radians, as many metres away.
+    /// Sets the visible volume: everything, or the half space that begins in a direction (radians) at a
+    /// distance (metres).
     View(Option<[f32; 2]>),
     Invalidate(usize),
     InvalidateAll,
 }
 
-/// Whether an object is at a place, where the same box then stands for the same shape.
+/// Returns whether an object is at a position, where an equal box represents an equal shape.
 fn is_there(object: &Object, centre: DVec3) -> bool {
     (object.centre - centre).length() < 0.01
 }
 
-/// The casters that a sample holds: a bit for each of the last 128 static ones that came, and for each place of the
-/// last frames of those that move.
+/// The casters that a sample holds: a bit for each of the last 128 static casters, and for each position in
+/// the last frames of moving casters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sample {
     fixed: u128,
@@ -125,13 +126,13 @@ struct Sample {
 
 type Samples = Vec<Sample>;
 
-/// A world, its maps, and what they hold.
+/// A world, its maps, and their contents.
 pub(crate) struct World {
     objects: Vec<Object>,
     tree: StaticBoxes,
     bits: u32,
     keys: u64,
-    /// Thirds of the casters that have keys.
+    /// Number of thirds of the casters that have keys.
     keyed: usize,
     were_keyed: usize,
     light: usize,
@@ -142,7 +143,7 @@ pub(crate) struct World {
     cache: MapCache,
     shown: [Samples; MAPS],
     fixed: [Samples; MAPS],
-    /// Where in its square of texels each sample lies.
+    /// Position of each sample in its square of texels.
     jitter: UVec2,
 }
 
@@ -186,7 +187,7 @@ impl World {
         self.bits % 128
     }
 
-    /// The number of an object; the ground stays.
+    /// Returns the index of an object. The ground is never removed.
     fn number(&self, number: usize) -> usize {
         number % self.objects.len()
     }
@@ -197,7 +198,7 @@ impl World {
         self.were_keyed = self.keyed;
         match event {
             Event::Nothing => {}
-            // There is always something.
+            // The last object is never removed.
             Event::Remove(_) | Event::SwapRemove(_) if self.objects.len() == 1 => {}
             Event::Insert(number, place) => {
                 let (centre, half) = at(place);
@@ -243,7 +244,7 @@ impl World {
                 self.keys += 1;
                 let object = &mut self.objects[number];
                 (object.bit, object.key) = (bit, self.keys);
-                // Without a key in this frame and in the one before, nothing else tells.
+                // Without a key in this frame and the previous one, the cache cannot detect the change.
                 if self.keyed < 3 || self.were_keyed < 3 || object.stands.is_some() {
                     self.invalidate(number);
                 }
@@ -286,7 +287,7 @@ impl World {
         self.frame += 1;
     }
 
-    /// Tells the tree where its boxes are, and which are gone.
+    /// Updates the tree with moved and removed boxes.
     fn tell_tree(&mut self) {
         let mut numbers = Vec::new();
         self.tree.for_each(|number, _| numbers.push(number));
@@ -306,7 +307,7 @@ impl World {
         self.cache.invalidate(&self.objects[number].aabb(self.place), self.place);
     }
 
-    /// The casters that can shadow something in view.
+    /// Returns the volume of casters that can shadow visible points.
     fn in_view(&self) -> CasterVolume {
         let mut volume = CasterVolume::everywhere(self.place);
         if let Some([angle, from]) = self.view.filter(|_| self.cache.settings.culling == Culling::Swept) {
@@ -315,15 +316,15 @@ impl World {
         volume
     }
 
-    /// Carries out the plan of a frame, and compares what the maps hold.
+    /// Executes the plan of a frame, and checks the contents of the maps.
     ///
     /// # Errors
     ///
-    /// What a map holds by mistake.
+    /// Describes a wrong content of a map.
     pub(crate) fn draw(&mut self) -> Result<(), String> {
         let maps: Vec<FittedMap> =
             FITTED[self.light][self.distance].iter().map(|map| panned(map, self.place - PLACE)).collect();
-        // Boxes relative to a moving origin: they round anew in each frame.
+        // Boxes relative to a moving origin: their rounding differs in each frame.
         let listed: Vec<Object> = self.objects.iter().filter(|object| object.stands.is_none()).copied().collect();
         let boxes: Vec<Aabb> = listed.iter().map(|object| object.aabb(self.place)).collect();
         let moves: Vec<bool> = listed.iter().map(|object| object.moves).collect();
@@ -381,7 +382,7 @@ impl World {
                 plan.static_boxes_of(region).iter().map(|number| static_boxes(number).expect("it stands"));
             for object in casters.chain(static_boxes) {
                 let aabb = object.aabb(self.place);
-                // The GPU clips what lies outside the map, such as beyond its far plane.
+                // The GPU clips casters outside the map, such as beyond its far plane.
                 if self.cache.settings.culling != Culling::Off && !volume.intersects_aabb(aabb.min, aabb.max) {
                     continue;
                 }
@@ -394,7 +395,7 @@ impl World {
         }
     }
 
-    /// Compares what a map holds with what is there.
+    /// Compares the contents of a map with the current casters.
     fn compare(&self, index: usize) -> Result<(), String> {
         let (map, waits) = (&self.cache.plan().maps[index], self.cache.plan().reuse[index] == MapReuse::Waits);
         let (size, wrap) = (map.projection.resolution, map.texel_offset);
@@ -434,10 +435,10 @@ impl Object {
         Aabb::new(centre - half, centre + half)
     }
 
-    /// What a sample holds of it.
+    /// Returns the bit of the object in a sample.
     fn sample(&self, frame: u32) -> Sample {
         if self.moves {
-            // It is elsewhere in the next frame.
+            // A moving caster is elsewhere in the next frame.
             Sample { fixed: 0, moving: 1 << ((self.bit + frame * 41) % 128) }
         } else {
             Sample { fixed: 1 << self.bit, moving: 0 }
@@ -451,7 +452,7 @@ impl Sample {
     }
 }
 
-/// The samples in a rectangle of a layer.
+/// Returns the samples in a rectangle of a layer.
 fn samples_in(rect: TexelRect, jitter: UVec2) -> impl Iterator<Item = usize> {
     let step = SIDE / SAMPLES;
     let index = |texel: u32, jitter: u32| (texel + step - 1).saturating_sub(jitter) / step;
@@ -461,7 +462,7 @@ fn samples_in(rect: TexelRect, jitter: UVec2) -> impl Iterator<Item = usize> {
     rows.flat_map(move |row| columns.clone().map(move |column| (row * SAMPLES + column) as usize))
 }
 
-/// The texels whose centres a box covers.
+/// Returns the texels whose centres a box covers.
 fn covered(map: &FittedMap, aabb: &Aabb, origin: DVec3) -> TexelRect {
     let projection = &map.projection;
     let (scale, size) = (projection.resolution.as_dvec2(), projection.resolution);

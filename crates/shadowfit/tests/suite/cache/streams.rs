@@ -1,4 +1,4 @@
-//! What a change of the casters redraws: texels and casters of a plan, in a town of 10,000 boxes.
+//! The cost of changed casters: redrawn texels and casters of a plan, in a town of 10,000 boxes.
 
 use shadowfit::cache::{CacheFrame, CacheSettings, Casters, InView, MapCache, PassKind, UpdateSchedule};
 use shadowfit::culling::Reader;
@@ -14,7 +14,7 @@ const LIGHT: Vec3 = Vec3::new(0.45, -0.8, 0.3);
 /// Boxes along each side of the town, 3 m apart.
 const ROW: usize = 100;
 
-/// Texels of a map.
+/// Number of texels of a map.
 const WHOLE: u64 = SIDE as u64 * SIDE as u64;
 
 fn town() -> Vec<Aabb> {
@@ -25,13 +25,13 @@ fn town() -> Vec<Aabb> {
     (0..ROW * ROW).map(block).collect()
 }
 
-/// The cache, whose maps have drawn the town.
+/// A cache whose maps have drawn the town.
 struct Drawn {
     cache: MapCache,
     maps: FittedMaps,
 }
 
-/// What a frame drew of a map.
+/// The work of a frame for a map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Redrawn {
     texels: u64,
@@ -82,7 +82,7 @@ fn nothing(redrawn: &[Redrawn]) -> bool {
     redrawn.iter().all(|map| *map == Redrawn::default())
 }
 
-/// The boxes of the town with other heights for those that are chosen.
+/// Returns the boxes of the town, with the selected ones raised.
 fn raised(boxes: &[Aabb], is_raised: impl Fn(usize) -> bool) -> Vec<Aabb> {
     let raise = |(number, aabb): (usize, &Aabb)| {
         let by = if is_raised(number) { 0.5 } else { 0.0 };
@@ -95,7 +95,7 @@ fn chosen(boxes: &[Aabb], is_chosen: impl Fn(usize) -> bool) -> Vec<Aabb> {
     boxes.iter().enumerate().filter(|(number, _)| is_chosen(*number)).map(|(_, aabb)| *aabb).collect()
 }
 
-/// Texels of the least rectangles around some boxes, in each map.
+/// Returns the number of texels of the least rectangle around some boxes, for each map.
 fn around(maps: &[FittedMap], boxes: &[Aabb]) -> Vec<u64> {
     let rect = |map: &FittedMap| {
         let rects = boxes.iter().map(|aabb| TexelRect::of_box(&map.projection, aabb, DVec3::ZERO));
@@ -190,7 +190,7 @@ fn scattered_changes_are_drawn_each_for_itself_however_many_they_are() {
 fn maps_that_no_change_touches_redraw_nothing() {
     let boxes = town();
     let mut drawn = Drawn::new(&boxes, &[]);
-    // Half of all boxes, behind the eye: beside the finest maps.
+    // Half of all boxes, behind the eye: outside the finest maps.
     let is_behind = |number: usize| number / ROW >= 92 || number / ROW < 30;
     let redrawn = drawn.draw(&raised(&boxes, is_behind), &[], &[]);
     let touched = around(&drawn.maps, &chosen(&boxes, is_behind));
@@ -210,7 +210,7 @@ fn a_frame_in_which_all_changes_draws_each_map_once() {
         (0..3).for_each(|_| drop(drawn.draw(&boxes, &moves, &[])));
         let redrawn = drawn.draw(&raised(&boxes, |_| true), &moves, &[]);
         assert!(redrawn.iter().all(|map| map.texels == WHOLE && map.mended == 0), "{redrawn:?}");
-        // The static casters' layers follow, and then all is at rest.
+        // The static casters' layers are drawn next. After that, nothing is drawn.
         let layers = drawn.draw(&raised(&boxes, |_| true), &moves, &[]);
         assert!(layers.iter().all(|map| map.texels <= WHOLE && map.mended == 0), "{layers:?}");
         assert!(nothing(&drawn.draw(&raised(&boxes, |_| true), &moves, &[])));
@@ -225,7 +225,7 @@ fn what_is_removed_in_view_is_never_late() {
         let mut drawn = Drawn::new(&boxes, &[]);
         drawn.cache.settings.schedule = schedule;
         let near = 78 * ROW + 50;
-        // What comes may be late; what goes, or moves away, is not.
+        // New casters may appear late. Casters that are removed or move away must disappear at once.
         let mut list = boxes.clone();
         list.push(Aabb::new(Vec3::new(1.0, 0.0, -7.0), Vec3::new(2.0, 9.0, -6.0)));
         let came = drawn.draw(&list, &[], &[]);
@@ -255,7 +255,7 @@ fn standing_casters_are_drawn_where_their_tree_changes() {
     for (map, touched) in removed.iter().zip(touched) {
         assert!(map.rects == usize::from(touched > 0) && map.texels <= 2 * touched, "{removed:?}");
     }
-    // Both ways of giving the same casters draw the same number of them.
+    // Both ways of passing the same casters draw the same number of them.
     let listed = Drawn::new(&boxes, &[]).draw(&raised(&boxes, |_| true), &[], &[]);
     tree.insert(boxes[near as usize]).expect("a box");
     let other = StaticBoxes::from_boxes(Boxes::world(&raised(&boxes, |_| true))).expect("good boxes");

@@ -1,4 +1,4 @@
-//! What a point reads is complete: depth ranges, culling and the proof of windows.
+//! Completeness of the maps that points read: depth ranges, culling and the proof of windows.
 
 use proptest::prelude::*;
 use shadowfit::bias::FilterRadius;
@@ -41,7 +41,7 @@ proptest! {
         }
     }
 
-    /// The last window is proven to hold all that is seen, and every one to have all casters over it.
+    /// The last window is proven to cover all visible points, and every window to have all casters over it.
     #[test]
     fn windows_are_proven(
         view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(), is_seen in any_seen(),
@@ -68,7 +68,7 @@ proptest! {
     }
 }
 
-/// A tower that receives nothing itself: its top is lost where the near plane is at the receivers.
+/// A tower that receives no shadows. Its top is lost if the near plane is at the receivers.
 #[test]
 fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.0, -0.3, -1.0));
@@ -79,7 +79,7 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     let input = FitInput { receivers, casters, ..FitInput::new(&views, direction) };
     let mut storage = vec![DVec2::ZERO; Scratch::required(tower.len(), 1)];
     let mut scratch = Scratch::new(&mut storage);
-    // Whether a window has the tower's foot, and its proof.
+    // Whether a window contains the tower's foot, and its proof.
     let mut proofs = |policy| -> Vec<(bool, CoverageProof)> {
         let technique = windows(4, 1024);
         let technique = technique.with_fit(technique.fit.with_casters(policy));
@@ -95,13 +95,14 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     let cut = proofs(CasterPolicy::None);
     assert!(cut.iter().filter(|(is_under, _)| *is_under).count() >= 2, "{cut:?}");
     for (is_under, proof) in cut {
-        // The depth range over the ground alone is no longer than a few metres.
+        // The depth range over the ground alone is only a few metres.
         let is_lost = matches!(proof, CoverageProof::CasterLost { by, .. } if by > 95.0);
         assert!(is_lost || !is_under, "{proof:?}");
     }
 }
 
-/// The depth ranges of the maps of a ground, in metres: in a list or in a tree of static boxes.
+/// Returns the depth ranges of the maps of a ground, in metres. The ground is in a list or in a tree of
+/// static boxes.
 fn depths_over(ground: &[Aabb], stands: bool, direction: Vec3) -> Vec<f32> {
     let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.3, -0.2, -1.0));
     let technique = windows(4, 1024).with_max_distance(300.0);
@@ -118,7 +119,7 @@ fn depths_over(ground: &[Aabb], stands: bool, direction: Vec3) -> Vec<f32> {
     maps.iter().map(|map| map.projection.depth_range).collect()
 }
 
-/// A box of 60 km, and tiles of 200 m as far as anything is seen.
+/// A box of 60 km, and tiles of 200 m up to the end of the view.
 #[test]
 fn a_ground_in_one_box_has_nearly_the_depths_of_its_tiles() {
     let square =

@@ -1,4 +1,4 @@
-//! Nothing is ever uncovered: a wrong demand grid costs sharpness only.
+//! All visible points are covered: a wrong demand grid only costs sharpness.
 
 use proptest::prelude::*;
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
@@ -9,21 +9,21 @@ use super::{Demand, any_windows, hits, windows};
 use crate::scenes::{BoxPlan, SceneView, any_box, any_lens, any_light, any_view, any_walk, share};
 use crate::support::{any_direction, cases};
 
-/// What a frame is told of what is visible.
+/// The demand grid that a frame gets.
 #[derive(Clone, Copy, Debug)]
 enum GridPlan {
     None,
-    /// What is visible now.
+    /// The points that are visible now.
     Right,
-    /// What was visible in the first frame.
+    /// The points that were visible in the first frame.
     Stale,
     /// All points in one cell.
     OneCell(usize, u32),
-    /// The same number in every cell.
+    /// The same count in every cell.
     All(u32),
-    /// Any counts in one of so many cells.
+    /// Random counts in one of N cells.
     Random(u64, u32),
-    /// As the last one, with cells of other sizes and another origin: powers of two, and metres.
+    /// Random counts with other sizes of cells and texels (as powers of two) and another origin (in metres).
     Elsewhere(i32, i32, f64),
 }
 
@@ -41,7 +41,7 @@ fn any_grid() -> impl Strategy<Value = GridPlan> {
     ]
 }
 
-/// Counts that look random (G. Marsaglia: "Xorshift RNGs", 2003).
+/// Returns pseudo-random counts (G. Marsaglia: "Xorshift RNGs", 2003).
 fn random_counts(seed: u64, one_in: u32) -> Vec<u32> {
     let mut state = seed | 1;
     let mut next = || {
@@ -77,22 +77,23 @@ impl GridPlan {
     }
 }
 
-/// Rounding of positions in a map: the map's f32 translation is rounded by 2⁻²⁴ of the distance of its middle from the
-/// eye, which is up to a few of its extents, of up to 2048 texels.
+/// Rounding of positions in a map, in texels: the map's f32 translation is rounded by 2⁻²⁴ of the distance of
+/// its middle from the eye, which is up to a few of its extents, of up to 2048 texels.
 const ROUNDING: f64 = 1e-3;
 
-/// Fails unless the last window holds a visible point with all that the filter reads, and the point reads a window.
+/// Asserts that the last window covers a visible point with the filter's footprint, and that the point reads
+/// a window.
 fn assert_covered(maps: &FittedMaps, technique: &Technique, point: DVec3, view_depth: f64) {
     let last = &maps[maps.len() - 1].projection;
     let needed = f64::from(technique.filter_radius().min(technique.border())) - ROUNDING;
     let free = last.texels_to_edge(point).unwrap_or(f64::MIN);
     assert!(free >= needed, "{point} has {free} of {needed} texels to the border of {last:?}");
-    // Beyond the shadow distance, if by rounding alone, nothing is read.
+    // Beyond the shadow distance no map is read, so clamp view depths that rounding moved there.
     let view_depth = view_depth.min(f64::from(technique.fit.max_distance));
     assert!(maps.read(technique, point, view_depth).is_some(), "{point} reads nothing");
 }
 
-/// Samples a view, and what it sees of boxes: world positions and view depths.
+/// Returns sampled points of a view and visible points of boxes: world positions and view depths.
 fn visible(
     view: &SceneView,
     origin: DVec3,
@@ -102,7 +103,7 @@ fn visible(
 ) -> Vec<(DVec3, f64)> {
     let far = last.min(view.lens.far);
     let in_view = places.iter().map(|[x, y, z]| {
-        // As many points in each octave of depth.
+        // Equally many points in each octave of depth.
         view.point(*x, *y, view.lens.near * (far / view.lens.near).powf(*z))
     });
     let forward = view.axes()[2];
@@ -128,7 +129,7 @@ fn any_places() -> impl Strategy<Value = Vec<[f64; 3]>> {
     prop::collection::vec([share(), share(), share()], 24)
 }
 
-/// Boxes of a scene: unknown, or some with a wide ground or without.
+/// Boxes of a scene: none known, or some, with or without a wide ground.
 fn any_scene() -> impl Strategy<Value = Option<(Vec<BoxPlan>, Option<f32>)>> {
     let ground = prop_oneof![2 => Just(None), 1 => prop::sample::select(vec![1e2_f32, 1e4, 1e6]).prop_map(Some)];
     prop_oneof![1 => Just(None), 5 => (prop::collection::vec(any_box(), 0..14), ground).prop_map(Some)]
@@ -208,8 +209,8 @@ proptest! {
     }
 }
 
-/// Ground without an end, from a hand's breadth above it to a tower's height, under a high, a low and a level sun and
-/// one from below.
+/// Endless ground, with the eye from a hand's breadth to a tower's height above it, under a high, a low and a
+/// level sun, and a sun from below.
 #[test]
 fn ground_without_an_end_is_held_as_far_as_shadows_reach() {
     let boxes = [Aabb::new(Vec3::new(-1e7, -1.0, -1e7), Vec3::new(1e7, 0.0, 1e7))];
@@ -236,7 +237,7 @@ fn ground_without_an_end_is_held_as_far_as_shadows_reach() {
     }
 }
 
-/// Nothing is read where nothing receives, and all of it is there again once something does.
+/// Without receivers no map is read. When receivers appear, they are covered at once.
 #[test]
 fn windows_over_nothing_are_empty_and_hold_what_comes() {
     let technique = windows(4, 512);

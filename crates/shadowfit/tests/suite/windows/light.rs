@@ -1,4 +1,4 @@
-//! Windows under a light that is rounded, that steps, and that goes through the vertical.
+//! Windows under a light that is rounded, that steps, and that passes through the vertical.
 
 use shadowfit::glam::{DQuat, DVec3, Vec3, Vec4};
 use shadowfit::light_steps::{LightStepState, LightSteps};
@@ -6,7 +6,8 @@ use shadowfit::{FittedMap, FittedMaps};
 
 use super::{Run, hits, street_view, town, windows};
 
-/// A sun that goes round over the sky: at an angle past the zenith, in radians, off the plane of its turn by a share.
+/// Returns the direction of a sun on a circle over the sky: at an angle past the zenith, in radians, and
+/// `off` its plane.
 fn sun(angle: f64, off: f64) -> Vec3 {
     DVec3::new(angle.sin(), -angle.cos(), off).normalize().as_vec3()
 }
@@ -32,8 +33,8 @@ fn a_light_that_differs_by_rounding_changes_nothing() {
     }
 }
 
-/// Share of a window's side by which its middle may move when the light steps by about a tenth of a degree: half the
-/// share of a raster's square, by which places are tried.
+/// Greatest movement of a window's middle, as a share of its side, when the light steps by about 0.1°: half
+/// of the grid step of candidate positions.
 const MOVED: f64 = 1.0 / 32.0;
 
 #[test]
@@ -45,7 +46,7 @@ fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
         let mut before = None;
         let (mut taken, mut moved, mut resized) = (0, Vec::new(), 0);
         for frame in 0..160_u16 {
-            // After a while in which the search settles.
+            // The light moves only after the search has settled.
             let angle = begin + f64::from(frame.saturating_sub(60)) * 1e-4;
             let light = steps.update(sun(angle, 0.2), &settings, 0.016).unwrap().direction;
             let now = run.frame(&view, light);
@@ -54,7 +55,7 @@ fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
                 assert!(f64::from((light - old_light).length()) < 0.003, "{light} after {old_light}");
                 for (old, map) in old.iter().zip(now.iter()) {
                     resized += usize::from(old.projection.texel_size.x != map.projection.texel_size.x);
-                    // The point in the middle of the window, as far along the light as the eye is.
+                    // The point in the middle of the window, at the eye's position along the light.
                     let rows = old.projection.light_from_world.transpose();
                     let t = old.projection.light_from_world.w_axis.truncate();
                     let middle = old.projection.origin
@@ -94,7 +95,7 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
     }
 }
 
-/// Lights that leap anywhere, and the camera with them.
+/// The light and the camera jump randomly.
 #[test]
 fn nothing_is_uncovered_where_light_and_camera_leap() {
     let world = town();
@@ -112,8 +113,8 @@ fn nothing_is_uncovered_where_light_and_camera_leap() {
     }
 }
 
-/// Rows that an edge climbs for each column of texels, or columns that it passes for each row: the lesser one. A filter
-/// of 5 × 5 evens out the error of edges that have neither near to 0.
+/// Returns the slope of an edge in the map: rows per column of texels or columns per row, whichever is
+/// smaller. A 5×5 filter smooths edges for which neither is near 0.
 fn slant(map: &FittedMap, edge: DVec3) -> f64 {
     let rows = map.projection.light_from_world.transpose();
     let texel = map.projection.texel_size.as_dvec2();
@@ -122,7 +123,7 @@ fn slant(map: &FittedMap, edge: DVec3) -> f64 {
     (across / up).min(up / across)
 }
 
-/// Tangent of the angle by which texels are turned, over their height by their width.
+/// Tangent of the rotation angle of texels, divided by their ratio of height to width.
 const TURN: f64 = 0.45;
 
 #[test]

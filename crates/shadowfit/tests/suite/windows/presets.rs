@@ -1,4 +1,4 @@
-//! Windows beside the presets of cascades: how many pixels a texel covers under high suns and through lenses of all
+//! Windows compared with the presets of cascades: pixels per texel under high suns and through lenses of all
 //! kinds.
 
 use std::fmt::Write;
@@ -11,22 +11,22 @@ use super::room::room_on_a_plain;
 use super::{World, hits, quantile};
 use crate::scenes::{SceneView, of_camera};
 
-/// Frames of a path.
+/// Number of frames of a path.
 const FRAMES: u8 = 20;
-/// Turn of the camera from one frame to the next, in radians. Through longer lenses it turns and moves by the same share of
+/// Turn of the camera per frame, in radians. Through longer lenses it turns and moves by the same share of
 /// the picture.
 const TURN: f64 = 0.021;
 /// Vertical field of view of a usual lens, in degrees.
 const USUAL: f32 = 52.0;
 
-/// A world, and the circle that its paths begin on.
+/// A world, and the circle on which its paths begin.
 struct Scene {
     name: &'static str,
     world: World,
-    /// Middle of the circle, at the height of the eye.
+    /// Centre of the circle, at the height of the eye.
     middle: DVec3,
     radius: f64,
-    /// Movement of the camera in a frame, in metres.
+    /// Movement of the camera per frame, in metres.
     step: f64,
 }
 
@@ -42,7 +42,7 @@ fn ground(reach: f32) -> Aabb {
     aabb([-reach, -1.0, -reach], [reach, 0.0, reach])
 }
 
-/// Two rows of columns under roofs, with an open court between them.
+/// Returns two rows of columns under roofs, with an open court between them.
 fn arcade() -> World {
     let mut boxes = vec![ground(60.0)];
     for side in [-1.0_f32, 1.0] {
@@ -57,7 +57,7 @@ fn arcade() -> World {
     world(boxes)
 }
 
-/// Trucks on a yard and between houses: a cab, a trailer and six wheels each.
+/// Returns trucks on a yard and between houses: a cab, a trailer and six wheels each.
 fn trucks() -> World {
     let mut boxes = vec![ground(150.0)];
     for i in 0..36_u8 {
@@ -76,7 +76,7 @@ fn trucks() -> World {
     world(boxes)
 }
 
-/// Rows of houses with balconies along a street.
+/// Returns rows of houses with balconies along a street.
 fn street() -> World {
     let mut boxes = vec![ground(120.0)];
     for i in 0..24_u8 {
@@ -102,7 +102,7 @@ fn scenes() -> [Scene; 4] {
     ]
 }
 
-/// The view of a frame of a path, through a lens of this many degrees from the bottom to the top.
+/// Returns the view of a frame of a path, through a lens with this vertical field of view in degrees.
 fn view(scene: &Scene, path: u8, frame: u8, fov: f32) -> SceneView {
     let heading = f64::from(path) * 0.8 + 0.3;
     let frames = f64::from(frame) * f64::from((fov / USUAL).min(1.0));
@@ -119,7 +119,7 @@ fn sun(elevation: f32) -> Vec3 {
     Vec3::new(0.6 * cos, -sin, 0.8 * cos)
 }
 
-/// The counts that a depth buffer of the picture gives.
+/// Returns the visible demand that a depth buffer of the picture gives.
 fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov: f32) -> VisibleDemand {
     let fit = &technique.fit;
     let space = VisibleDemandSpace::new(&view.frustum(), light, fit.up, fit.max_distance).unwrap();
@@ -138,7 +138,8 @@ fn seen(view: &SceneView, world: &World, light: Vec3, technique: &Technique, fov
     seen
 }
 
-/// The preset's pixels per texel on a path: the 95% quantile of each frame but the first two, and their geometric mean.
+/// Returns the preset's pixels per texel on a path: the geometric mean over frames, except the first two, of
+/// the 95% quantile.
 fn of_path(preset: &str, scene: &Scene, path: u8, light: Vec3, fov: f32) -> f64 {
     let technique = Technique::preset(preset).unwrap().with_max_distance(300.0).with_resolution(2048, 2048);
     let light = light.normalize();
@@ -157,7 +158,8 @@ fn of_path(preset: &str, scene: &Scene, path: u8, light: Vec3, fov: f32) -> f64 
     (logs.iter().sum::<f64>() / logs.len() as f64).exp()
 }
 
-/// Windows over the best of other presets: for each path of a scene that shows something lit.
+/// Returns the ratio of windows to the best of other presets, for each path of a scene that shows a lit
+/// surface.
 fn ratios(scene: &Scene, paths: u8, light: Vec3, fov: f32, others: &[&str]) -> Vec<f64> {
     let ratio = |path: u8| {
         let of = |preset: &str| of_path(preset, scene, path, light, fov);
@@ -174,10 +176,10 @@ fn greatest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |greatest, value| value.max(greatest))
 }
 
-/// `focused-4` with a depth histogram: what reports call `histogram-4`.
+/// `focused-4` with a depth histogram. Reports call it `histogram-4`.
 const HISTOGRAM: [&str; 1] = ["focused-4"];
 
-/// Greatest ratio of pixels per texel to cascades that a histogram chooses, under a high sun: the geometric mean of
+/// Greatest ratio of pixels per texel to cascades from a histogram, under a high sun: the geometric mean of
 /// paths.
 const HIGH_SUN_LIMIT: f64 = 1.8;
 
@@ -193,7 +195,7 @@ fn windows_are_nearly_as_fine_as_slices_under_high_suns() {
 /// Greatest ratio of pixels per texel to the best preset, through a usual lens: the geometric mean of paths.
 const LENS_LIMIT: f64 = 1.5;
 
-/// The presets that may be finer through some lens.
+/// Presets that may be finer through some lens.
 const OF_SLICES: [&str; 2] = ["focused-4", "calm-4"];
 
 #[test]

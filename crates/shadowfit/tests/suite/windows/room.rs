@@ -1,22 +1,22 @@
-//! Out of a small room onto a plain and back: sizes follow a change of scene.
+//! From a small room onto a plain and back: window sizes follow a change of scene.
 
 use shadowfit::Aabb;
 use shadowfit::glam::{DVec3, Vec3};
 
 use super::{Run, World, quantile, street_view, windows};
 
-/// A room of 5 by 4 m with a door and furniture, on a plain with boxes up to 250 m away.
+/// Returns a room of 5 by 4 m with a door and furniture, on a plain with boxes up to 250 m away.
 pub(super) fn room_on_a_plain() -> World {
     let b = |min: [f32; 3], max: [f32; 3]| Aabb::new(Vec3::from_array(min), Vec3::from_array(max));
     let mut boxes = vec![
         b([-300.0, -1.0, -300.0], [300.0, 0.0, 300.0]),
-        // Three walls, and a fourth in front with a door of 1 m; no roof, so that the sun comes in.
+        // Three walls, and a fourth in front with a door of 1 m. There is no roof, so that the sun shines in.
         b([-2.6, 0.0, -2.1], [2.6, 2.4, -2.0]),
         b([-2.6, 0.0, -2.0], [-2.5, 2.4, 2.0]),
         b([2.5, 0.0, -2.0], [2.6, 2.4, 2.0]),
         b([-2.6, 0.0, 2.0], [-0.5, 2.4, 2.1]),
         b([0.5, 0.0, 2.0], [2.6, 2.4, 2.1]),
-        // A table on four legs, two chairs, a shelf, and small things on the table.
+        // A table on four legs, two chairs, a shelf, and small objects on the table.
         b([-1.6, 0.70, -1.4], [-0.2, 0.75, -0.6]),
         b([-1.55, 0.0, -1.35], [-1.5, 0.7, -1.3]),
         b([-0.3, 0.0, -1.35], [-0.25, 0.7, -1.3]),
@@ -36,17 +36,18 @@ pub(super) fn room_on_a_plain() -> World {
     World { origin: DVec3::ZERO, boxes }
 }
 
-/// Frames for which the camera stays where it is, and within which it must be as sharp as what begins anew.
+/// Frames at each station. After them, the maps must be as sharp as a new fitter's.
 const STAY: usize = 90;
 
-/// Frames that a fitter has which begins anew, until its search has ended.
+/// Frames for a new fitter, until its search has ended.
 const ANEW: usize = 90;
 
-/// Greatest 95% quantile of pixels per texel over that of a fitter that begins anew. What is drawn may cost 1.1 to 1.35
-/// times the best plan before it is replaced; that cost is a mean, so that the quantile may differ by more.
+/// Greatest ratio of the 95% quantile of pixels per texel to that of a new fitter. The current plan may cost
+/// 1.1 to 1.35 times the best one before it is replaced. That cost is a mean, so the quantile may differ by
+/// more.
 const LIMIT: f64 = 1.45;
 
-/// The same for the geometric mean of all stations.
+/// Greatest geometric mean of this ratio over all stations.
 const MEAN_LIMIT: f64 = 1.1;
 
 #[test]
@@ -67,7 +68,7 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
         }
         let mut from = table;
         for (name, to) in stations {
-            // On foot: a second's way.
+            // On foot: one second of walking.
             for i in 1..=60_u8 {
                 let share = f64::from(i) / 60.0;
                 let forward = from.forward.as_dvec3().lerp(to.forward.as_dvec3(), share) + DVec3::X * 1e-3;

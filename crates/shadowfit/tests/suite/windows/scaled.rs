@@ -1,4 +1,4 @@
-//! Windows of the same scene in another unit are the same windows.
+//! A scene in another unit has the same windows.
 
 use proptest::prelude::*;
 use shadowfit::glam::Vec3;
@@ -10,10 +10,10 @@ use super::{Run, World, any_seen, any_windows};
 use crate::scenes::{Lens, SceneView, any_box, any_light, any_view, any_walk};
 use crate::support::cases;
 
-/// A view in units that are so many times smaller.
+/// Returns a view in another unit: all lengths are multiplied by `by`.
 fn scaled(view: &SceneView, by: f64) -> SceneView {
     let lens = view.lens;
-    // What a perspective picture spans is given for each metre of depth.
+    // The extents of a perspective lens are per metre of depth.
     let size = if lens.is_perspective { 1.0 } else { by };
     let lens = Lens {
         left: lens.left * size,
@@ -27,7 +27,7 @@ fn scaled(view: &SceneView, by: f64) -> SceneView {
     SceneView { lens, eye: view.eye * by, ..*view }
 }
 
-/// Whether one frame's windows are another's in the other unit.
+/// Returns whether the windows of one frame, scaled, equal the other's.
 fn is_scaled(maps: &FittedMaps, other: &FittedMaps, by: f64) -> bool {
     maps.iter().zip(other.iter()).all(|(one, other)| {
         let (a, b) = (one.grid_position.unwrap(), other.grid_position.unwrap());
@@ -38,7 +38,7 @@ fn is_scaled(maps: &FittedMaps, other: &FittedMaps, by: f64) -> bool {
 proptest! {
     #![proptest_config(cases(100))]
 
-    /// By powers of four, which scale without rounding, costs included.
+    /// By powers of four, which scale without rounding, also in the costs.
     #[test]
     fn a_scene_in_another_unit_has_the_same_windows(
         view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(), is_seen in any_seen(),
@@ -46,12 +46,12 @@ proptest! {
     ) {
         let by = f64::from(octaves * 2).exp2();
         let technique = technique.with_max_distance(f32::MAX);
-        // A sun's angle makes penumbrae that are metres wide, whatever the unit.
+        // The sun's angle gives penumbrae in metres, independent of the unit.
         let metres = technique.softness.tangent() * Softness::USUAL_DISTANCE;
         let soft = |metres| technique.softness.with_radius(SoftRadius::Metres(metres));
         let technique = technique.with_softness(soft(metres));
         prop_assume!(!view.lens.is_infinite);
-        // A frustum's corners come from the inverse of a matrix, which may round otherwise.
+        // A frustum's corners come from the inverse of a matrix, whose rounding may differ.
         let corners = |view: &SceneView| view.frustum().corners;
         let walked = [view, walk.moved(&view), walk.moved(&walk.moved(&view))];
         let same = |view: &SceneView| corners(view).map(|c| c * by as f32) == corners(&scaled(view, by));

@@ -1,4 +1,4 @@
-//! A window's content needs drawing anew only where `Scroll` says: by drawing boxes' depths in f64.
+//! A window must be redrawn only where `Scroll` requires it. Tested by drawing the depths of boxes in f64.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::scroll::{Scroll, TexelRect};
@@ -6,10 +6,10 @@ use shadowfit::{Aabb, CasterVolume, FittedMap, Technique};
 
 use super::{Ray, Run, World, street_view, windows};
 
-/// A side of the maps, in texels: few, since each is compared with all boxes.
+/// Side of the maps, in texels: small, since each texel is compared with all boxes.
 const SIDE: u32 = 40;
 
-/// Boxes at random on a ground, some of them high up.
+/// Returns random boxes on a ground, some of them high up.
 fn heap() -> World {
     let mut state = 12_345_u64;
     let mut next = || {
@@ -24,7 +24,7 @@ fn heap() -> World {
     World { origin: DVec3::ZERO, boxes }
 }
 
-/// A map as it is drawn: with all casters that are over it.
+/// A drawn map: with all casters over it.
 struct Drawn {
     map: FittedMap,
     boxes: Vec<(DVec3, DVec3)>,
@@ -39,7 +39,7 @@ impl Drawn {
         Self { map: *map, boxes: drawn.filter(is_drawn).collect() }
     }
 
-    /// The depth at a position in texels right and down: 0..1, and 1 where nothing is drawn.
+    /// Returns the depth at a position in texels right and down: 0..1, and 1 where nothing is drawn.
     fn depth(&self, texel: DVec2) -> f64 {
         let fit = &self.map.projection;
         let rows = fit.light_from_world.transpose();
@@ -49,7 +49,7 @@ impl Drawn {
         let size = fit.texel_size.as_dvec2();
         let across =
             DVec2::new(f64::from(fit.box_min.x) + texel.x * size.x, f64::from(fit.box_max.y) - texel.y * size.y);
-        // The ray begins far before the near plane; what it meets there would be clipped.
+        // The ray begins far before the near plane, where hits would be clipped.
         let start = |z_of: f64| x * (across.x - t.x) + y * (across.y - t.y) + z * (z_of - t.z);
         let begin = near + 1e3;
         let ray = Ray::new(start(begin), -z);
@@ -62,13 +62,14 @@ fn is_in(rect: &TexelRect, x: u32, y: u32) -> bool {
     (rect.min.x..rect.min.x + rect.size.x).contains(&x) && (rect.min.y..rect.min.y + rect.size.y).contains(&y)
 }
 
-/// Share of a texel by which a shifted texel's place may differ: twice what the map's f32 translation is rounded by.
+/// Possible shift of a texel's position, as a share of a texel: twice the rounding of the map's f32
+/// translation.
 const PLACE: f64 = 0.01;
 
-/// Difference of depths that is rounding: of the depth range, by the map's f32 translation along the light.
+/// Rounding of depths, as a share of the depth range: by the map's f32 translation along the light.
 const DEPTH: f64 = 1e-5;
 
-/// Compares what was kept of a map with what a fresh one would hold; gives the number of texels.
+/// Compares the kept texels of a map with a freshly drawn map. Returns the number of compared texels.
 fn compare(old: &Drawn, now: &Drawn, scroll: &Scroll) -> usize {
     let mut compared = 0;
     for (x, y) in (0..SIDE).flat_map(|x| (0..SIDE).map(move |y| (x, y))) {
@@ -77,7 +78,7 @@ fn compare(old: &Drawn, now: &Drawn, scroll: &Scroll) -> usize {
         }
         let centre = UVec2::new(x, y).as_dvec2() + 0.5;
         let kept = old.depth(centre + scroll.shift.as_dvec2());
-        // Edges may lie between the two places of the texel's centre.
+        // An edge may lie between the two positions of the texel's centre.
         let around = [(0.0, 0.0), (-PLACE, -PLACE), (PLACE, -PLACE), (-PLACE, PLACE), (PLACE, PLACE)];
         let fresh = around.map(|(dx, dy)| now.depth(centre + DVec2::new(dx, dy)));
         let (low, high) = fresh.iter().fold((f64::MAX, f64::MIN), |(low, high), z| (low.min(*z), high.max(*z)));
@@ -106,7 +107,7 @@ fn what_is_not_exposed_need_not_be_drawn_anew() {
                     assert!(scroll.is_new);
                     continue;
                 }
-                // Right and down on the world's grid, unless all of the window left its old place.
+                // Right and down on the world grid, unless the window moved by more than its size.
                 let by = [b.first[0] - a.first[0], a.first[1] - b.first[1]];
                 let is_away = by.iter().any(|by| by.unsigned_abs() >= u64::from(SIDE));
                 assert_eq!(scroll.is_new, is_away);

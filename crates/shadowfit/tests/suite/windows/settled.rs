@@ -1,4 +1,4 @@
-//! A camera that stands still: from some frame on nothing changes.
+//! With an unmoving camera, the windows stop changing after some frames.
 
 use proptest::prelude::*;
 use shadowfit::FittedMaps;
@@ -8,11 +8,11 @@ use super::{Run, World, any_seen, any_windows, street_view, town, windows};
 use crate::scenes::{SceneView, any_box, any_light, any_view};
 use crate::support::cases;
 
-/// Frames within which the search must have ended, and those for which nothing may change then.
+/// Greatest number of frames of the search, and number of frames without a change after it.
 const SEARCH: u32 = 400;
 const REST: u32 = 200;
 
-/// Runs a camera that stands still; gives the last frame in which any map changed, and how many did.
+/// Runs with an unmoving camera. Returns the last frame with a change of a map, and the number of changes.
 fn settle(run: &mut Run, view: &SceneView, direction: Vec3) -> (u32, u32) {
     let mut before: Option<FittedMaps> = None;
     let (mut last, mut changes) = (0, 0);

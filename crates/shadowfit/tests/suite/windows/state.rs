@@ -1,4 +1,4 @@
-//! What a fitter of windows remembers, what it ignores, and what it refuses.
+//! The state of a fitter of windows, and the inputs that it ignores and refuses.
 
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace};
 use shadowfit::glam::{DQuat, DVec2, DVec3, Vec3};
@@ -110,7 +110,7 @@ fn too_little_storage_is_an_error_and_what_is_required_is_enough() {
     assert!(refused > 5);
 }
 
-/// Fits of one frame with some grids, by a fitter that is new and one that has seen two frames.
+/// Returns the fits of one frame with some grids, by a new fitter and by one that has fitted two frames.
 fn with_grids(grids: &[DemandGrid], view: &SceneView, light: Vec3) -> [FittedMaps; 2] {
     let (world, technique) = (town(), windows(4, 1024));
     let mut storage = vec![DVec2::ZERO; Scratch::required(world.boxes.len(), 1)];
@@ -154,13 +154,14 @@ fn grids_that_cannot_be_used_are_ignored() {
     }
 }
 
-/// The texels of the finest window that holds a point, by area.
+/// Returns the texel area of the finest window that covers a point.
 fn finest(maps: &FittedMaps, point: DVec3) -> f32 {
     let areas = maps.iter().filter(|map| map.projection.texels_to_edge(point).is_some_and(|free| free > 3.0));
     areas.map(|map| map.projection.texel_size.element_product()).fold(f32::MAX, f32::min)
 }
 
-/// Two players far apart: with a grid for each both have fine texels, with one's alone the other has the last window's.
+/// Two players far apart: with a grid for each, both have fine texels. With a grid for only one, the other
+/// reads the last window.
 #[test]
 fn each_view_is_served_by_its_own_grid() {
     let players = [
@@ -183,7 +184,7 @@ fn each_view_is_served_by_its_own_grid() {
         maps
     };
     let (both, first) = (settle(&grids), settle(&grids[..1]));
-    // A median of each picture.
+    // Median over the points of each picture.
     let median = |maps: &FittedMaps, player: usize| {
         let mut all: Vec<f32> = seen[player].iter().map(|hit| finest(maps, players[player].eye + hit.point)).collect();
         all.sort_by(f32::total_cmp);

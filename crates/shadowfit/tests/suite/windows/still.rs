@@ -1,4 +1,5 @@
-//! Windows that stand still: texels fixed to the world, shape and axes of the light alone, sizes of a fixed ladder.
+//! Still windows: texels are fixed to the world, shape and axes depend only on the light, and sizes are on a
+//! fixed scale.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -9,22 +10,22 @@ use crate::scenes::{any_box, any_light, any_view, any_walk, share};
 use crate::support::cases;
 use crate::texel_phase::{apart, grid_position, shader_position};
 
-/// The exact size of a window's texels.
+/// Returns the exact size of a window's texels.
 fn texel(map: &FittedMap) -> DVec2 {
     map.grid_position.expect("a window is on the grid").texel
 }
 
-/// Rows of the light's axes.
+/// Returns the rows of the light's axes.
 fn axes(map: &FittedMap) -> [Vec3; 3] {
     let rows = map.projection.light_from_world.transpose();
     [rows.x_axis, rows.y_axis, rows.z_axis].map(shadowfit::glam::Vec4::truncate)
 }
 
-/// Rounding of a power of two times a constant of f64, in eighths of an octave.
+/// Rounding of a power of two times an f64 constant, in eighths of an octave.
 const STEP: f64 = 1e-9;
 
-/// Fails unless all windows of a frame have the axes and the shape of another frame's, and sizes of the ladder that do not
-/// cross.
+/// Asserts that all windows of a frame have the axes and the shape of another frame's windows, with sizes on
+/// the scale in ascending order.
 fn assert_in_order(maps: &FittedMaps, first: &FittedMaps) {
     let shape = |map: &FittedMap| texel(map).y / texel(map).x;
     let mut area = 0.0;
@@ -40,11 +41,11 @@ fn assert_in_order(maps: &FittedMaps, first: &FittedMaps) {
     }
 }
 
-/// Distance from the eye, in texels, up to which a shader in f32 finds a place within its texel to 0.005: its sum of
-/// four products is rounded by about four times 2⁻²⁴ of the greatest.
+/// Distance from the eye, in texels, up to which an f32 shader computes the texel phase of a point to 0.005:
+/// its sum of four products is rounded by about four times 2⁻²⁴ of the greatest one.
 const FARTHEST: f64 = 0.005 / 4.0 * 16_777_216.0;
 
-/// Compares where points lie in their texels with a frame before; gives how many could be compared.
+/// Compares the texel phases of points with an earlier frame. Returns the number of comparisons.
 fn compare(before: &FittedMaps, now: &FittedMaps, eyes: [DVec3; 2], points: &[DVec3]) -> usize {
     let mut compared = 0;
     for (old, map) in before.iter().zip(now.iter()) {
@@ -94,7 +95,7 @@ proptest! {
     }
 }
 
-/// Walks through the town far from the world's origin, so that the proofs above are of something.
+/// Walks through the town far from the world's origin, so that the other tests are not vacuous.
 #[test]
 fn a_walk_through_a_town_moves_no_texel_up_to_100_km_from_the_origin() {
     for far_out in [0.0, 1e3, 1e4, 1e5] {
@@ -122,16 +123,17 @@ fn a_walk_through_a_town_moves_no_texel_up_to_100_km_from_the_origin() {
     }
 }
 
-/// Number of windows but the last whose texels differ.
+/// Returns the number of windows, except the last, whose texels differ.
 fn resized(before: &FittedMaps, now: &FittedMaps) -> usize {
     let all = before.len() - 1;
     before[..all].iter().zip(&now[..all]).filter(|(old, map)| texel(old) != texel(map)).count()
 }
 
-/// Frames of search with effort after what is visible is known first, and one for the estimate from boxes.
+/// Frames of extended search after the visible demand is first known, and one frame for the estimate from
+/// boxes.
 const BEGINNING: u16 = 6;
 
-/// Frames of the walk. Windows change their size five times or more during it.
+/// Number of frames of the walk. Windows change their size at least five times in it.
 const FRAMES: u16 = 150;
 
 #[test]

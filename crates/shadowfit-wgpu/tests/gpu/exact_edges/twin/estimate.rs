@@ -1,5 +1,5 @@
-//! What a map says about the area of a pixel, or about a sun with a radius, beside rays: the arithmetic of
-//! `estimate_area.wgsl`, `estimate_sun.wgsl` and the look-ups that they take, over the texels of the maps.
+//! The maps' estimates for the area of a pixel, or for a sun with a radius: the arithmetic of
+//! `estimate_area.wgsl`, `estimate_sun.wgsl` and their look-ups, on the texels of the maps.
 
 use shadowfit::glam::{Vec2, Vec3};
 use shadowfit::settings::FilterKind;
@@ -7,7 +7,7 @@ use shadowfit_wgpu::uniforms::MapUniform;
 
 use super::{Projected, Surface, Twin, texture_place};
 
-// The constants of the WGSL.
+// Constants of the WGSL.
 const AREA: u32 = 4;
 const DISC: u32 = 32;
 const SEARCH: u32 = 20;
@@ -16,18 +16,18 @@ const SEARCH_BESIDE: f32 = 0.5;
 /// Cosine and sine of the golden angle.
 const GOLDEN: Vec2 = Vec2::new(-0.737_368_9, 0.675_490_3);
 
-/// A map that is looked up for the rays of a pixel.
+/// A map that is read for the rays of a pixel.
 pub(super) struct Estimate<'a> {
     map: &'a MapUniform,
     projected: Projected,
-    /// Texels for a step across and down: a pixel, or the sun's radius at the casters.
+    /// Texels per step across and down: per pixel, or per sun radius at the casters.
     steps: [Vec2; 2],
     is_sun: bool,
 }
 
 impl Twin {
-    /// `None` where rays alone say how much is lit. `across`: directions across the light, for suns with a radius, with
-    /// the pixel's turn.
+    /// Returns the map's estimate, or `None` if the factor comes from rays alone. `across` contains
+    /// directions across the light, rotated for the pixel, for suns with a radius.
     pub(super) fn estimate_of(&self, surface: &Surface, across: [Vec3; 2], turn: f32) -> Option<Estimate<'_>> {
         let first = usize::try_from(self.choose(surface.position).first).ok()?;
         let map = &self.receiver.maps[first];
@@ -44,13 +44,14 @@ impl Twin {
         Some(Estimate { map, projected, steps, is_sun: true })
     }
 
-    /// For the ray from a place of the pixel, in pixels from its first sample, to one in the sun, in its radii.
+    /// Returns the estimate for the ray from a position in the pixel, in pixels from its first sample, to a
+    /// position in the sun, in radii.
     pub(super) fn estimate_at(&self, Estimate { map, projected, steps, is_sun }: &Estimate<'_>, ray: [Vec2; 2]) -> f32 {
         let place = ray[usize::from(*is_sun)];
         self.look_up(map, projected, projected.texel + steps[0] * place.x + steps[1] * place.y)
     }
 
-    /// For all of the pixel, or of the sun.
+    /// Returns the estimate for the whole pixel, or the whole sun.
     pub(super) fn estimate_whole(&self, estimate: &Estimate<'_>) -> f32 {
         let in_pixel = |index: u32| {
             let place = (Vec2::new((index % AREA) as f32, (index / AREA) as f32) + 0.5) / AREA as f32 - 0.5;
@@ -62,7 +63,8 @@ impl Twin {
         rays.iter().map(|ray| self.estimate_at(estimate, *ray)).sum::<f32>() / rays.len() as f32
     }
 
-    /// Mean distance to what stands between a point and the sun's disc, in units of the stored depth and signed as those.
+    /// Returns the mean distance to the casters between a point and the sun's disc, in units of the stored
+    /// depth and with its sign.
     fn mean_caster(&self, map: &MapUniform, p: &Projected, turn: f32) -> Option<f32> {
         let disc = Vec2::from(map.disc);
         let start = (SEARCH_START / disc.max_element()).min(1.0);
@@ -88,8 +90,8 @@ impl Twin {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// The four texels around a place in a map, each compared, then weighted bilinearly; the nearest one for
-    /// [`FilterKind::Point`].
+    /// Compares the four texels around a position in a map, and weights them bilinearly. With
+    /// [`FilterKind::Point`] it compares the nearest texel.
     fn look_up(&self, map: &MapUniform, p: &Projected, at: Vec2) -> f32 {
         let last = Vec2::from(map.size) - 1.0;
         let inside = at.clamp(Vec2::splat(0.5), last + 0.5);

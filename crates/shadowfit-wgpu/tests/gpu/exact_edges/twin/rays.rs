@@ -1,34 +1,34 @@
-//! The rays of a pixel: the arithmetic of `trace.wgsl`, in f32, asked of the CPU's tracer.
+//! The rays of a pixel: the arithmetic of `trace.wgsl`, in f32, with the CPU's tracer.
 
 use shadowfit::glam::{Vec2, Vec3, Vec4};
 use shadowfit_truth::{Hit, Tracer};
 
 use super::{BEND, MOST_SNAP, POSITION_ROUNDING, ROUNDINGS, SAME_NORMAL, SNAP, Surface, Twin, dot, transformed};
 
-/// What the rays of a pixel find.
+/// Results of a pixel's rays.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Traced {
-    /// The share of the light, with what the map says of the whole pixel, or of the whole sun.
+    /// Share of the light, combined with the map's estimate for the whole pixel or the whole sun.
     pub(in super::super) factor: f32,
-    /// The share of the rays that are not blocked.
+    /// Share of the rays that are not blocked.
     pub(in super::super) share: f32,
 }
 
-/// A point that rays start from, relative to the eye.
+/// A start point of rays, relative to the eye.
 #[derive(Clone, Copy)]
 struct Start {
     position: Vec3,
-    /// Where the ray starts.
+    /// Start of the ray, above the surface.
     above: Vec3,
     normal: Vec3,
-    /// Where it lies in the pixel, from its first sample, in pixels.
+    /// Position in the pixel relative to its first sample, in pixels.
     place: Vec2,
-    /// `None` where the depth buffer alone says where it is.
+    /// Triangle of the point; `None` if its position comes from the depth buffer.
     triangle: Option<u32>,
 }
 
-/// The points of a pixel that rays start from, in pixels from its first sample, and of the sun that they go to, in its
-/// radii. `first`: where that sample lies, from the pixel's centre.
+/// Returns the start points of a pixel's rays, in pixels from its first sample, and their targets in the sun,
+/// in radii. `first` is that sample's position relative to the pixel's centre.
 pub(super) fn points(count: u32, is_soft: bool, first: Vec2) -> Vec<[Vec2; 2]> {
     let four = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]];
     let place = |index: u32| match count {
@@ -45,29 +45,31 @@ pub(super) fn points(count: u32, is_soft: bool, first: Vec2) -> Vec<[Vec2; 2]> {
     (0..count).map(point).collect()
 }
 
-/// One of several places in the unit disc (H. Vogel, "A better way to construct the sunflower head", 1979).
+/// Returns one of several positions in the unit disc (H. Vogel, "A better way to construct the sunflower
+/// head", 1979).
 pub(super) fn in_disc(index: u32, count: u32) -> Vec2 {
     let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let (radius, angle) = (((f64::from(index) + 0.5) / f64::from(count)).sqrt(), f64::from(index) * golden);
     Vec2::new((radius * angle.cos()) as f32, (radius * angle.sin()) as f32)
 }
 
-/// A surface on a ray.
+/// Search for a surface on a ray.
 struct Sought<'a> {
     tracer: &'a Tracer,
     begin: Vec3,
     direction: Vec3,
-    /// Where on the ray it lies, give or take as much.
+    /// Expected distance along the ray, which is also the tolerance.
     reach: f32,
     sure: f32,
-    /// How far beside a triangle the ray may pass.
+    /// Greatest distance between the ray and a missed triangle.
     beside: f32,
     normal: Option<Vec3>,
 }
 
 impl Sought<'_> {
-    /// The first triangle that the ray meets within `sure` of where the surface lies, else the nearest one. If it meets none, or one
-    /// with another normal, one that it passes.
+    /// Returns the first triangle that the ray hits within `sure` of the expected distance, or else the
+    /// nearest one to it. If the ray hits none, or one with another normal, returns a triangle that it
+    /// narrowly misses.
     fn triangle(&self) -> Option<u32> {
         let Self { tracer, begin, direction, reach, .. } = *self;
         let mut best = (f32::INFINITY, None);
@@ -138,7 +140,7 @@ impl Twin {
         Traced { factor, share: share * (1.0 - faded) + faded }
     }
 
-    /// How many of as many rays over the sun's disc, from a pixel's centre, are not blocked.
+    /// Returns how many of `count` rays over the sun's disc, from a pixel's centre, are not blocked.
     pub(in super::super) fn lit_of(&self, index: usize, count: u32, tracer: &Tracer) -> u32 {
         let (pixel, surface) = self.surface_at(index);
         let start = self.start_at(pixel, &surface, Vec2::ZERO, (tracer, None)).above + self.eye;
@@ -166,7 +168,8 @@ impl Twin {
         homogeneous.truncate() / homogeneous.w
     }
 
-    /// Where a ray from a place in a pixel starts, in pixels from its first sample. `first`: where one from that sample starts.
+    /// Returns the start of a ray from a position in a pixel, in pixels from its first sample. `first` is the
+    /// start of the first sample.
     fn start_at(
         &self,
         [x, y]: [i32; 2],
@@ -223,13 +226,14 @@ impl Twin {
         Start { position, above, normal, place, triangle: Some(triangle) }
     }
 
-    /// How far the ray from the eye may pass outside of the drawn triangle, in metres.
+    /// Returns how far the ray from the eye may miss the drawn triangle, in metres.
     fn beside_of(&self, surface: &Surface) -> f32 {
         let [across, down] = [0, 1].map(|axis| Self::moved(self.world_from_pixel[axis], surface).length());
         SNAP * across.max(down)
     }
 
-    /// Whether a pixel leaves the plane of another one by so little that rays from between them start above the surface.
+    /// Returns whether a pixel lies close enough to the plane of another one for rays between them to start
+    /// above the surface.
     fn is_on_plane(&self, [x, y]: [i32; 2], [right, down]: [i32; 2], surface: &Surface) -> bool {
         let found = self.depth_at([x + right, y + down]);
         let off = found - surface.depth - (surface.steps.x * right as f32 + surface.steps.y * down as f32);
@@ -237,20 +241,21 @@ impl Twin {
         found != 0.0 && (off * up).abs() * self.point_reach <= 0.5 * self.height_at(surface.position)
     }
 
-    /// Whether the surface goes on to a neighbour as the pixel's plane does.
+    /// Returns whether the surface continues to a neighbour on the pixel's plane.
     fn goes_on(&self, pixel: [i32; 2], axis: [i32; 2], surface: &Surface) -> bool {
         let is_on_plane = |steps: i32| self.is_on_plane(pixel, axis.map(|side| side * steps), surface);
         is_on_plane(1) && (is_on_plane(-1) || is_on_plane(2))
     }
 
-    /// Whether the surface goes on to a place in its pixel, in pixels from its first sample.
+    /// Returns whether the surface continues to a position in its pixel, in pixels from its first sample.
     fn reaches(&self, pixel: [i32; 2], surface: &Surface, place: Vec2) -> bool {
         let [across, down] = [place.x, place.y].map(|side| if side > 0.0 { 1 } else { -1 });
         (place.x == 0.0 || self.goes_on(pixel, [across, 0], surface))
             && (place.y == 0.0 || self.goes_on(pixel, [0, down], surface))
     }
 
-    /// Two directions across the light (T. Duff et al., "Building an orthonormal basis, revisited", 2017).
+    /// Returns two directions across the light (T. Duff et al., "Building an orthonormal basis, revisited",
+    /// 2017).
     fn across_light(&self) -> [Vec3; 2] {
         let n = Vec3::from(self.receiver.to_light);
         let side = if n.z >= 0.0 { 1.0 } else { -1.0 };
@@ -260,7 +265,7 @@ impl Twin {
         [x, Vec3::new(b, side + n.y * n.y * a, -n.y)]
     }
 
-    /// By how much a pixel's rays are turned about the light, in radians.
+    /// Returns the rotation of a pixel's rays about the light, in radians.
     fn turn(&self, [x, y]: [i32; 2]) -> f32 {
         let at = Vec2::new(x as f32, y as f32) + self.receiver.frame_shift;
         let inner = at.x * 0.067_110_56 + at.y * 0.005_837_15;

@@ -1,4 +1,4 @@
-//! Which maps a pixel reads: the arithmetic of the look-up's `shadowfit_select`.
+//! Maps that a pixel reads: the arithmetic of the look-up's `shadowfit_select`.
 
 use shadowfit::glam::{Vec2, Vec3};
 use shadowfit::settings::MapSelection;

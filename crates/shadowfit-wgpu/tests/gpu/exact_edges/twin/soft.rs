@@ -1,5 +1,5 @@
-//! What the maps say under a sun with a radius: the arithmetic of `soft.wgsl`, over bounds that are found from the
-//! texels of the maps.
+//! Verdicts of the maps under a sun with a radius: the arithmetic of `soft.wgsl`, with bounds computed from
+//! the texels of the maps.
 
 use shadowfit::DepthConvention;
 use shadowfit::glam::Vec2;
@@ -8,7 +8,7 @@ use shadowfit_wgpu::uniforms::MapUniform;
 
 use super::{FOOTPRINT, Projected, ROUNDED_TEXEL, Twin, Verdict};
 
-// The constants of the WGSL and of the pyramids.
+// Constants of the WGSL and of the pyramids.
 const BLOCK: u32 = 4;
 const COARSEST: u32 = 4;
 const FEW_BLOCKS: f32 = 4.0;
@@ -16,7 +16,7 @@ const MANY_BLOCKS: f32 = 8.0;
 const MOST_GAP: f32 = 1.0;
 const NARROW: f32 = 5.0;
 
-/// The nearest and the farthest depth of each block of a level, layer by layer and row by row.
+/// Nearest and farthest depth of each block of a level, layer by layer and row by row.
 struct Level {
     columns: u32,
     rows: u32,
@@ -35,7 +35,7 @@ impl Pyramid {
 }
 
 impl Level {
-    /// Of blocks with a side, in texels.
+    /// Computes a level with blocks of this width, in texels.
     fn new(descriptor: &ShadowMapDescriptor, stored: &[f32], side: u32) -> Self {
         let [width, height] = descriptor.resolution;
         let [columns, rows] = [width.div_ceil(side), height.div_ceil(side)];
@@ -53,11 +53,11 @@ impl Level {
     }
 }
 
-/// The blocks around a point.
+/// Blocks around a point.
 struct Blocks {
     level: usize,
     side: f32,
-    /// Where the first block begins, and how many there are across and down.
+    /// Beginning of the first block, and number of blocks across and down.
     begin: Vec2,
     counts: Vec2,
 }
@@ -86,12 +86,12 @@ impl Twin {
         if verdict == Verdict::Shadowed && !is_lid { Verdict::Unsure } else { verdict }
     }
 
-    /// Texels around a point within which a caster of a depth may stand in the way of a ray.
+    /// Returns the distance in texels around a point within which a caster at a depth may block a ray.
     fn cone(&self, map: &MapUniform, p: &Projected, depth: f32) -> Vec2 {
         ((p.surface - depth) * Vec2::from(map.penumbra)).max(Vec2::ZERO) + self.radius_slack
     }
 
-    /// `None` where they reach out of the map, or are too many.
+    /// Returns the blocks around a point, or `None` if they reach outside the map or are too many.
     fn blocks_around(&self, map: &MapUniform, p: &Projected, reach: Vec2, most: f32) -> Option<Blocks> {
         let first = (p.texel - reach - 0.5).floor();
         let end = (p.texel + reach - 0.5).floor() + 2.0;
@@ -110,7 +110,7 @@ impl Twin {
         Some(Blocks { level, side, begin: first - into, counts: ((into + end - first) / side).ceil() })
     }
 
-    /// Where each block begins, in the map, with its bounds.
+    /// Returns the beginning of each block in the map, with its bounds.
     fn each<'a>(&'a self, map: &'a MapUniform, blocks: &'a Blocks) -> impl Iterator<Item = (Vec2, [f32; 2])> + 'a {
         let [across, down] = blocks.counts.to_array().map(|count| count as u32);
         let places = (0..down).flat_map(move |y| (0..across).map(move |x| Vec2::new(x as f32, y as f32)));
@@ -153,7 +153,7 @@ impl Twin {
         }
         let low = 2.0 * (rise * Vec2::from(map.penumbra)).abs() + self.radius_slack;
         match (is_lit, is_covered) {
-            // What is lower than the plane within a block.
+            // Casters lower than the plane within a block.
             (true, _) => match self.footprint(map, p, spread + low, 0.0) {
                 Verdict::Shadowed => Verdict::Unsure,
                 near => near,

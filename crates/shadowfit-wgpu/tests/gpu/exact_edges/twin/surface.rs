@@ -1,4 +1,4 @@
-//! The surface that a pixel shows: the arithmetic of `edges.wgsl`.
+//! The surface at a pixel: the arithmetic of `edges.wgsl`.
 
 use shadowfit::glam::{Vec2, Vec3, Vec4};
 use shadowfit_wgpu::exact_edges::NormalEncoding;
@@ -13,16 +13,16 @@ pub(super) struct Surface {
     pub(super) w: f32,
     pub(super) depth: f32,
     pub(super) steps: Vec2,
-    /// The greatest changes that the surface may have, across and down.
+    /// Greatest changes of depth that the surface may have, across and down.
     pub(super) most_steps: Vec2,
     pub(super) normal: Vec3,
     pub(super) is_known: bool,
-    /// Whether the texture of normals has it.
+    /// Whether the texture of normals contains the normal.
     pub(super) is_stored: bool,
     pub(super) is_single: bool,
     /// Distance along the line of sight within which the surface lies, in metres.
     pub(super) off: Vec3,
-    /// Sine of the angle by which the normal may be off.
+    /// Sine of the normal's angular error bound.
     pub(super) tilt: f32,
 }
 
@@ -119,17 +119,17 @@ impl Twin {
         Surface { position, w, depth, steps, most_steps, normal, is_known, is_stored, is_single, off, tilt }
     }
 
-    /// Change of a position per pixel, or per depth, from that of its homogeneous one.
+    /// Returns the change of a position per pixel or per depth, from the change of its homogeneous position.
     pub(super) fn moved(change: Vec4, surface: &Surface) -> Vec3 {
         (change.truncate() - surface.position * change.w) / surface.w
     }
 
-    /// How far above the surface of a point rays start, in metres.
+    /// Returns the distance above the surface at which rays from a point start, in metres.
     pub(super) fn height_at(&self, position: Vec3) -> f32 {
         RAY_OFFSET.max(POSITION_ROUNDING * (position.length() + self.eye.length()))
     }
 
-    /// Texels of a map to the next pixel on the plane, across and down.
+    /// Returns the distances in a map to the next pixel on the plane, in texels, across and down.
     pub(super) fn texels_per_pixel(&self, map: &MapUniform, surface: &Surface) -> [Vec2; 2] {
         let m = self.world_from_pixel;
         [m[0] + m[2] * surface.steps.x, m[1] + m[2] * surface.steps.y].map(|change| {
